@@ -1,0 +1,168 @@
+// A capture as the user wrote it, validated; immutable after read_capture(). Format: docs/capture.md.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "capture_io/camera.h"
+#include "capture_io/image.h"
+#include "capture_io/input_error.h"
+
+namespace hookeye {
+
+using Eigen::Vector3d;
+
+/// Names only; numbers in the capture are never converted.
+struct Units {
+  std::string length, force;    ///< "mm" | "m" | "cm" ..., "N" | "mN" | "kN"
+  std::string stress() const;   ///< "MPa" for mm and N, "Pa" for m and N, else "N/cm^2" style
+  std::string acceleration() const { return length + "/s^2"; }
+  /// Factor from SI acceleration m/s^2 to length/s^2.
+  double metre() const;         ///< length units in one metre (1000 for mm)
+};
+
+struct RegionSpec {
+  struct Box { Vector3d low, high; };
+  struct Faces { std::filesystem::path file; std::vector<int> triangles; };
+  struct Sphere { Vector3d center; double radius; };
+  struct Halfspace { Vector3d point, normal; };  ///< (x - point).normal >= 0
+  struct Group { std::string name; };
+  std::string name;
+  Place place;
+  std::variant<Box, Faces, Sphere, Halfspace, Group> shape;
+};
+
+/// `law: name` with its numbers; the simulation's registry checks names, counts and ranges and
+/// reports with these places.
+struct MaterialSpec {
+  struct Value { std::vector<double> numbers; Place place; };
+  std::string law;
+  Place place;
+  std::map<std::string, Value> parameters;  ///< "mu" -> {0.05}
+  std::string region;                       ///< "" = the whole body, else a group of the volume
+};
+
+struct BodySpec {
+  std::filesystem::path surface, volume;  ///< absolute; either may be empty
+  Place surface_place, volume_place;
+  double edge = 0.0;                      ///< target edge [length]; 0: not given
+  int order = 2;
+  bool mesh_given = false;                ///< `mesh:` stands in the capture
+  double density = 0.0;                   ///< [force s^2 / length^4]; 0: not given
+  enum class Texture { none, image, rest, uniform } texture = Texture::none;
+  std::filesystem::path texture_image;
+  std::optional<Encoding> texture_encoding;
+  std::string texture_example;            ///< of `from: NAME`
+  std::optional<double> uniform_albedo;   ///< empty with Texture::uniform: fitted
+  bool fit_placement = false;
+  Place place, texture_place;
+};
+
+struct LightSpec {
+  double ambient = 1.0;
+  Vector3d sun = Vector3d::Zero();  ///< strength times unit vector towards the sun
+  bool given = false;               ///< false: absent, to be fitted
+};
+
+struct RigidMotion {
+  Vector3d axis = Vector3d::UnitZ();
+  double degrees = 0.0;
+  Vector3d center = Vector3d::Zero();
+  Vector3d move = Vector3d::Zero();
+  Vector3d apply(const Vector3d& X) const;  ///< rotate about center, then move
+};
+
+struct SupportSpec {
+  enum class Kind { components, rigid, rigid_fit } kind = Kind::components;
+  std::string region;
+  Place place;
+  std::array<std::optional<double>, 3> displacement;  ///< Kind::components; fix = 0
+  RigidMotion rigid;                                  ///< Kind::rigid
+};
+
+struct LoadSpec {
+  std::string region;
+  Place place;
+  std::optional<Vector3d> force;   ///< total dead force, uniform over the rest area
+  std::optional<double> pressure;  ///< follows the deformed normal, pushes inwards
+};
+
+struct PhotoSpec {
+  std::string camera;
+  std::filesystem::path file, mask;
+  enum class Kind { image, silhouette } kind = Kind::image;
+  std::optional<Encoding> encoding;
+  std::optional<NoiseModel> noise;  ///< empty: estimated
+  bool rgb = false;                 ///< channels: rgb; default luminance
+  Place place;
+};
+
+struct MeasuredSpec {
+  enum class Kind { force, moment, position } kind;
+  std::string region;               ///< force_on, moment_on
+  Vector3d about = Vector3d::Zero();
+  Vector3d point = Vector3d::Zero();  ///< position_of: rest point
+  Vector3d value;
+  double sigma;
+  Place place;
+};
+
+struct ExampleSpec {
+  std::string name;
+  Place place;
+  bool validate = false;  ///< use: validate
+  std::vector<SupportSpec> supports;
+  std::vector<LoadSpec> loads;
+  std::vector<PhotoSpec> photos;
+  std::vector<MeasuredSpec> measured;
+};
+
+struct BackgroundSpec {
+  enum class Kind { ignore, level, fit, photo } kind = Kind::ignore;
+  double level = 0.0;  ///< black = 0
+  std::filesystem::path photo;
+};
+
+struct Capture {
+  std::filesystem::path file, folder;  ///< absolute path of capture.yaml and of its folder
+  std::string title;
+  Units units;
+  BodySpec body;
+  std::vector<MaterialSpec> materials;
+  std::vector<std::string> fit;  ///< material parameters that may move
+  std::vector<Place> fit_places;
+  std::optional<Vector3d> gravity;  ///< [length/s^2]
+  std::vector<Camera> cameras;
+  LightSpec light;
+  BackgroundSpec background;
+  std::vector<RegionSpec> regions;
+  std::vector<ExampleSpec> examples;
+
+  const Camera& camera(const std::string& name) const;
+  const RegionSpec* region(const std::string& name) const;
+};
+
+/// Reads `path` (the yaml file or its folder), every referenced header included (sizes, existence,
+/// no path out of the folder), but not the pixels. Throws InputError at the first fault found.
+/// Limits against hostile files: 16 MiB of yaml, no alias expansion beyond 10,000 nodes.
+Capture read_capture(const std::filesystem::path& path);
+
+/// A photo with its pixels, ready to compare: one plane per compared channel (1 or 3).
+struct Photo {
+  std::string camera;
+  PhotoSpec::Kind kind = PhotoSpec::Kind::image;
+  std::vector<Image> planes;         ///< 1-channel, linear; luminance unless rgb
+  std::vector<Image> sigma;          ///< 1-channel, same shape: noise standard deviation
+  std::vector<unsigned char> valid;  ///< per pixel: 0 masked out (or saturated), 1 counts
+  NoiseModel noise;
+  std::vector<double> channel_weights;  ///< planes[k] = channel k (rgb) or the luminance weights
+};
+Photo read_photo(const PhotoSpec& spec, const Camera& camera);
+
+}  // namespace hookeye

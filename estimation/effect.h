@@ -1,0 +1,48 @@
+// The catalogue of physical effects. A new effect is one file in estimation/effects/ and one line
+// in estimation/effects/catalogue.def.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimation/model.h"
+
+namespace hookeye {
+
+enum class EffectGroup { material, loads, supports, history, measurement, numerical };
+
+/// One hypothesis: an ingredient whose null values leave the model unchanged.
+///
+/// Recipe: write estimation/effects/NAME.cpp with a class derived from Effect and
+/// `HOOKEYE_DEFINE_EFFECT(NAME, ClassName)` at its end; add HOOKEYE_EFFECT(NAME) to catalogue.def.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual std::string name() const = 0;
+  virtual EffectGroup group() const = 0;
+  virtual std::string title() const = 0;     ///< "self-weight", for people
+  /// What it is, what it is easily taken for: two sentences for the manual.
+  virtual std::string manual() const = 0;
+  /// The ways in which the effect can be present in this model (which camera, from which example
+  /// on, which field). All candidates are scored; the best stands for the effect. Parameters'
+  /// `value` are the nulls. Empty: not applicable to this capture (reason in `why_not`).
+  virtual std::vector<std::shared_ptr<const Ingredient>> candidates(const Model& model,
+                                                                    std::string* why_not) const = 0;
+  /// Candidate for write/read: by variant().
+  std::shared_ptr<const Ingredient> candidate(const Model& model, const std::string& variant) const;
+  /// Larger form to refit with after the score named the effect (blob to field, compliance to log
+  /// stiffness); default: the scored ingredient itself. `values` are moved to the new form's.
+  virtual std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                                       std::shared_ptr<const Ingredient> scored,
+                                                       Eigen::VectorXd& values) const;
+  /// One plain clause from figures: "self-weight, 9.6 m/s2 towards (0.5, -0.2, -0.8)".
+  virtual std::string sentence(const Model& model, const Ingredient& ingredient,
+                               const Eigen::VectorXd& values) const = 0;
+};
+
+/// All effects in catalogue order. Never null.
+const std::vector<const Effect*>& catalogue();
+const Effect* find_effect(const std::string& name);
+
+}  // namespace hookeye

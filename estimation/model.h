@@ -1,0 +1,104 @@
+// The model: energy + loadings + optics as a function of parameters. A value; verbs are functions.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "capture_io/capture.h"
+#include "capture_io/parameter.h"
+#include "meshing/body.h"
+#include "render/optics.h"
+#include "simulation/energy_model.h"
+#include "simulation/loading.h"
+
+namespace hookeye {
+
+/// Everything that a fit never changes: capture, body, photos. Shared by all models of a capture.
+struct Scene {
+  Capture capture;
+  std::shared_ptr<const Body> body;
+  std::vector<std::vector<Photo>> photos;  ///< [example][photo], order of the capture
+  std::vector<std::shared_ptr<const Image>> albedo;  ///< planes of the texture image (1 or 3)
+  std::vector<Image> backgrounds;                    ///< of background: {photo}, else empty
+  std::shared_ptr<const TetMesh> mesh() const { return {body, &body->mesh}; }
+  int example_index(const std::string& name) const;  ///< -1: none
+};
+
+/// One example under the present parameter values.
+struct ExampleModel {
+  double stiffness = 1.0;     ///< factor on the whole energy (history effects)
+  Loading loading;            ///< supports and forces; gravity included
+  std::vector<PhotoState> photos;  ///< order of the example's photos
+  Vector3d force_offset = Vector3d::Zero();  ///< added to predicted measured forces (force_zero)
+};
+
+/// The realised model: what equilibrium and rendering need. Ingredients write into it.
+struct Model {
+  std::shared_ptr<const Scene> scene;
+  EnergyModel energy;
+  std::vector<ExampleModel> examples;  ///< order of the capture's examples
+  double albedo = 1.0;                 ///< of a uniform texture
+  /// Energy of example e: energy with all weights times examples[e].stiffness.
+  EnergyModel energy_of(int example) const;
+};
+
+/// What an ingredient can change; lets the derivative skip what it does not touch.
+struct Touches {
+  bool energy = false, loading = false, photos = false, measured = false;
+};
+
+/// Derivative of one example by one parameter at fixed q, where an ingredient knows it better than
+/// central differences of apply(): empty vectors mean zero.
+struct MechanicsDerivative {
+  VectorXd dR_dt;    ///< 3n
+  VectorXd dqc_dt;   ///< by loading.prescribed
+};
+struct Equilibrium;
+
+/// A group of parameters with one meaning: the material, the light, an added effect. Immutable.
+class Ingredient {
+ public:
+  virtual ~Ingredient() = default;
+  virtual std::string name() const = 0;  ///< "material", "gravity", "camera_pose"
+  /// Configuration chosen among candidates ("cam0 from twist on"), "" if there is none; together
+  /// with name() it rebuilds the ingredient (make_ingredient).
+  virtual std::string variant() const { return {}; }
+  virtual std::vector<Parameter> parameters() const = 0;
+  virtual Touches touches() const = 0;
+  /// Writes the values into the model. At the null values the model stays bit-equal.
+  virtual void apply(const Eigen::VectorXd& values, Model& model) const = 0;
+  /// Optional exact or one-sided derivative at `values`; default: none (false), and the caller
+  /// takes central differences (one-sided at a bound) of residual and prescribed motion at fixed q.
+  virtual bool mechanics_derivative(const Eigen::VectorXd& values, const Model& model, int example,
+                                    const Equilibrium& equilibrium, int parameter,
+                                    MechanicsDerivative& out) const;
+};
+
+/// Model as a function of parameters: ingredients in order, p their concatenated values.
+struct ModelForm {
+  std::shared_ptr<const Scene> scene;
+  Model start;  ///< before any ingredient
+  std::vector<std::shared_ptr<const Ingredient>> ingredients;
+
+  std::vector<Parameter> parameters() const;
+  int size() const;
+  VectorXd initial() const;  ///< concatenated Parameter::value
+  Model realise(const VectorXd& p) const;
+};
+
+/// Scene of a capture: reads photos and builds the body (edge_factor as make_body).
+std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_factor = 1.0,
+                                        bool with_photos = true);
+/// The base model: material (what `fit:` names), light where it is not told, rigid: fit supports,
+/// placement: fit, uniform albedo, background: fit.
+ModelForm base_form(std::shared_ptr<const Scene> scene);
+
+/// model.yaml of a run step: base values, added effects with variants and values. Usable as -m.
+std::string write_model(const ModelForm& form, const VectorXd& p);
+/// Throws InputError with the place.
+std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
+                                          std::shared_ptr<const Scene> scene);
+
+}  // namespace hookeye

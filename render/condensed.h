@@ -1,0 +1,49 @@
+// Pixels condensed on the fly: M = sum g^T g and b = sum g^T r (method.md, Fit), so that
+// J^T J = S^T M S and J^T r = S^T b for any number of parameters.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "render/renderer.h"
+
+namespace hookeye {
+
+/// Sensitivity of the vertices of one example's surface: d(position), d(normal), d(reference) by
+/// the parameters, each 3nv x m (reference may be empty), and d(photo numbers): kPhotoColumns x m.
+struct VertexSensitivity {
+  Eigen::MatrixXd position, normal, reference;
+  Eigen::MatrixXd photo;
+};
+
+/// Normal equations of one photo.
+struct CondensedPhoto {
+  Eigen::MatrixXd JtJ;  ///< m x m
+  Eigen::VectorXd Jtr;  ///< m
+  double r2 = 0;        ///< sum of weighted squared residuals
+  size_t count = 0;     ///< pixels that count
+};
+
+/// The photo's sums by vertices, before parameters are known. Weighted: residual r_i (already over
+/// noise and times sqrt of the robust weight), w_i the factor dr_i/dI_i.
+class NodeNormalEquations {
+ public:
+  /// `r` and `w` per active pixel of `dI` (same order). `Bt_r`: per active pixel, B^T(w r): the
+  /// blurred adjoint (equal to w*r where there is no blur).
+  static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
+                                        const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
+                                        bool normals, bool reference);
+  CondensedPhoto reduce(const VertexSensitivity& S) const;
+  NodeNormalEquations();
+  ~NodeNormalEquations();
+  NodeNormalEquations(NodeNormalEquations&&) noexcept;
+  NodeNormalEquations& operator=(NodeNormalEquations&&) noexcept;
+
+  struct Impl;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hookeye

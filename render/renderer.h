@@ -1,0 +1,85 @@
+// Renders a triangle surface and differentiates the picture. The only file that touches Embree is
+// ray_scene.cpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "capture_io/image.h"
+#include "meshing/surface_mesh.h"
+#include "render/optics.h"
+
+namespace hookeye {
+
+struct RenderOptions {
+  int rays_per_axis = 3;        ///< fixed pattern of rays_per_axis^2 rays per pixel
+  double filter_width_px = 1.5; ///< Blackman-Harris window over which the rays are weighted
+  bool smooth_normals = true;   ///< vertex normals: area-weighted mean of the face normals
+  bool cast_shadows = true;
+  int visibility_rays = 64;     ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
+  bool derivatives = true;
+  int threads = 1;
+};
+
+/// Derivative of one pixel by the vertices of one triangle. A pixel's derivative is the sum of its
+/// segments (rays or silhouette edges on several triangles give several).
+/// For vertex k of the triangle: d_position.col(k) by its deformed position, d_normal.col(k) by its
+/// unit vertex normal, d_reference.col(k) by its reference position (Texture::Source::photo).
+struct DerivativeSegment {
+  int triangle;
+  Eigen::Matrix3f d_position, d_normal, d_reference;
+};
+
+/// Pixels that count, with their derivatives. Compressed rows: the segments of active pixel i are
+/// segments[first[i] .. first[i+1]).
+struct ImageDerivative {
+  std::vector<int> pixel;                                   ///< y*width + x, ascending
+  std::vector<int> first;                                   ///< pixel.size() + 1
+  std::vector<DerivativeSegment> segments;
+  Eigen::Matrix<float, kPhotoColumns, Eigen::Dynamic> d_photo;  ///< one column per active pixel
+};
+
+struct Rendering {
+  Image I;                      ///< 1 channel, linear
+  Image coverage;               ///< filtered fraction of the pixel that the body covers, 0..1
+  std::vector<int> triangle;    ///< triangle under the pixel centre, -1: none
+  std::vector<Eigen::Vector2f> uv;  ///< barycentric (of corners 1, 2) there
+  ImageDerivative dI;           ///< of the *unblurred* picture times gain; see below
+};
+
+/// Blur and derivatives: with blur operator B (discrete Gaussian of the variance, Lindeberg 1990),
+/// I = B I_sharp, so J^T w = J_sharp^T B^T w. `dI` holds J_sharp except column kBlur, which is
+/// dI/dv of the blurred picture; apply blur() to the weighted residual before multiplying.
+Image blur(const Image& image, double variance_px2);
+
+/// Topology once, positions as often as wanted.
+class Renderer {
+ public:
+  explicit Renderer(SurfaceMesh surface);  ///< triangles and uv are used; positions are the rest
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  /// `x` 3 x nv deformed positions; `x_reference` 3 x nv (photo texture; else may be null).
+  /// `count` (per pixel, may be null): 0 = pixel not wanted.
+  /// `silhouette`: background is told, so partly covered pixels count; otherwise only pixels fully
+  /// covered (coverage > 1 - 1e-6) are active. With it, all pixels with coverage > 0 or a
+  /// silhouette segment are active.
+  Rendering render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
+                   const PhotoState& photo, const RenderOptions& options, bool silhouette,
+                   const std::vector<unsigned char>* count = nullptr);
+
+  /// Vertex normals (unit) of deformed positions and their linearisation:
+  /// dn (3nv) = N dx (3nv), sparse.
+  Matrix3Xd normals(const Matrix3Xd& x) const;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> normal_derivative(const Matrix3Xd& x) const;
+  /// First visible hit: triangle and barycentric coordinates per pixel centre list.
+  const SurfaceMesh& surface() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hookeye

@@ -1,0 +1,56 @@
+// Energy densities: one interface for all laws.
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "capture_io/capture.h"
+#include "capture_io/parameter.h"
+
+namespace hookeye {
+
+using Eigen::Matrix3d;
+using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// W(F) per rest volume [stress]. 9-vectors and 9x9 stack F column by column (Eigen's order).
+/// Frame: rest axes; an anisotropic law keeps its own directions as parameters.
+class EnergyTerm {
+ public:
+  virtual ~EnergyTerm() = default;
+  virtual std::string name() const = 0;
+  /// Names, units, bounds and the present values; order = order of `with`.
+  virtual std::vector<Parameter> parameters(const Units& units) const = 0;
+  /// A copy with other values.
+  virtual std::shared_ptr<const EnergyTerm> with(const Eigen::VectorXd& values) const = 0;
+
+  /// psi(F). +infinity where F is not admissible (det F <= 0 for laws with J).
+  virtual double psi(const Matrix3d& F) const = 0;
+  /// First Piola-Kirchhoff stress P = dpsi/dF.
+  virtual Matrix3d P(const Matrix3d& F) const = 0;
+  /// d vec(P) / d vec(F), symmetric 9x9.
+  virtual Matrix9d dP_dF(const Matrix3d& F) const = 0;
+  /// dP / dtheta_k.
+  virtual Matrix3d dP_dtheta(const Matrix3d& F, int k) const = 0;
+};
+
+/// Builds a law from a capture's `material:`; names the fault with its place (unknown law or
+/// parameter with the nearest known one, missing, wrong count, out of range). Throws InputError.
+std::shared_ptr<const EnergyTerm> make_law(const MaterialSpec& spec);
+std::vector<std::string> law_names();
+
+/// The laws, one file each in simulation/laws/. Formulas: docs/capture.md, "Laws".
+std::shared_ptr<const EnergyTerm> neo_hookean(double mu, double kappa);
+/// kappa = ratio * mu: one parameter "mu" (the ratio is kept).
+std::shared_ptr<const EnergyTerm> neo_hookean_tied(double mu, double kappa_over_mu);
+std::shared_ptr<const EnergyTerm> stvk(double lambda, double mu);
+std::shared_ptr<const EnergyTerm> mooney_rivlin(double c10, double c01, double kappa);
+std::shared_ptr<const EnergyTerm> yeoh(double c1, double c2, double c3, double kappa);
+std::shared_ptr<const EnergyTerm> ogden(const std::vector<double>& mu,
+                                        const std::vector<double>& alpha, double kappa);
+/// Fibre term stiffness/2 (I4bar - 1)^2, I4bar = J^(-2/3) a.C a, a unit, along a (all strains).
+std::shared_ptr<const EnergyTerm> fibre(double stiffness, const Eigen::Vector3d& direction);
+
+}  // namespace hookeye

@@ -1,0 +1,102 @@
+// Equilibrium of one example and what follows from its factored tangent.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <functional>
+#include <memory>
+#include <variant>
+
+#include "capture_io/numerical_failure.h"
+#include "simulation/energy_model.h"
+#include "simulation/loading.h"
+
+namespace hookeye {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;  ///< column-major, full symmetric
+
+/// R(q) = dE_internal/dq + sum of force terms; K = dR/dq. All 3n unknowns, supports not eliminated.
+double internal_energy(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
+VectorXd residual(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
+                  const VectorXd& q, double load_fraction = 1.0);
+SparseMatrix tangent(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
+                     const VectorXd& q, double load_fraction = 1.0);
+/// Internal forces element by element: (3*nodes per element) x m; residual = their sum minus forces.
+Eigen::MatrixXd element_forces(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
+/// d(internal force)/dtheta_k of part `part`'s term at fixed q (3n).
+VectorXd dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q, int part,
+                   int k);
+
+/// State of the elements for pictures and vtu: at the centroid, 6 x m in the order xx yy zz xy yz xz.
+struct ElementState {
+  Eigen::MatrixXd green_strain, cauchy_stress;
+  VectorXd von_mises, J, energy_density;
+};
+ElementState element_state(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
+
+/// The factored true tangent on the free unknowns at the solution.
+class TangentFactor;
+
+struct Equilibrium {
+  VectorXd q;                  ///< 3n deformed positions [length]
+  VectorXd R;                  ///< 3n; zero on free unknowns, on prescribed ones the force the
+                               ///< support exerts on the body [force]
+  SparseMatrix K;              ///< true tangent at q, 3n x 3n
+  std::shared_ptr<const TangentFactor> factor;
+  int newton_iterations = 0;
+  int factorizations = 0;
+  bool stable = true;          ///< K_ff positive definite
+};
+
+struct EquilibriumOptions {
+  double tolerance = 1e-9;     ///< |R_free|_inf over the largest nodal force (or reaction)
+  int max_iterations = 60;     ///< Newton iterations of one load step
+  double smallest_step = 1e-4; ///< load fraction at which the solver gives up
+  std::function<bool()> cancelled;  ///< polled; true: returns a failure "cancelled"
+};
+
+/// Keeps the symbolic factorization of one mesh and set of free unknowns (METIS on the node graph),
+/// and the last solution and factor for warm starts. Not thread-safe; one per example.
+class EquilibriumSolver {
+ public:
+  explicit EquilibriumSolver(std::shared_ptr<const TetMesh> mesh);
+  ~EquilibriumSolver();
+  EquilibriumSolver(EquilibriumSolver&&) noexcept;
+  EquilibriumSolver& operator=(EquilibriumSolver&&) noexcept;
+
+  /// Finds R_free(q) = 0. Warm start from the last solution of this solver, else from `start`
+  /// (3n) if given, else from rest by adaptive load steps. No inverted element is ever accepted.
+  /// After small changes the last factor preconditions conjugate gradients.
+  std::variant<Equilibrium, NumericalFailure> solve(const EnergyModel& energy,
+                                                    const Loading& loading,
+                                                    const EquilibriumOptions& options = {},
+                                                    const VectorXd* start = nullptr);
+  void forget();  ///< drops the warm start
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One-shot form.
+std::variant<Equilibrium, NumericalFailure> solve_equilibrium(
+    const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
+    const EquilibriumOptions& options = {});
+
+/// S = dq/dp for columns given by dR/dp at fixed q (3n x m, at all unknowns) and the change of the
+/// prescribed unknowns dq_c/dp (rows in the order of loading.prescribed; empty: none):
+///   S_c = dq_c/dp,  S_f = -K_ff^-1 (dR_f/dp + K_fc S_c).   Returns 3n x m.
+Eigen::MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
+                              const Eigen::MatrixXd& dR_dp, const Eigen::MatrixXd& dqc_dp);
+
+/// Force and moment the supports exert on the body through the region's nodes:
+/// force = sum_a R_a, moment = sum_a (q_a - about) x R_a  [force], [force length].
+Vector3d support_force(const Equilibrium& equilibrium, const Region& region);
+Vector3d support_moment(const Equilibrium& equilibrium, const Region& region,
+                        const Vector3d& about);
+/// Their derivative by parameters: dR = dR/dp + K S (3n x m) and S = dq/dp. 3 x m.
+Eigen::MatrixXd d_support_force(const Region& region, const Eigen::MatrixXd& dR);
+Eigen::MatrixXd d_support_moment(const Equilibrium& equilibrium, const Region& region,
+                                 const Vector3d& about, const Eigen::MatrixXd& dR,
+                                 const Eigen::MatrixXd& S);
+
+}  // namespace hookeye
