@@ -61,6 +61,7 @@ struct BodySpec {
   std::string texture_example;            ///< of `from: NAME`
   std::optional<double> uniform_albedo;   ///< empty with Texture::uniform: fitted
   bool fit_placement = false;
+  bool flat_shading = false;              ///< shading: flat (default smooth)
   Place place, texture_place;
 };
 

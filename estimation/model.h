@@ -1,6 +1,7 @@
 // The model: energy + loadings + optics as a function of parameters. A value; verbs are functions.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <map>
 #include <memory>
 #include <string>
@@ -39,7 +40,9 @@ struct Model {
   std::shared_ptr<const Scene> scene;
   EnergyModel energy;
   std::vector<ExampleModel> examples;  ///< order of the capture's examples
-  double albedo = 1.0;                 ///< of a uniform texture
+  /// Pose of the whole set-up: x_in_world = placement x_in_body (gravity, cameras and light are
+  /// told in the world; mechanics happen in the body's frame).
+  Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
   /// Energy of example e: energy with all weights times examples[e].stiffness.
   EnergyModel energy_of(int example) const;
 };
@@ -87,6 +90,9 @@ struct ModelForm {
   VectorXd initial() const;  ///< concatenated Parameter::value
   Model realise(const VectorXd& p) const;
 };
+
+/// No loads and no moving support: the photos of this example show the body at rest.
+bool is_rest(const ExampleSpec& example);
 
 /// Scene of a capture: reads photos and builds the body (edge_factor as make_body).
 std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_factor = 1.0,

@@ -1,0 +1,84 @@
+// The base model of a capture: what the user believes, and what the capture leaves open.
+#include <Eigen/Geometry>
+
+#include "estimation/base_ingredients.h"
+#include "estimation/model.h"
+
+namespace hookeye {
+
+namespace {
+
+VectorXd elements_of_group(const TetMesh& mesh, const MaterialSpec& spec) {
+  if (spec.region.empty()) return {};
+  const auto group = mesh.volume_groups.find(spec.region);
+  if (group == mesh.volume_groups.end()) {
+    std::vector<std::string> known;
+    for (const auto& [name, elements] : mesh.volume_groups) known.push_back(name);
+    const std::string near = nearest_name(spec.region, known);
+    throw InputError(spec.place, "the body has no region '" + spec.region + "'",
+                     near.empty() ? "name a physical volume group of the volume file"
+                                  : "did you mean '" + near + "'?");
+  }
+  VectorXd weight = VectorXd::Zero(mesh.size());
+  for (int e : group->second) weight[e] = 1.0;
+  return weight;
+}
+
+PhotoState told_photo(const Capture& capture, const PhotoSpec& spec) {
+  PhotoState state;
+  state.camera = capture.camera(spec.camera);
+  state.shaded = capture.body.texture != BodySpec::Texture::rest;
+  if (state.shaded) {
+    const double albedo = capture.body.texture == BodySpec::Texture::uniform
+                              ? capture.body.uniform_albedo.value_or(0.5)
+                              : 1.0;
+    state.ambient = albedo * capture.light.ambient;
+    state.sun = albedo * capture.light.sun;
+  }
+  if (capture.background.kind == BackgroundSpec::Kind::level)
+    state.background = capture.background.level;
+  return state;
+}
+
+Model told_model(std::shared_ptr<const Scene> scene) {
+  const Capture& capture = scene->capture;
+  const TetMesh& mesh = scene->body->mesh;
+  Model model;
+  model.scene = scene;
+  for (const auto& spec : capture.materials)
+    model.energy.parts.push_back({make_law(spec), elements_of_group(mesh, spec)});
+  for (const auto& spec : capture.examples) {
+    ExampleModel example;
+    example.loading = make_loading(capture, spec, mesh, scene->body->regions);
+    for (const auto& photo : spec.photos)
+      example.photos.push_back(told_photo(capture, photo));
+    model.examples.push_back(std::move(example));
+  }
+  return model;
+}
+
+}  // namespace
+
+ModelForm base_form(std::shared_ptr<const Scene> scene) {
+  const Capture& capture = scene->capture;
+  ModelForm form;
+  form.scene = scene;
+  form.start = told_model(scene);
+  if (auto material = material_ingredient(*scene, form.start.energy))
+    form.ingredients.push_back(material);
+  if (auto rigid = rigid_support_ingredient(*scene)) form.ingredients.push_back(rigid);
+  const bool shaded = capture.body.texture == BodySpec::Texture::image ||
+                      capture.body.texture == BodySpec::Texture::uniform;
+  if (shaded && !capture.light.given)
+    form.ingredients.push_back(light_ingredient(*scene));
+  else if (capture.body.texture == BodySpec::Texture::uniform && !capture.body.uniform_albedo)
+    form.ingredients.push_back(albedo_ingredient());
+  if (capture.background.kind == BackgroundSpec::Kind::fit)
+    form.ingredients.push_back(background_ingredient(*scene));
+  if (capture.body.fit_placement) form.ingredients.push_back(placement_ingredient(*scene));
+  // Gravity last: it is told in the world, and the placement turns the body against it.
+  if (capture.gravity) form.ingredients.push_back(self_weight_ingredient(*capture.gravity));
+  return form;
+}
+
+}  // namespace hookeye

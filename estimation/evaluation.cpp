@@ -1,0 +1,203 @@
+#include "estimation/evaluation.h"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "estimation/columns.h"
+#include "estimation/photo_evaluation.h"
+
+namespace hookeye {
+
+double PhotoEvaluation::chi() const { return count > 0 ? std::sqrt(r2 / count) : 0.0; }
+
+const ExampleEvaluation* Evaluation::find(int example) const {
+  for (const auto& one : examples)
+    if (one.example == example) return &one;
+  return nullptr;
+}
+
+double Evaluation::chi(bool held_out) const {
+  double r2 = 0.0, count = 0.0;
+  for (const auto& example : examples)
+    if (example.held_out == held_out)
+      for (const auto& photo : example.photos) r2 += photo.r2, count += photo.count;
+  return count > 0.0 ? std::sqrt(r2 / count) : 0.0;
+}
+
+double Evaluation::rms_px(bool held_out) const {
+  double sum = 0.0, n = 0.0;
+  for (const auto& example : examples)
+    if (example.held_out == held_out)
+      for (const auto& photo : example.photos) {
+        const double cells = static_cast<double>(photo.flow.cells.size());
+        sum += cells * std::pow(photo.flow.rms_px(), 2);
+        n += cells;
+      }
+  return n > 0.0 ? std::sqrt(sum / n) : 0.0;
+}
+
+Camera camera_at_level(const Camera& camera, int level) {
+  Camera coarse = camera;
+  const double s = std::pow(0.5, level);
+  coarse.width >>= level;
+  coarse.height >>= level;
+  coarse.fx *= s;
+  coarse.fy *= s;
+  // pixel centres are integers: coordinate c of the fine image is (c + 1/2) s - 1/2 of the coarse
+  coarse.cx = (camera.cx + 0.5) * s - 0.5;
+  coarse.cy = (camera.cy + 0.5) * s - 0.5;
+  return coarse;
+}
+
+struct Workspace::Impl {
+  std::shared_ptr<const Scene> scene;
+  std::vector<EquilibriumSolver> solvers;    ///< one per example
+  std::vector<PhotoComparer> comparers;      ///< one per example
+
+  explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
+    for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
+      solvers.emplace_back(scene->mesh());
+      comparers.emplace_back(scene, static_cast<int>(e));
+    }
+  }
+
+  std::vector<int> wanted(const EvaluationOptions& options) const {
+    std::vector<int> examples;
+    for (size_t e = 0; e < scene->capture.examples.size(); ++e)
+      if (scene->capture.examples[e].validate ? options.held_out : options.fitted)
+        examples.push_back(static_cast<int>(e));
+    return examples;
+  }
+
+  /// Equilibrium and sensitivities of one example.
+  std::optional<NumericalFailure> solve(const Model& model, const ColumnSet* columns, int e,
+                                        const EvaluationOptions& options, ExampleEvaluation& out,
+                                        ExampleColumns& derivative) {
+    EquilibriumOptions equilibrium_options;
+    if (options.cancel)
+      equilibrium_options.cancelled = [cancel = options.cancel] { return cancel->load(); };
+    auto solved =
+        solvers[e].solve(model.energy_of(e), model.examples[e].loading, equilibrium_options);
+    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
+      failure->example = scene->capture.examples[e].name;
+      return *failure;
+    }
+    out.equilibrium = std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+    if (!columns) return {};
+    derivative = columns->of_example(model, e, *out.equilibrium);
+    out.S = sensitivities(*out.equilibrium, model.examples[e].loading, derivative.dR,
+                          derivative.dqc);
+    return {};
+  }
+};
+
+namespace {
+
+/// Predictions of forces, moments and positions with their derivatives.
+std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model& model, int e,
+                                                 const ExampleEvaluation& example,
+                                                 const ExampleColumns* columns) {
+  std::vector<MeasuredEvaluation> all;
+  const auto& specs = scene.capture.examples[e].measured;
+  const Equilibrium& equilibrium = *example.equilibrium;
+  Eigen::MatrixXd dR;
+  for (size_t i = 0; i < specs.size(); ++i) {
+    const MeasuredSpec& spec = specs[i];
+    MeasuredEvaluation one;
+    one.example = e;
+    one.index = static_cast<int>(i);
+    if (columns && dR.size() == 0 && spec.kind != MeasuredSpec::Kind::position)
+      dR = columns->dR + equilibrium.K * example.S;
+    if (spec.kind == MeasuredSpec::Kind::force) {
+      const Region& region = scene.body->regions.at(spec.region);
+      one.predicted = support_force(equilibrium, region) + model.examples[e].force_offset;
+      if (columns) one.J = d_support_force(region, dR) + columns->d_offset;
+    } else if (spec.kind == MeasuredSpec::Kind::moment) {
+      const Region& region = scene.body->regions.at(spec.region);
+      one.predicted = support_moment(equilibrium, region, spec.about);
+      if (columns) one.J = d_support_moment(equilibrium, region, spec.about, dR, example.S);
+    } else {
+      SurfacePoint point;
+      locate_on_boundary(scene.body->mesh, spec.point, &point);
+      const VectorXd N = shape_functions(scene.body->mesh.order, point.barycentric);
+      Vector3d x = Vector3d::Zero();
+      if (columns) one.J.setZero(3, example.S.cols());
+      for (int a = 0; a < N.size(); ++a) {
+        const int node = scene.body->mesh.elements(a, point.element);
+        x += N[a] * equilibrium.q.segment<3>(3 * node);
+        if (columns)
+          one.J += N[a] * model.placement.linear() * example.S.middleRows(3 * node, 3);
+      }
+      one.predicted = model.placement * x;
+      if (columns)
+        for (int j = 0; j < one.J.cols(); ++j)
+          one.J.col(j) +=
+              Eigen::Map<const Eigen::Matrix3d>(columns->d_placement.col(j).data()) * x +
+              columns->d_placement.col(j).tail<3>();
+    }
+    one.r = (one.predicted - spec.value) / spec.sigma;
+    if (columns) one.J /= spec.sigma;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+}  // namespace
+
+Workspace::Workspace(std::shared_ptr<const Scene> scene)
+    : impl_(std::make_unique<Impl>(std::move(scene))) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+const Scene& Workspace::scene() const { return *impl_->scene; }
+
+std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
+    const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
+    const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
+  const Model model = form.realise(p);
+  std::optional<ColumnSet> columns;
+  if (options.derivatives) columns.emplace(form, p, candidates);
+
+  // The reference state of a texture taken from photos comes first: all others look at it.
+  const Capture& capture = impl_->scene->capture;
+  const int reference = capture.body.texture == BodySpec::Texture::rest
+                            ? impl_->scene->example_index(capture.body.texture_example)
+                            : -1;
+  std::vector<int> wanted = impl_->wanted(options);
+  const int examples = static_cast<int>(capture.examples.size());
+  std::vector<ExampleEvaluation> solved(examples);
+  std::vector<ExampleColumns> derivative(examples);
+  std::vector<std::optional<NumericalFailure>> failures(examples);
+  std::vector<int> to_solve = wanted;
+  if (reference >= 0 && std::find(wanted.begin(), wanted.end(), reference) == wanted.end())
+    to_solve.push_back(reference);
+  auto cancelled = [&] { return options.cancel && options.cancel->load(); };
+  tbb::parallel_for(size_t{0}, to_solve.size(), [&](size_t i) {
+    const int e = to_solve[i];
+    if (cancelled()) return;
+    failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options, solved[e],
+                               derivative[e]);
+  });
+  for (int e : to_solve)
+    if (failures[e]) return *failures[e];
+  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+  const ReferenceState reference_state =
+      reference >= 0 ? ReferenceState{reference, &solved[reference]} : ReferenceState{};
+  tbb::parallel_for(size_t{0}, wanted.size(), [&](size_t i) {
+    const int e = wanted[i];
+    if (cancelled()) return;
+    solved[e].example = e;
+    solved[e].held_out = capture.examples[e].validate;
+    const ExampleColumns* d = columns ? &derivative[e] : nullptr;
+    solved[e].photos = impl_->comparers[e].compare(model, solved[e], reference_state, d, options);
+    solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d);
+  });
+  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+  Evaluation out;
+  out.columns = columns ? columns->size() : 0;
+  for (int e : wanted) out.examples.push_back(std::move(solved[e]));
+  return out;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,88 @@
+// One look at the model: equilibrium of every example, pictures against photos, and the normal
+// equations by every parameter (method.md, Fit).
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture_io/numerical_failure.h"
+#include "estimation/flow.h"
+#include "estimation/model.h"
+#include "render/condensed.h"
+#include "simulation/equilibrium.h"
+
+namespace hookeye {
+
+struct EvaluationOptions {
+  bool derivatives = true;
+  bool pictures = false;   ///< keep model, residual and flow
+  bool fitted = true;      ///< examples with use: fit
+  bool held_out = false;   ///< examples with use: validate
+  int level = 0;           ///< pyramid level: 0 = full size, each level halves
+  /// Huber's threshold in units of noise; 0: squares.
+  double huber = 0.0;
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+struct PhotoEvaluation {
+  int example = 0, photo = 0, plane = 0;
+  CondensedPhoto sums;       ///< over all columns; r2 is the Huber cost when that is on
+  double r2 = 0.0;           ///< plain sum of squared residuals over noise
+  double count = 0.0;
+  Image model, residual;     ///< pictures only: linear intensity; over noise, NaN = not counted
+  FlowField flow;            ///< pictures only
+  double chi() const;
+};
+
+/// A measured force, moment or position.
+struct MeasuredEvaluation {
+  int example = 0, index = 0;
+  Eigen::Vector3d predicted, r;  ///< r = (predicted - value)/sigma
+  Eigen::Matrix3Xd J;            ///< dr/dp
+};
+
+struct ExampleEvaluation {
+  int example = 0;
+  bool held_out = false;
+  std::shared_ptr<const Equilibrium> equilibrium;
+  Eigen::MatrixXd S;  ///< dq/dp, 3n x columns
+  std::vector<PhotoEvaluation> photos;
+  std::vector<MeasuredEvaluation> measured;
+};
+
+struct Evaluation {
+  std::vector<ExampleEvaluation> examples;
+  int columns = 0;
+  const ExampleEvaluation* find(int example) const;
+  double chi(bool held_out) const;     ///< root mean square of photo residuals over noise
+  double rms_px(bool held_out) const;  ///< of the residual displacement (needs pictures)
+};
+
+/// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.
+class Workspace {
+ public:
+  explicit Workspace(std::shared_ptr<const Scene> scene);
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  const Scene& scene() const;
+
+  /// Columns: parameters of `form` at `p`, then those of `candidates` at their null values.
+  std::variant<Evaluation, NumericalFailure> evaluate(
+      const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
+      const std::vector<std::shared_ptr<const Ingredient>>& candidates = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The local numbers b - a of two photo states (kPhotoColumns).
+VectorXd photo_difference(const PhotoState& a, const PhotoState& b);
+
+/// Cameras and photos at a pyramid level.
+Camera camera_at_level(const Camera& camera, int level);
+
+}  // namespace hookeye

@@ -1,0 +1,331 @@
+#include "estimation/fit.h"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <stdexcept>
+
+namespace hookeye {
+
+namespace {
+
+/// What Ceres moves: x = log p for positive parameters, p / typical for the others.
+struct Scaling {
+  std::vector<Parameter> parameters;
+  VectorXd to_p(const VectorXd& x) const {
+    VectorXd p(x.size());
+    for (int i = 0; i < x.size(); ++i)
+      p[i] = parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical;
+    return p;
+  }
+  VectorXd to_x(const VectorXd& p) const {
+    VectorXd x(p.size());
+    for (int i = 0; i < p.size(); ++i) x[i] = to_x(i, p[i]);
+    return x;
+  }
+  double to_x(int i, double value) const {
+    return parameters[i].positive ? std::log(std::max(value, 1e-300))
+                                  : value / parameters[i].typical;
+  }
+  VectorXd dp_dx(const VectorXd& p) const {
+    VectorXd d(p.size());
+    for (int i = 0; i < p.size(); ++i)
+      d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
+    return d;
+  }
+};
+
+/// (z, rho) with Jacobian (R, 0): R^T R = J^T J, R^T z = J^T r, rho^2 = |r|^2 - |z|^2. R from the
+/// eigenvectors, so that singular directions cost nothing and stay put.
+struct CondensedResidual {
+  Eigen::MatrixXd R;
+  VectorXd z;
+  double rho = 0.0;
+};
+
+CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
+  const Eigen::MatrixXd H = scale.asDiagonal() * sums.JtJ * scale.asDiagonal();
+  const VectorXd g = scale.cwiseProduct(sums.Jtr);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  const double floor = 1e-14 * std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+  const VectorXd root = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  CondensedResidual out;
+  out.R = root.asDiagonal() * eigen.eigenvectors().transpose();
+  out.z = eigen.eigenvectors().transpose() * g;
+  for (int i = 0; i < out.z.size(); ++i)
+    out.z[i] = eigen.eigenvalues()[i] > floor ? out.z[i] / root[i] : 0.0;
+  out.rho = std::sqrt(std::max(0.0, sums.r2 - out.z.squaredNorm()));
+  return out;
+}
+
+class ReducedCost final : public ceres::CostFunction {
+ public:
+  ReducedCost(Workspace& workspace, const ModelForm& form, const Scaling& scaling,
+              EvaluationOptions options)
+      : workspace_(workspace), form_(form), scaling_(scaling), options_(std::move(options)) {
+    set_num_residuals(form.size() + 1);
+    mutable_parameter_block_sizes()->push_back(form.size());
+  }
+
+  bool Evaluate(double const* const* x_, double* r, double** J) const override {
+    const VectorXd x = Eigen::Map<const VectorXd>(x_[0], form_.size());
+    // An accepted step is asked again for its Jacobian; both come from one evaluation.
+    if (x.size() != cached_x_.size() || x != cached_x_) {
+      const VectorXd p = scaling_.to_p(x);
+      auto result = workspace_.evaluate(form_, p, options_);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+        failure_ = *failure;
+        return false;
+      }
+      cached_ = condense(normal_equations(std::get<Evaluation>(result)), scaling_.dp_dx(p));
+      cached_x_ = x;
+    }
+    Eigen::Map<VectorXd>(r, x.size()) = cached_.z;
+    r[x.size()] = cached_.rho;
+    if (J && J[0]) {
+      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+      Eigen::Map<RowMajor> jacobian(J[0], x.size() + 1, x.size());
+      jacobian.topRows(x.size()) = cached_.R;
+      jacobian.row(x.size()).setZero();
+    }
+    return true;
+  }
+  const std::optional<NumericalFailure>& failure() const { return failure_; }
+
+ private:
+  Workspace& workspace_;
+  const ModelForm& form_;
+  const Scaling& scaling_;
+  EvaluationOptions options_;
+  mutable VectorXd cached_x_;
+  mutable CondensedResidual cached_;
+  mutable std::optional<NumericalFailure> failure_;
+};
+
+class Reporter final : public ceres::IterationCallback {
+ public:
+  Reporter(const FitOptions& options, std::string stage, double count, int of)
+      : options_(options), stage_(std::move(stage)), count_(count), of_(of) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
+    if (options_.progress)
+      options_.progress({stage_, summary.iteration, of_,
+                         std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const FitOptions& options_;
+  std::string stage_;
+  double count_;
+  int of_;
+};
+
+/// Misfit that Huber's threshold is measured in: 1.48 median |r| over the fitted photos.
+double misfit_scale(const Evaluation& evaluation) {
+  std::vector<float> sample;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos)
+      for (size_t i = 0; i < photo.residual.values.size(); i += 7)
+        if (!std::isnan(photo.residual.values[i]))
+          sample.push_back(std::abs(photo.residual.values[i]));
+  if (sample.empty()) return 1.0;
+  std::nth_element(sample.begin(), sample.begin() + sample.size() / 2, sample.end());
+  return std::max(1.0, 1.4826 * static_cast<double>(sample[sample.size() / 2]));
+}
+
+double photo_count(const Evaluation& evaluation) {
+  double count = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos) count += photo.count;
+  return count;
+}
+
+struct StageResult {
+  VectorXd p;
+  bool converged = false, cancelled = false;
+  int iterations = 0;
+};
+
+std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
+                                                      const VectorXd& start,
+                                                      const FitOptions& options, int level) {
+  EvaluationOptions evaluation;
+  evaluation.derivatives = false;
+  evaluation.pictures = true;
+  evaluation.level = level;
+  evaluation.cancel = options.cancel;
+  auto first = workspace.evaluate(form, start, evaluation);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const Evaluation& seen = std::get<Evaluation>(first);
+  evaluation.derivatives = true;
+  evaluation.pictures = false;
+  evaluation.huber = options.huber > 0.0 ? options.huber * misfit_scale(seen) : 0.0;
+
+  const Scaling scaling{form.parameters()};
+  VectorXd x = scaling.to_x(start);
+  ReducedCost cost(workspace, form, scaling, evaluation);
+  ceres::Problem::Options problem_options;
+  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(problem_options);
+  problem.AddResidualBlock(&cost, nullptr, x.data());
+  for (int i = 0; i < x.size(); ++i) {
+    const Parameter& parameter = scaling.parameters[i];
+    if (std::isfinite(parameter.low) && !(parameter.positive && parameter.low <= 0.0))
+      problem.SetParameterLowerBound(x.data(), i, scaling.to_x(i, parameter.low));
+    if (std::isfinite(parameter.high))
+      problem.SetParameterUpperBound(x.data(), i, scaling.to_x(i, parameter.high));
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;
+  solver.max_num_iterations = level > 0 ? 8 : options.max_iterations;
+  // A fall of |r|^2 by less than a pixel's worth of noise is nothing: 1e-6 of some 1e6 pixels.
+  solver.function_tolerance = level > 0 ? 1e-4 : 1e-6;
+  solver.parameter_tolerance = 1e-7;
+  solver.logging_type = ceres::SILENT;
+  solver.max_num_consecutive_invalid_steps = 8;
+  Reporter reporter(options, level > 0 ? fmt::format("1/{} size", 1 << level) : "full size",
+                    photo_count(seen), solver.max_num_iterations);
+  solver.callbacks.push_back(&reporter);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+  if (summary.termination_type == ceres::FAILURE)
+    return cost.failure().value_or(NumericalFailure{"", 0.0, summary.message});
+  return StageResult{scaling.to_p(x), summary.termination_type == ceres::CONVERGENCE, false,
+                     static_cast<int>(summary.iterations.size())};
+}
+
+}  // namespace
+
+NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
+  NormalEquations sums;
+  sums.JtJ.setZero(evaluation.columns, evaluation.columns);
+  sums.Jtr.setZero(evaluation.columns);
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out != held_out) continue;
+    for (const auto& photo : example.photos) {
+      sums.JtJ += photo.sums.JtJ;
+      sums.Jtr += photo.sums.Jtr;
+      sums.r2 += photo.sums.r2;
+    }
+    for (const auto& measured : example.measured) {
+      sums.JtJ += measured.J.transpose() * measured.J;
+      sums.Jtr += measured.J.transpose() * measured.r;
+      sums.r2 += measured.r.squaredNorm();
+    }
+  }
+  return sums;
+}
+
+namespace {
+
+/// "mu", or "mu together with kappa": what a direction without information moves.
+std::string name_direction(const std::vector<Parameter>& parameters, const VectorXd& direction) {
+  std::vector<std::string> names;
+  bool all_stiffness = true;
+  double lo = 1e300, hi = 0.0;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
+    names.push_back(parameters[i].name);
+    all_stiffness &= parameters[i].positive;
+    lo = std::min(lo, std::abs(direction[i]));
+    hi = std::max(hi, std::abs(direction[i]));
+  }
+  if (all_stiffness && hi < 1.1 * lo)
+    return fmt::format("stiffness scale not determined; only ratios ({})", fmt::join(names, ", "));
+  return fmt::format("not determined by this capture: {}", fmt::join(names, " together with "));
+}
+
+}  // namespace
+
+Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
+                                     const std::vector<Parameter>& parameters, const VectorXd& p,
+                                     std::vector<std::string>* undetermined) {
+  const int n = static_cast<int>(parameters.size());
+  const Scaling scaling{parameters};
+  const VectorXd scale = scaling.dp_dx(p);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out) continue;
+    for (const auto& photo : example.photos) {
+      const Eigen::MatrixXd Hk = photo.sums.JtJ.topLeftCorner(n, n);
+      H += Hk;
+      V += flow_statistics(photo.flow).inflation * Hk;
+    }
+    for (const auto& measured : example.measured) {
+      const Eigen::MatrixXd J = measured.J.leftCols(n);
+      H += J.transpose() * J;
+      V += std::max(1.0, measured.r.squaredNorm() / 3.0) * J.transpose() * J;
+    }
+  }
+  H = scale.asDiagonal() * H * scale.asDiagonal();
+  V = scale.asDiagonal() * V * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) {
+    // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
+    const VectorXd v = eigen.eigenvectors().col(i);
+    if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
+      if (undetermined) undetermined->push_back(name_direction(parameters, v));
+      continue;
+    }
+    inverse += v * v.transpose() / eigen.eigenvalues()[i];
+  }
+  return scale.asDiagonal() * (inverse * V * inverse) * scale.asDiagonal();
+}
+
+std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
+                                              const VectorXd& p, const FitOptions& options) {
+  if (options.progress) options.progress({"final", 0, 0, 0.0});
+  EvaluationOptions evaluation;
+  evaluation.pictures = true;
+  evaluation.held_out = true;
+  evaluation.cancel = options.cancel;
+  auto result = workspace.evaluate(form, p, evaluation);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  Fitted out;
+  out.form = form;
+  out.p = p;
+  out.evaluation = std::get<Evaluation>(std::move(result));
+  const auto parameters = form.parameters();
+  const Eigen::MatrixXd covariance =
+      parameter_covariance(out.evaluation, parameters, p, &out.undetermined);
+  out.low = out.high = p;
+  for (int i = 0; i < p.size(); ++i) {
+    const double half = 1.959964 * std::sqrt(std::max(0.0, covariance(i, i)));
+    // positive parameters: the interval is symmetric in the logarithm
+    out.low[i] = parameters[i].positive ? p[i] * std::exp(-half / p[i]) : p[i] - half;
+    out.high[i] = parameters[i].positive ? p[i] * std::exp(half / p[i]) : p[i] + half;
+  }
+  return out;
+}
+
+std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
+                                           const VectorXd& start, const FitOptions& options) {
+  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+  VectorXd p = start;
+  int iterations = 0;
+  bool converged = true;
+  if (form.size() > 0) {
+    const int coarsest = options.coarse_to_fine ? 2 : 0;
+    for (int level = coarsest; level >= 0; level -= coarsest > 0 ? coarsest : 1) {
+      auto stage = run_stage(workspace, form, p, options, level);
+      if (auto* failure = std::get_if<NumericalFailure>(&stage)) return *failure;
+      const auto& result = std::get<StageResult>(stage);
+      p = result.p;
+      iterations += result.iterations;
+      converged = result.converged;
+    }
+  }
+  auto fitted = assess(workspace, form, p, options);
+  if (auto* out = std::get_if<Fitted>(&fitted)) {
+    out->iterations = iterations;
+    out->converged = converged;
+  }
+  return fitted;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,130 @@
+#include "estimation/flow.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <map>
+
+namespace hookeye {
+
+namespace {
+
+struct CellSums {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  double r2 = 0.0;
+  int pixels = 0;
+};
+
+/// Central difference where both neighbours count, else NaN.
+Eigen::Vector2d gradient(const Image& model, const Image& residual, int x, int y) {
+  if (std::isnan(residual.at(x - 1, y)) || std::isnan(residual.at(x + 1, y)) ||
+      std::isnan(residual.at(x, y - 1)) || std::isnan(residual.at(x, y + 1)))
+    return Eigen::Vector2d::Constant(std::nan(""));
+  return {0.5 * (model.at(x + 1, y) - model.at(x - 1, y)),
+          0.5 * (model.at(x, y + 1) - model.at(x, y - 1))};
+}
+
+FlowCell solve_cell(const CellSums& sums, int column, int row) {
+  FlowCell cell{};
+  cell.column = column;
+  cell.row = row;
+  cell.pixels = sums.pixels;
+  cell.centre_px = sums.position / sums.pixels;
+  cell.information = sums.A;
+  cell.r2 = sums.r2;
+  // A weak direction has no estimate, but A + tiny keeps z defined.
+  const Eigen::Matrix3d A = sums.A + 1e-9 * sums.A.trace() * Eigen::Matrix3d::Identity();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(A);
+  cell.z = eigen.operatorInverseSqrt() * sums.b;
+  cell.estimate = A.ldlt().solve(sums.b);
+  cell.explained = cell.z.squaredNorm();
+  const Eigen::Matrix3d covariance = A.inverse();
+  cell.reliable = covariance(0, 0) < 1.0 && covariance(1, 1) < 1.0;
+  return cell;
+}
+
+}  // namespace
+
+FlowField residual_flow(const Image& model, const Image& residual, const Image& sigma,
+                        int cell_px) {
+  FlowField field;
+  field.cell_px = cell_px;
+  std::map<std::pair<int, int>, CellSums> cells;
+  for (int y = 1; y + 1 < model.height; ++y)
+    for (int x = 1; x + 1 < model.width; ++x) {
+      if (std::isnan(residual.at(x, y))) continue;
+      const Eigen::Vector2d g = gradient(model, residual, x, y);
+      if (std::isnan(g.x())) continue;
+      const double s = sigma.at(x, y);
+      const Eigen::Vector3d d(g.x() / s, g.y() / s, model.at(x, y) / s);
+      CellSums& sums = cells[{y / cell_px, x / cell_px}];
+      const double r = residual.at(x, y);
+      sums.A += d * d.transpose();
+      sums.b += d * r;
+      sums.r2 += r * r;
+      sums.position += Eigen::Vector2d(x, y);
+      ++sums.pixels;
+    }
+  for (const auto& [index, sums] : cells)
+    if (sums.pixels >= cell_px * cell_px / 4 && sums.A.trace() > 0.0)
+      field.cells.push_back(solve_cell(sums, index.second, index.first));
+  return field;
+}
+
+double FlowField::rms_px() const {
+  double sum = 0.0, noise = 0.0, n = 0.0;
+  for (const auto& cell : cells) {
+    if (!cell.reliable) continue;
+    const Eigen::Matrix3d covariance = cell.information.inverse();
+    sum += cell.estimate.head<2>().squaredNorm();
+    noise += covariance(0, 0) + covariance(1, 1);
+    n += 1.0;
+  }
+  return n > 0.0 ? std::sqrt(std::max(0.0, (sum - noise) / n)) : 0.0;
+}
+
+FlowStatistics flow_statistics(const FlowField& flow) {
+  FlowStatistics out;
+  std::map<std::pair<int, int>, const FlowCell*> at;
+  for (const auto& cell : flow.cells) {
+    at[{cell.row, cell.column}] = &cell;
+    out.variance += cell.z.squaredNorm();
+    out.count += 3.0;
+  }
+  if (out.count == 0.0) return out;
+  out.variance /= out.count;
+  // Autocovariance ring by ring (Chebyshev distance) until a ring is indistinguishable from zero.
+  double sum_cov = out.variance, sum_rho2 = 1.0, q = 0.0, q_dof = 0.0;
+  for (int ring = 1; ring <= 40; ++ring) {
+    double ring_product = 0.0, pairs = 0.0;
+    for (int dy = -ring; dy <= ring; ++dy)
+      for (int dx = -ring; dx <= ring; ++dx) {
+        if (std::max(std::abs(dx), std::abs(dy)) != ring) continue;
+        for (const auto& cell : flow.cells) {
+          const auto other = at.find({cell.row + dy, cell.column + dx});
+          if (other == at.end()) continue;
+          ring_product += cell.z.dot(other->second->z);
+          pairs += 3.0;
+        }
+      }
+    if (pairs == 0.0) break;
+    const double rho = ring_product / pairs / out.variance;
+    // Each pair is met twice, so pairs/2 independent products of variance 1/(pairs/2).
+    const double deviation = rho * std::sqrt(pairs / 2.0);
+    if (ring == 1) q += deviation * deviation, q_dof += 1.0;
+    if (deviation < 2.0) break;
+    sum_cov += ring_product / (out.count / 1.0);
+    sum_rho2 += rho * rho * pairs / out.count;
+  }
+  out.inflation = std::max(1.0, sum_cov);
+  out.effective = std::clamp(out.count / sum_rho2, 1.0, out.count);
+  // Unit variance: sqrt(2 count)-normal; neighbours: chi^2 of one degree.
+  const double excess = (out.variance - 1.0) * std::sqrt(out.count / 2.0);
+  const double p_variance = 0.5 * std::erfc(excess / std::sqrt(2.0));
+  const double p_neighbours = std::erfc(std::sqrt(q / 2.0));
+  out.whiteness_p = std::min(1.0, 2.0 * std::min(p_variance, p_neighbours));
+  return out;
+}
+
+}  // namespace hookeye

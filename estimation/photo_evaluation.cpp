@@ -1,0 +1,273 @@
+#include "estimation/photo_evaluation.h"
+
+#include <cmath>
+#include <limits>
+
+namespace hookeye {
+
+RenderOptions render_options(const Scene& scene) {
+  RenderOptions options;
+  options.smooth_normals = !scene.capture.body.flat_shading;
+  return options;
+}
+
+struct PhotoComparer::Impl {
+  std::shared_ptr<const Scene> scene;
+  int example;
+  Renderer renderer;
+  std::vector<std::vector<std::vector<PhotoPlane>>> pyramids;  ///< [photo][plane][level]
+  static constexpr int kLevels = 4;
+
+  Impl(std::shared_ptr<const Scene> s, int e)
+      : scene(std::move(s)), example(e), renderer(scene->body->surface.mesh) {}
+
+  const PhotoPlane& plane(int photo, int plane, int level) {
+    if (pyramids.empty())
+      for (const Photo& one : scene->photos[example]) {
+        std::vector<std::vector<PhotoPlane>> planes;
+        for (size_t k = 0; k < one.planes.size(); ++k)
+          planes.push_back(photo_pyramid(one, static_cast<int>(k), kLevels));
+        pyramids.push_back(std::move(planes));
+      }
+    return pyramids[photo][plane][std::min(level, kLevels - 1)];
+  }
+};
+
+PhotoComparer::PhotoComparer(std::shared_ptr<const Scene> scene, int example)
+    : impl_(std::make_unique<Impl>(std::move(scene), example)) {}
+PhotoComparer::PhotoComparer(PhotoComparer&&) noexcept = default;
+PhotoComparer::~PhotoComparer() = default;
+
+namespace {
+
+PhotoState state_at_level(const PhotoState& state, int level) {
+  PhotoState coarse = state;
+  coarse.camera = camera_at_level(state.camera, level);
+  coarse.blur_variance *= std::pow(0.25, level);
+  return coarse;
+}
+
+bool is_silhouette(const Scene& scene, int example, int photo) {
+  return scene.capture.examples[example].photos[photo].kind == PhotoSpec::Kind::silhouette;
+}
+
+/// Index of the reference example's photo by the same camera, -1: none.
+int reference_photo(const Scene& scene, int reference, const std::string& camera) {
+  const auto& photos = scene.capture.examples[reference].photos;
+  for (size_t k = 0; k < photos.size(); ++k)
+    if (photos[k].camera == camera) return static_cast<int>(k);
+  return -1;
+}
+
+/// Colour source of one photo. False: this photo cannot be compared (no reference photo).
+bool choose_texture(const Scene& scene, const Model& model, int example, int photo, int plane,
+                    Texture& texture) {
+  const BodySpec& body = scene.capture.body;
+  if (is_silhouette(scene, example, photo) || body.texture == BodySpec::Texture::uniform ||
+      body.texture == BodySpec::Texture::none)
+    return true;
+  if (body.texture == BodySpec::Texture::image) {
+    texture.source = Texture::Source::image;
+    const bool by_channel = scene.capture.examples[example].photos[photo].rgb;
+    texture.image = by_channel && scene.albedo.size() > 1 ? scene.albedo[plane] : scene.albedo[0];
+    return true;
+  }
+  const int reference = scene.example_index(body.texture_example);
+  const int k = reference_photo(scene, reference, scene.capture.examples[example].photos[photo].camera);
+  if (k < 0 || reference == example) return false;
+  const Photo& source = scene.photos[reference][k];
+  texture.source = Texture::Source::photo;
+  texture.photo = {std::shared_ptr<const Scene>(model.scene), &source.planes[plane]};
+  texture.photo_valid = {std::shared_ptr<const Scene>(model.scene), &source.valid};
+  texture.reference_camera = model.examples[reference].photos[k].camera;
+  texture.reference_gain = model.examples[reference].photos[k].gain;
+  return true;
+}
+
+/// Silhouettes are rendered as plain coverage.
+PhotoState coverage_state(PhotoState state) {
+  state.gain = 1.0;
+  state.ambient = 1.0;
+  state.sun.setZero();
+  state.specular = 0.0;
+  state.background = 0.0;
+  return state;
+}
+
+VertexSensitivity vertex_sensitivity(const Renderer& renderer, const RenderSurface& surface,
+                                     const Matrix3Xd& x, const Eigen::MatrixXd& S,
+                                     const Eigen::MatrixXd* S_reference, bool normals) {
+  auto on_vertices = [&](const Eigen::MatrixXd& nodal) {
+    Eigen::MatrixXd out(3 * surface.W.rows(), nodal.cols());
+    for (int j = 0; j < nodal.cols(); ++j) {
+      const Eigen::Map<const Matrix3Xd> at_nodes(nodal.col(j).data(), 3, nodal.rows() / 3);
+      Eigen::Map<Matrix3Xd>(out.col(j).data(), 3, surface.W.rows()) =
+          (surface.W * at_nodes.transpose()).transpose();
+    }
+    return out;
+  };
+  VertexSensitivity out;
+  out.position = on_vertices(S);
+  if (normals) out.normal = renderer.normal_derivative(x) * out.position;
+  if (S_reference) out.reference = on_vertices(*S_reference);
+  return out;
+}
+
+/// Where the photo shows something that is not the told background although the model has none
+/// there: such pixels count, else a body that left the model's silhouette would cost nothing.
+bool shows_body(const PhotoPlane& photo, size_t i, double background) {
+  return std::abs(photo.I.values[i] - background) > 6.0 * photo.sigma.values[i];
+}
+
+struct Comparison {
+  Image residual;      ///< NaN: does not count
+  double r2 = 0.0, cost = 0.0, count = 0.0;
+};
+
+/// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
+Image compared_sigma(const PhotoPlane& photo, const Texture& texture) {
+  Image sigma = photo.sigma;
+  if (texture.source != Texture::Source::photo) return sigma;
+  for (float& s : sigma.values) s *= std::sqrt(2.0f);
+  return sigma;
+}
+
+Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
+                          bool silhouette, double background, double huber) {
+  Comparison out;
+  out.residual = Image{photo.I.width, photo.I.height, 1, {}};
+  out.residual.values.assign(photo.I.pixels(), std::numeric_limits<float>::quiet_NaN());
+  for (size_t i = 0; i < photo.I.pixels(); ++i) {
+    if (!photo.valid.empty() && !photo.valid[i]) continue;
+    const double coverage = rendering.coverage.values[i];
+    const bool counts = silhouette ? coverage > 0.0 || shows_body(photo, i, background)
+                                   : coverage > 1.0 - 1e-6;
+    if (!counts) continue;
+    const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
+    out.residual.values[i] = static_cast<float>(r);
+    out.r2 += r * r;
+    out.cost += huber > 0.0 && std::abs(r) > huber ? huber * (2.0 * std::abs(r) - huber) : r * r;
+    out.count += 1.0;
+  }
+  return out;
+}
+
+/// Normal equations of the counted pixels; Huber weights by iteratively reweighted squares.
+NodeNormalEquations condense(const Rendering& rendering, const Comparison& comparison,
+                             const Image& sigma, const SurfaceMesh& surface, double blur_variance,
+                             double huber, bool normals, bool reference) {
+  const auto& pixels = rendering.dI.pixel;
+  VectorXd r = VectorXd::Zero(pixels.size()), w = r, Bt_r = r;
+  Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
+  for (size_t k = 0; k < pixels.size(); ++k) {
+    const double residual = comparison.residual.values[pixels[k]];
+    if (std::isnan(residual)) continue;
+    const double weight =
+        huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
+    r[k] = weight * residual;
+    w[k] = weight / sigma.values[pixels[k]];
+    Bt_r[k] = w[k] * r[k];
+    adjoint.values[pixels[k]] = static_cast<float>(Bt_r[k]);
+  }
+  if (blur_variance > 0.0) {
+    const Image spread = blur(adjoint, blur_variance);
+    for (size_t k = 0; k < pixels.size(); ++k) Bt_r[k] = spread.values[pixels[k]];
+  }
+  return NodeNormalEquations::accumulate(surface, rendering.dI, r, w, Bt_r, normals, reference);
+}
+
+/// A photographed background: the part of the pixel that the body leaves free shows it.
+void composite_background(const Scene& scene, Rendering& rendering) {
+  if (scene.backgrounds.empty()) return;
+  const Image& background = scene.backgrounds.front();
+  if (background.pixels() != rendering.I.pixels()) return;
+  for (size_t i = 0; i < background.pixels(); ++i)
+    rendering.I.values[i] += (1.0f - rendering.coverage.values[i]) * background.values[i];
+}
+
+}  // namespace
+
+Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const VectorXd* q_reference,
+                                int photo, int plane, const RenderOptions& options) {
+  const Scene& scene = *impl_->scene;
+  Texture texture;
+  choose_texture(scene, model, impl_->example, photo, plane, texture);
+  const RenderSurface& surface = scene.body->surface;
+  const Matrix3Xd x = surface.deformed(scene.body->mesh, q);
+  Matrix3Xd x_reference;
+  if (q_reference) x_reference = surface.deformed(scene.body->mesh, *q_reference);
+  PhotoState state = model.examples[impl_->example].photos[photo];
+  if (is_silhouette(scene, impl_->example, photo)) state = coverage_state(state);
+  return impl_->renderer.render(x, q_reference ? &x_reference : nullptr, texture, state, options,
+                                true);
+}
+
+std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
+                                                    const ExampleEvaluation& example,
+                                                    const ReferenceState& reference,
+                                                    const ExampleColumns* columns,
+                                                    const EvaluationOptions& options) {
+  std::vector<PhotoEvaluation> all;
+  const Scene& scene = *impl_->scene;
+  const int e = impl_->example;
+  if (scene.photos[e].empty() || e == reference.example) return all;
+  const RenderSurface& surface = scene.body->surface;
+  const Matrix3Xd x = surface.deformed(scene.body->mesh, example.equilibrium->q);
+  Matrix3Xd x_reference;
+  if (reference.state)
+    x_reference = surface.deformed(scene.body->mesh, reference.state->equilibrium->q);
+  const RenderOptions base_options = render_options(scene);
+  const bool has_light = scene.capture.body.texture != BodySpec::Texture::rest;
+  VertexSensitivity S;
+  if (columns)
+    S = vertex_sensitivity(impl_->renderer, surface, x, example.S,
+                           reference.state ? &reference.state->S : nullptr, has_light);
+
+  for (size_t k = 0; k < scene.photos[e].size(); ++k)
+    for (size_t plane = 0; plane < scene.photos[e][k].planes.size(); ++plane) {
+      Texture texture;
+      if (!choose_texture(scene, model, e, static_cast<int>(k), static_cast<int>(plane), texture))
+        continue;
+      const bool mask_photo = is_silhouette(scene, e, static_cast<int>(k));
+      const bool silhouette =
+          mask_photo || scene.capture.background.kind != BackgroundSpec::Kind::ignore;
+      // A photo texture is interpolated from the full-size photo at every level.
+      const PhotoPlane& photo =
+          impl_->plane(static_cast<int>(k), static_cast<int>(plane), options.level);
+      PhotoState state = state_at_level(model.examples[e].photos[k], options.level);
+      if (mask_photo) state = coverage_state(state);
+      RenderOptions render_options = base_options;
+      render_options.derivatives = columns != nullptr;
+      Rendering rendering =
+          impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
+                                 render_options, silhouette, &photo.valid);
+      composite_background(scene, rendering);
+      const Image sigma = compared_sigma(photo, texture);
+      const Comparison comparison = compare_pixels(rendering, photo, sigma, silhouette,
+                                                   state.background, options.huber);
+      PhotoEvaluation one;
+      one.example = e;
+      one.photo = static_cast<int>(k);
+      one.plane = static_cast<int>(plane);
+      one.r2 = comparison.r2;
+      one.count = comparison.count;
+      if (columns) {
+        S.photo = columns->dphoto[k];
+        S.photo.row(kBlur) *= std::pow(0.25, options.level);  // px^2 of this level
+        if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
+        one.sums = condense(rendering, comparison, sigma, surface.mesh, state.blur_variance,
+                            options.huber, has_light, reference.state != nullptr)
+                       .reduce(S);
+      }
+      one.sums.r2 = comparison.cost;
+      if (options.pictures) {
+        one.flow = residual_flow(rendering.I, comparison.residual, sigma);
+        one.model = std::move(rendering.I);
+        one.residual = comparison.residual;
+      }
+      all.push_back(std::move(one));
+    }
+  return all;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,69 @@
+#include <set>
+
+#include "estimation/model.h"
+
+namespace hookeye {
+
+namespace {
+
+/// Splits an albedo picture into linear planes that match how the photos are compared.
+std::vector<std::shared_ptr<const Image>> albedo_planes(const BodySpec& body, bool rgb) {
+  const Image image = read_image(body.texture_image, body.texture_encoding);
+  std::vector<std::shared_ptr<const Image>> planes;
+  if (!rgb || image.channels == 1) {
+    planes.push_back(std::make_shared<Image>(luminance(image)));
+    return planes;
+  }
+  for (int c = 0; c < image.channels; ++c) {
+    auto plane = std::make_shared<Image>(Image{image.width, image.height, 1, {}});
+    plane->values.resize(image.pixels());
+    for (size_t i = 0; i < image.pixels(); ++i)
+      plane->values[i] = image.values[i * image.channels + c];
+    planes.push_back(std::move(plane));
+  }
+  return planes;
+}
+
+bool any_rgb(const Capture& capture) {
+  for (const auto& example : capture.examples)
+    for (const auto& photo : example.photos)
+      if (photo.rgb) return true;
+  return false;
+}
+
+}  // namespace
+
+int Scene::example_index(const std::string& name) const {
+  for (size_t i = 0; i < capture.examples.size(); ++i)
+    if (capture.examples[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+bool is_rest(const ExampleSpec& example) {
+  if (!example.loads.empty()) return false;
+  for (const auto& support : example.supports) {
+    if (support.kind != SupportSpec::Kind::components) return false;
+    for (const auto& u : support.displacement)
+      if (u && *u != 0.0) return false;
+  }
+  return true;
+}
+
+std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_factor,
+                                        bool with_photos) {
+  auto scene = std::make_shared<Scene>();
+  scene->capture = capture;
+  scene->body = std::make_shared<const Body>(make_body(capture, edge_factor));
+  scene->photos.resize(capture.examples.size());
+  if (capture.body.texture == BodySpec::Texture::image)
+    scene->albedo = albedo_planes(capture.body, any_rgb(capture));
+  if (!with_photos) return scene;
+  for (size_t e = 0; e < capture.examples.size(); ++e)
+    for (const auto& spec : capture.examples[e].photos)
+      scene->photos[e].push_back(read_photo(spec, capture.camera(spec.camera)));
+  if (capture.background.kind == BackgroundSpec::Kind::photo)
+    scene->backgrounds.push_back(luminance(read_image(capture.background.photo)));
+  return scene;
+}
+
+}  // namespace hookeye
