@@ -1,3 +1,3 @@
 #include <vector>
 
-#  include "simulation/equilibrium.h"
+#include "simulation/equilibrium.h"
