@@ -124,8 +124,8 @@ void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, doubl
         if (e.pixel == pixel && e.triangle == q.inside) same = &e;
       }
       if (!same) {
-        same = &out->emplace_back(EdgeSegment{pixel, q.inside, Matrix3d::Zero(), {}});
-        same->d_camera.setZero();
+        out->push_back({pixel, q.inside, Matrix3d::Zero(), Eigen::Matrix<double, 7, 1>::Zero()});
+        same = &out->back();
       }
       same->d_position += w * segment.d_position;
       same->d_camera += w * segment.d_camera;
