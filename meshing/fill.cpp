@@ -141,7 +141,8 @@ std::map<std::array<int, 3>, int> markers(const tetgenio& out) {
 TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place) {
   const SurfaceFaults faults = inspect(surface);
   if (!faults.clean()) {
-    throw InputError(place, "the surface does not bound a body: " + faults.describe(surface),
+    throw InputError(place,
+                     fmt::format("the surface does not bound a body: {}", faults.describe(surface)),
                      "a closed surface without self-intersections, triangles turned outwards");
   }
   const double edge = options.edge > 0 ? options.edge : detail::diagonal(surface.X) / 12.0;

@@ -262,7 +262,8 @@ MendedSurface mend(const SurfaceMesh& surface, const Place& place) {
     throw InputError(place, "the surface has no triangle with an area", "a closed surface");
   }
   if (!faults.clean()) {
-    throw InputError(place, "the surface does not bound a body: " + faults.describe(surface),
+    throw InputError(place,
+                     fmt::format("the surface does not bound a body: {}", faults.describe(surface)),
                      "a closed surface without self-intersections, triangles turned outwards");
   }
   return out;

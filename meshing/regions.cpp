@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
 #include <set>
@@ -40,6 +41,13 @@ class Face {
     }
   }
   const Eigen::VectorXi& nodes() const { return nodes_; }
+  /// Holds the face, with room for rounding and for what a curved face bulges past its nodes.
+  Eigen::AlignedBox3d box() const {
+    Eigen::AlignedBox3d box;
+    for (Eigen::Index k = 0; k < x_.cols(); ++k) box.extend(Vector3d(x_.col(k)));
+    const double room = (straight_ ? 1e-6 : 0.5) * box.diagonal().norm();
+    return {box.min().array() - room, box.max().array() + room};
+  }
   bool straight() const { return straight_; }
   Vector3d at(const Vector3d& L) const { return x_ * face_shape(order_, L); }
   VectorXd shape(const Vector3d& L) const { return face_shape(order_, L); }
@@ -186,14 +194,35 @@ std::function<bool(const Vector3d&)> geometric(const RegionSpec& spec, double to
           tolerance](const Vector3d& x) { return (x - point).dot(normal) >= -tolerance; };
 }
 
+/// Whether the shape may reach into the box: quick, never wrongly no.
+std::function<bool(const Eigen::AlignedBox3d&)> may_reach(const RegionSpec& spec) {
+  if (const auto* box = std::get_if<RegionSpec::Box>(&spec.shape)) {
+    return [own = Eigen::AlignedBox3d(box->low, box->high)](const Eigen::AlignedBox3d& other) {
+      return own.intersects(other);
+    };
+  }
+  if (const auto* sphere = std::get_if<RegionSpec::Sphere>(&spec.shape)) {
+    return [center = sphere->center, r = sphere->radius](const Eigen::AlignedBox3d& other) {
+      return other.squaredExteriorDistance(center) <= r * r;
+    };
+  }
+  const auto& half = std::get<RegionSpec::Halfspace>(spec.shape);
+  return [point = half.point, normal = half.normal](const Eigen::AlignedBox3d& other) {
+    const Vector3d farthest = (normal.array() > 0).select(other.max(), other.min());
+    return (farthest - point).dot(normal) >= 0;
+  };
+}
+
 Patch geometric_patch(const RegionSpec& spec, const TetMesh& mesh) {
   const auto has = geometric(spec, 1e-9 * detail::diagonal(mesh.X));
   Patch patch;
   patch.has = has;
   patch.has_node = [has](int, const Vector3d& x) { return has(x); };
   // The shapes are convex: a straight face with all its corners inside is inside.
-  patch.share = [has, &mesh](int f) {
-    bool all = Face(mesh, f).straight();
+  patch.share = [has, reaches = may_reach(spec), &mesh](int f) {
+    const Face face(mesh, f);
+    if (!reaches(face.box())) return Patch::Share::none;
+    bool all = face.straight();
     for (int k = 0; k < 3; ++k) all = all && has(mesh.X.col(mesh.boundary(k, f)));
     return all ? Patch::Share::whole : Patch::Share::cut;
   };

@@ -4,8 +4,11 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "meshing/detail.h"
 #include "meshing/surface_mesh.h"
@@ -30,12 +33,35 @@ int line_of(const std::filesystem::path& file, const std::string& word, int n) {
   return 0;
 }
 
+/// The library reads what it cannot parse as 0; such lines are refused here.
+void check_numbers(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line, field;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream fields(line);
+    if (!(fields >> field) || (field != "v" && field != "vt")) continue;
+    const int needed = field == "v" ? 3 : 2;
+    for (int k = 0; k < needed; ++k) {
+      char* end = nullptr;
+      const bool there = static_cast<bool>(fields >> field);
+      const double value = there ? std::strtod(field.c_str(), &end) : 0.0;
+      if (!there || *end != '\0' || !std::isfinite(value)) {
+        throw InputError({file.string(), number},
+                         there ? fmt::format("'{}' is no finite number", field)
+                               : fmt::format("fewer than {} numbers", needed),
+                         fmt::format("{} finite numbers", needed));
+      }
+    }
+  }
+}
+
 /// Faces arrive through callbacks in file order; groups and objects do not matter here.
 class ObjParser {
  public:
   explicit ObjParser(std::filesystem::path file) : file_(std::move(file)) {}
 
   TriangleSoup parse() {
+    check_numbers(file_);
     std::ifstream in(file_);
     if (!in) throw InputError({file_.string()}, "cannot be read", "a readable obj file");
     tinyobj::callback_t callback;
