@@ -37,6 +37,23 @@ bool jpeg_is_complete(const fs::path& file) {
   return scan != std::string::npos && end != std::string::npos && end > scan;
 }
 
+/// libpng reports a missing rest on standard error before it returns; walking the chunks (length,
+/// name, data, checksum) up to IEND finds it silently and sooner.
+bool png_is_complete(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  for (uintmax_t at = 8; at + 12 <= size;) {
+    unsigned char head[8] = {};
+    stream.seekg(static_cast<std::streamoff>(at));
+    if (!stream.read(reinterpret_cast<char*>(head), sizeof head)) return false;
+    if (std::equal(head + 4, head + 8, "IEND")) return true;
+    at += 12 + (uintmax_t{head[0]} << 24 | uintmax_t{head[1]} << 16 | uintmax_t{head[2]} << 8 |
+                uintmax_t{head[3]});
+  }
+  return false;
+}
+
 void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
   const double pixels = double(spec.width) * spec.height;
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
@@ -159,6 +176,8 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
+  if ((format == "jpeg" && !jpeg_is_complete(file)) || (format == "png" && !png_is_complete(file)))
+    unreadable(file, "the picture is truncated or damaged");
   std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
   bool complete = false;
   try {
@@ -168,8 +187,7 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   }
   const std::string why = one_line(input->geterror());
   input->close();
-  if (!complete || !why.empty() || (format == "jpeg" && !jpeg_is_complete(file)))
-    unreadable(file, "the picture is truncated or damaged");
+  if (!complete || !why.empty()) unreadable(file, "the picture is truncated or damaged");
   Image image = keep_colours(all, spec);
   check_finite(file, image);
   Encoding used;
