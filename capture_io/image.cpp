@@ -38,8 +38,8 @@ bool jpeg_is_complete(const fs::path& file) {
 }
 
 /// libpng reports a missing rest on standard error before it returns; walking the chunks (length,
-/// name, data, checksum) up to IEND finds it silently and sooner.
-bool png_is_complete(const fs::path& file) {
+/// name, data, checksum) finds it silently and sooner.
+bool png_has_chunk(const fs::path& file, const char* name) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
   const auto size = fs::file_size(file, error);
@@ -47,7 +47,7 @@ bool png_is_complete(const fs::path& file) {
     unsigned char head[8] = {};
     stream.seekg(static_cast<std::streamoff>(at));
     if (!stream.read(reinterpret_cast<char*>(head), sizeof head)) return false;
-    if (std::equal(head + 4, head + 8, "IEND")) return true;
+    if (std::equal(head + 4, head + 8, name)) return true;
     at += 12 + (uintmax_t{head[0]} << 24 | uintmax_t{head[1]} << 16 | uintmax_t{head[2]} << 8 |
                 uintmax_t{head[3]});
   }
@@ -76,12 +76,20 @@ void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
                      "stored pixels");
 }
 
+bool is_png(const fs::path& file) {
+  char signature[8] = {};
+  std::ifstream(file, std::ios::binary).read(signature, sizeof signature);
+  return std::equal(signature, signature + 8, "\x89PNG\r\n\x1a\n");
+}
+
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     throw InputError({file.string()}, "there is no such file", "check the name and its folder");
   if (!fs::is_regular_file(file, ignored))
     throw InputError({file.string()}, "this is not a file", "name a picture");
+  if (is_png(file) && !png_has_chunk(file, "IDAT"))
+    unreadable(file, "the file cannot be read as a picture");
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
   config.attribute("raw:ColorSpace", "linear");
@@ -176,7 +184,8 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
-  if ((format == "jpeg" && !jpeg_is_complete(file)) || (format == "png" && !png_is_complete(file)))
+  if ((format == "jpeg" && !jpeg_is_complete(file)) ||
+      (format == "png" && !png_has_chunk(file, "IEND")))
     unreadable(file, "the picture is truncated or damaged");
   std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
   bool complete = false;
