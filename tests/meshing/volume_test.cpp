@@ -78,6 +78,12 @@ TEST(Fill, BrokenSurfacesAreRefusedWithPlace) {
   EXPECT_THAT(refusal([&] { fill({}, {}, kPlace); }), HasSubstr("capture.yaml:5:3"));
 }
 
+TEST(Fill, WhatTetGenCannotMeshIsRefusedNotACrash) {
+  SurfaceMesh s = box_surface({3, 2, 1}, 1);
+  s.X.row(2) *= 1e-13;  // a body without thickness
+  EXPECT_THAT(refusal([&] { fill(s, {}, kPlace); }), HasSubstr("capture.yaml:5:3"));
+}
+
 TEST(Fill, SameInputSameMesh) {
   const TetMesh a = filled_box(0.4, 2), b = filled_box(0.4, 2);
   EXPECT_EQ(a.X, b.X);
