@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -94,6 +95,12 @@ struct LoadSpec {
   std::optional<double> pressure;  ///< follows the deformed normal, pushes inwards
 };
 
+struct BackgroundSpec {
+  enum class Kind { ignore, level, fit, photo } kind = Kind::ignore;
+  double level = 0.0;  ///< black = 0
+  std::filesystem::path photo;
+};
+
 struct PhotoSpec {
   std::string camera;
   std::filesystem::path file, mask;
@@ -101,6 +108,7 @@ struct PhotoSpec {
   std::optional<Encoding> encoding;
   std::optional<NoiseModel> noise;  ///< empty: estimated
   bool rgb = false;                 ///< channels: rgb; default luminance
+  BackgroundSpec background;        ///< the photo's own, else the capture's
   Place place;
 };
 
@@ -122,12 +130,6 @@ struct ExampleSpec {
   std::vector<LoadSpec> loads;
   std::vector<PhotoSpec> photos;
   std::vector<MeasuredSpec> measured;
-};
-
-struct BackgroundSpec {
-  enum class Kind { ignore, level, fit, photo } kind = Kind::ignore;
-  double level = 0.0;  ///< black = 0
-  std::filesystem::path photo;
 };
 
 struct Capture {

@@ -1,0 +1,131 @@
+#include "capture_io/capture.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <stdexcept>
+
+#include "capture_io/capture_reader.h"
+#include "capture_io/run.h"
+
+namespace hookeye {
+namespace {
+
+namespace fs = std::filesystem;
+
+YamlNode load_yaml(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    throw InputError({file.string()}, "there is no such capture",
+                     "name a capture.yaml or the folder that holds one");
+  const YamlLimits limits;
+  const auto size = fs::file_size(file, error);
+  if (!error && size > limits.bytes)
+    throw InputError({file.string()}, fmt::format("{} bytes of yaml are too many", size),
+                     fmt::format("at most {} MiB are read", limits.bytes >> 20));
+  return parse_yaml(read_text(file), file.string(), limits);
+}
+
+void check_version(const YamlSection& top) {
+  const YamlNode& version = top.need("hookeye", "a capture begins with `hookeye: 1`");
+  if (version.kind != YamlNode::Kind::scalar || version.text != "1")
+    throw InputError(version.place, fmt::format("the capture has format {}", describe(version)),
+                     "this program reads format 1: write `hookeye: 1`");
+}
+
+/// What can only be checked once all sections are known.
+void check_references(const Capture& capture) {
+  const BodySpec& body = capture.body;
+  if (body.texture == BodySpec::Texture::rest) {
+    const auto example =
+        std::find_if(capture.examples.begin(), capture.examples.end(),
+                     [&](const ExampleSpec& e) { return e.name == body.texture_example; });
+    if (example == capture.examples.end())
+      throw InputError(
+          body.texture_place,
+          fmt::format("there is no example `{}` to take the texture from", body.texture_example),
+          suggest(body.texture_example, names_of(capture.examples)));
+    const bool has_image =
+        std::any_of(example->photos.begin(), example->photos.end(),
+                    [](const PhotoSpec& p) { return p.kind == PhotoSpec::Kind::image; });
+    if (!has_image)
+      throw InputError(
+          body.texture_place,
+          fmt::format("example `{}` has no photos to take the texture from", body.texture_example),
+          "name an example with photos, usually the one at rest");
+  }
+}
+
+}  // namespace
+
+std::string Units::stress() const {
+  if (length == "mm" && force == "N") return "MPa";
+  if (length == "m" && force == "N") return "Pa";
+  if (length == "m" && force == "kN") return "kPa";
+  if (length == "mm" && force == "mN") return "kPa";
+  if (length == "mm" && force == "kN") return "GPa";
+  if (length == "m" && force == "mN") return "mPa";
+  if (length == "um" && force == "uN") return "MPa";
+  return force + "/" + length + "^2";
+}
+
+double Units::metre() const {
+  if (length == "mm") return 1000.0;
+  if (length == "cm") return 100.0;
+  if (length == "um") return 1e6;
+  return 1.0;
+}
+
+Vector3d RigidMotion::apply(const Vector3d& X) const {
+  const double radians = degrees * 3.14159265358979323846 / 180.0;
+  const Eigen::AngleAxisd turn(radians, axis.normalized());
+  return turn * (X - center) + center + move;
+}
+
+const Camera& Capture::camera(const std::string& name) const {
+  for (const Camera& camera : cameras)
+    if (camera.name == name) return camera;
+  throw std::out_of_range("Capture: no camera " + name);
+}
+
+const RegionSpec* Capture::region(const std::string& name) const {
+  for (const RegionSpec& region : regions)
+    if (region.name == name) return &region;
+  return nullptr;
+}
+
+Capture read_capture(const fs::path& path) {
+  std::error_code error;
+  const fs::path given = fs::is_directory(path, error) ? path / "capture.yaml" : path;
+  const YamlNode root = load_yaml(given);
+  const YamlSection top(root, "the capture",
+                        {"hookeye", "title", "units", "body", "model", "cameras", "light", "photos",
+                         "regions", "examples"});
+  check_version(top);
+  Capture capture;
+  capture.file = fs::canonical(given);
+  capture.folder = capture.file.parent_path();
+  const CaptureFolder folder{given.parent_path(), capture.folder};
+  if (const YamlNode* title = top.find("title")) capture.title = read_string(*title, "title");
+  capture.units = read_units(top.need("units", "write `units: {length: mm, force: N}`"));
+  capture.body = read_body(top.need("body", "write `body: {surface: rest.obj}`"), folder);
+  read_model(
+      top.need("model", "write `model: {material: {law: neo-hookean, mu: ..., kappa: ...}}`"),
+      capture);
+  if (const YamlNode* cameras = top.find("cameras"))
+    capture.cameras = read_cameras(*cameras, folder);
+  if (const YamlNode* light = top.find("light")) capture.light = read_light(*light);
+  PhotoDefaults defaults;
+  if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);
+  capture.background = defaults.photo.background;
+  if (const YamlNode* regions = top.find("regions"))
+    capture.regions = read_regions(*regions, folder);
+  capture.examples =
+      read_examples(top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`"),
+                    capture, defaults, folder);
+  check_references(capture);
+  return capture;
+}
+
+}  // namespace hookeye

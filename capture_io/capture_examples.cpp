@@ -1,0 +1,205 @@
+// Examples: supports, loads, photos and what else was measured.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "capture_io/capture_reader.h"
+
+namespace hookeye {
+namespace {
+
+/// Reads the sections of one example with the names it may refer to.
+class ExampleReader {
+ public:
+  ExampleReader(const std::string& name, const Capture& capture)
+      : of_(fmt::format(" of example `{}`", name)), regions_(names_of(capture.regions)) {}
+
+  SupportSpec support(const YamlNode& node);
+  LoadSpec load(const YamlNode& node) const;
+  MeasuredSpec measured(const YamlNode& node) const;
+
+ private:
+  std::string region(const YamlNode& node, const std::string& what) const;
+  RigidMotion rigid(const YamlNode& node) const;
+  void components(const YamlSection& section, SupportSpec& support);
+  void claim(const Place& place, const std::string& region, int component);
+
+  std::string of_;
+  std::vector<std::string> regions_;
+  std::set<std::pair<std::string, int>> held_;  ///< region and component already prescribed
+};
+
+std::string ExampleReader::region(const YamlNode& node, const std::string& what) const {
+  const std::string name = read_string(node, "region of " + what);
+  if (std::find(regions_.begin(), regions_.end(), name) == regions_.end())
+    throw InputError(node.place, fmt::format("{} names the unknown region `{}`", what, name),
+                     suggest(name, regions_));
+  return name;
+}
+
+void ExampleReader::claim(const Place& place, const std::string& region, int component) {
+  if (!held_.insert({region, component}).second)
+    throw InputError(place,
+                     fmt::format("the supports{} prescribe component {} of region `{}` twice", of_,
+                                 "xyz"[component], region),
+                     "prescribe every component of a region once");
+}
+
+int component_of(const std::string& text) {
+  return text.size() == 1 && text[0] >= 'x' && text[0] <= 'z' ? text[0] - 'x' : -1;
+}
+
+void ExampleReader::components(const YamlSection& section, SupportSpec& support) {
+  if (const YamlNode* fix = section.find("fix")) {
+    const std::string right = "a list of x, y and z is expected";
+    if (read_list(*fix, "fix", right).empty()) unexpected(*fix, "fix", right);
+    for (const YamlNode& item : fix->items) {
+      const int i = component_of(item.text);
+      if (i < 0) unexpected(item, "a component of fix", "x, y or z is expected");
+      claim(item.place, support.region, i);
+      support.displacement[i] = 0.0;
+    }
+  }
+  if (const YamlNode* move = section.find("move")) {
+    const YamlSection parts(*move, "move", {"x", "y", "z"});
+    if (move->entries.empty())
+      throw InputError(move->place, "move prescribes nothing", "write `move: {x: 0, y: 0}`");
+    for (const YamlNode::Entry& entry : move->entries) {
+      const int i = component_of(entry.key);
+      claim(entry.place, support.region, i);
+      support.displacement[i] = read_number(entry.value, "move along " + entry.key);
+    }
+  }
+}
+
+RigidMotion ExampleReader::rigid(const YamlNode& node) const {
+  const YamlSection section(node, "rigid", {"rotate", "move"});
+  RigidMotion motion;
+  if (!section.has("rotate") && !section.has("move"))
+    throw InputError(node.place, "rigid prescribes nothing",
+                     "give `rotate`, `move` or both; `rigid: fit` leaves the motion unknown");
+  if (const YamlNode* rotate = section.find("rotate")) {
+    const YamlSection turn(*rotate, "rotate", {"axis", "degrees", "center"});
+    const std::string right = "write `rotate: {axis: [0, 0, 1], degrees: 20, center: [0, 0, 80]}`";
+    motion.axis = read_direction(turn.need("axis", right), "axis");
+    motion.degrees = read_number(turn.need("degrees", right), "degrees");
+    motion.center = read_vector3(turn.need("center", right), "center");
+  }
+  if (const YamlNode* move = section.find("move")) motion.move = read_vector3(*move, "move");
+  return motion;
+}
+
+SupportSpec ExampleReader::support(const YamlNode& node) {
+  const YamlSection section(node, "a support" + of_, {"region", "fix", "move", "rigid"});
+  SupportSpec support;
+  support.place = node.place;
+  support.region =
+      region(section.need("region", "write `{region: base, fix: [x, y, z]}`"), section.what());
+  const YamlNode* rigid_motion = section.find("rigid");
+  if (!rigid_motion) {
+    if (!section.has("fix") && !section.has("move")) section.one_of({"fix", "move", "rigid"});
+    components(section, support);
+    return support;
+  }
+  for (const char* other : {"fix", "move"})
+    if (const YamlNode::Entry* entry = section.entry(other))
+      throw InputError(entry->place,
+                       fmt::format("{} has both `rigid` and `{}`", section.what(), other),
+                       "keep one of the two");
+  for (int i = 0; i < 3; ++i) claim(rigid_motion->place, support.region, i);
+  if (rigid_motion->kind == YamlNode::Kind::scalar && rigid_motion->text == "fit") {
+    support.kind = SupportSpec::Kind::rigid_fit;
+  } else {
+    support.kind = SupportSpec::Kind::rigid;
+    support.rigid = rigid(*rigid_motion);
+  }
+  return support;
+}
+
+LoadSpec ExampleReader::load(const YamlNode& node) const {
+  const YamlSection section(node, "a load" + of_, {"region", "force", "pressure"});
+  LoadSpec load;
+  load.place = node.place;
+  load.region =
+      region(section.need("region", "write `{region: grip, force: [0, 0, 2.5]}`"), section.what());
+  const std::string kind = section.one_of({"force", "pressure"});
+  if (kind == "force")
+    load.force = read_vector3(*section.find(kind), "force");
+  else
+    load.pressure = read_number(*section.find(kind), "pressure");
+  return load;
+}
+
+MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
+  const YamlSection section(node, "a measurement" + of_,
+                            {"force_on", "moment_on", "position_of", "about", "value", "sigma"});
+  const std::string kind = section.one_of({"force_on", "moment_on", "position_of"});
+  const YamlNode& subject = *section.find(kind);
+  MeasuredSpec measured;
+  measured.place = node.place;
+  measured.kind = kind == "force_on"    ? MeasuredSpec::Kind::force
+                  : kind == "moment_on" ? MeasuredSpec::Kind::moment
+                                        : MeasuredSpec::Kind::position;
+  if (measured.kind == MeasuredSpec::Kind::position)
+    measured.point = read_vector3(subject, "position_of");
+  else
+    measured.region = region(subject, section.what());
+  if (measured.kind == MeasuredSpec::Kind::moment)
+    measured.about = read_vector3(
+        section.need("about", "a moment refers to a point: write `about: [0, 0, 80]`"), "about");
+  else if (const YamlNode::Entry* about = section.entry("about"))
+    throw InputError(about->place, fmt::format("`about` has no meaning for `{}`", kind),
+                     "only moment_on refers to a point: remove it");
+  measured.value = read_vector3(section.need("value", "write `value: [0, 0, 2.5]`"), "value");
+  measured.sigma = read_positive(
+      section.need("sigma", "give the measurement's standard deviation: `sigma: 0.02`"), "sigma");
+  return measured;
+}
+
+ExampleSpec read_example(const YamlNode::Entry& entry, const Capture& capture,
+                         const PhotoDefaults& defaults, const CaptureFolder& folder) {
+  const std::string what = fmt::format("example `{}`", entry.key);
+  const YamlSection section(entry.value, what, {"use", "supports", "loads", "photos", "measured"});
+  ExampleSpec example;
+  example.name = entry.key;
+  example.place = entry.place;
+  ExampleReader reader(entry.key, capture);
+  if (const YamlNode* use = section.find("use"))
+    example.validate = read_choice(*use, "use of " + what, {"fit", "validate"}) == "validate";
+  if (const YamlNode* supports = section.find("supports"))
+    for (const YamlNode& item :
+         read_list(*supports, "supports of " + what, "write `- {region: base, fix: [x, y, z]}`"))
+      example.supports.push_back(reader.support(item));
+  if (const YamlNode* loads = section.find("loads"))
+    for (const YamlNode& item :
+         read_list(*loads, "loads of " + what, "write `- {region: grip, force: [0, 0, 2.5]}`"))
+      example.loads.push_back(reader.load(item));
+  if (const YamlNode* photos = section.find("photos"))
+    example.photos = read_photos(*photos, entry.key, capture, defaults, folder);
+  if (const YamlNode* measured = section.find("measured"))
+    for (const YamlNode& item :
+         read_list(*measured, "measured of " + what,
+                   "write `- {force_on: grip, value: [0, 0, 2.5], sigma: 0.02}`")) {
+      example.measured.push_back(reader.measured(item));
+      if (example.measured.back().kind != MeasuredSpec::Kind::position && example.supports.empty())
+        throw InputError(item.place, what + " measures a support's force but has no supports",
+                         "forces are measured where a support holds the body");
+    }
+  return example;
+}
+
+}  // namespace
+
+std::vector<ExampleSpec> read_examples(const YamlNode& node, const Capture& capture,
+                                       const PhotoDefaults& defaults, const CaptureFolder& folder) {
+  std::vector<ExampleSpec> examples;
+  for (const YamlNode::Entry& entry : read_named(node, "examples"))
+    examples.push_back(read_example(entry, capture, defaults, folder));
+  if (examples.empty())
+    throw InputError(node.place, "there are no examples",
+                     "write `examples: {rest: {photos: {CAMERA: FILE}}}`");
+  return examples;
+}
+
+}  // namespace hookeye

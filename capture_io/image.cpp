@@ -1,0 +1,213 @@
+#include "capture_io/image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+namespace hookeye {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double max_pixels = 1e9;
+constexpr double max_bytes = 2147483648.0;  ///< of the decoded picture, four bytes a value
+
+std::string one_line(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+/// The library's explanations name the path again and differ between versions, so that only the
+/// fact is reported.
+[[noreturn]] void unreadable(const fs::path& file, const std::string& why) {
+  throw InputError({file.string()}, why, "hand over a complete PNG, TIFF, JPEG or EXR picture");
+}
+
+/// JPEG readers fill the missing rest of a truncated file with grey and only warn. A complete file
+/// has its end marker (FF D9) after the last scan marker (FF DA); cameras may append data after it.
+bool jpeg_is_complete(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  const size_t scan = bytes.rfind("\xFF\xDA");
+  const size_t end = bytes.rfind("\xFF\xD9");
+  return scan != std::string::npos && end != std::string::npos && end > scan;
+}
+
+void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
+  const double pixels = double(spec.width) * spec.height;
+  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
+    unreadable(file, fmt::format("the header claims {} x {} pixels with {} channels", spec.width,
+                                 spec.height, spec.nchannels));
+  if (pixels > max_pixels || pixels * spec.nchannels * 4.0 > max_bytes)
+    throw InputError({file.string()},
+                     fmt::format("the header claims {} x {} pixels with {} channels", spec.width,
+                                 spec.height, spec.nchannels),
+                     "at most 2 GiB of decoded pixels are read: use a smaller picture");
+  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+      spec.height != spec.full_height)
+    throw InputError({file.string()}, "the stored window differs from the displayed one",
+                     "write the picture uncropped, so that pixel (0, 0) is its first pixel");
+  if (spec.get_int_attribute("Orientation", 1) != 1)
+    throw InputError({file.string()},
+                     fmt::format("the picture carries the orientation tag {}",
+                                 spec.get_int_attribute("Orientation", 1)),
+                     "turn the pixels themselves and drop the tag: cameras are calibrated on "
+                     "stored pixels");
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored))
+    throw InputError({file.string()}, "there is no such file", "check the name and its folder");
+  if (!fs::is_regular_file(file, ignored))
+    throw InputError({file.string()}, "this is not a file", "name a picture");
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);
+  config.attribute("raw:ColorSpace", "linear");
+  std::unique_ptr<OIIO::ImageInput> input;
+  try {
+    input = OIIO::ImageInput::open(file.string(), &config);
+  } catch (const std::exception&) {
+    // Some readers throw on broken headers instead of returning nothing.
+  }
+  if (!input) {
+    OIIO::geterror();  // the pending message would be printed at exit otherwise
+    unreadable(file, "the file cannot be read as a picture");
+  }
+  check_size(file, input->spec());
+  return input;
+}
+
+bool is_floating(const OIIO::ImageSpec& spec) { return spec.format.is_floating_point(); }
+
+ImageHeader header_of(const OIIO::ImageSpec& spec) {
+  ImageHeader header;
+  header.width = spec.width;
+  header.height = spec.height;
+  const int colours = spec.nchannels - (spec.alpha_channel >= 0 ? 1 : 0);
+  header.channels = colours >= 3 ? 3 : 1;
+  header.bits = static_cast<int>(spec.format.size()) * 8;
+  header.floating = is_floating(spec);
+  return header;
+}
+
+double srgb_to_linear(double v) {
+  return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+}
+double linear_to_srgb(double v) {
+  return v <= 0.0031308 ? v * 12.92 : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
+}
+
+double decode(double stored, const Encoding& encoding) {
+  if (encoding.kind == Encoding::Kind::srgb) return srgb_to_linear(stored);
+  if (encoding.kind == Encoding::Kind::gamma)
+    return std::pow(std::max(stored, 0.0), encoding.gamma);
+  return stored;
+}
+double encode(double linear, const Encoding& encoding) {
+  if (encoding.kind == Encoding::Kind::srgb) return linear_to_srgb(linear);
+  if (encoding.kind == Encoding::Kind::gamma)
+    return std::pow(std::max(linear, 0.0), 1.0 / encoding.gamma);
+  return linear;
+}
+
+void check_finite(const fs::path& file, const Image& image) {
+  for (size_t i = 0; i < image.values.size(); ++i) {
+    if (std::isfinite(image.values[i])) continue;
+    const size_t pixel = i / image.channels;
+    throw InputError(
+        {file.string()},
+        fmt::format("pixel ({}, {}) holds {}", pixel % image.width, pixel / image.width,
+                    std::isnan(image.values[i]) ? "not a number" : "infinity"),
+        "every pixel must be a finite number");
+  }
+}
+
+/// Channels `spec.nchannels` of all pixels to the first one or three colours.
+Image keep_colours(const std::vector<float>& all, const OIIO::ImageSpec& spec) {
+  const ImageHeader header = header_of(spec);
+  Image image{header.width, header.height, header.channels, {}};
+  image.values.resize(image.pixels() * image.channels);
+  int source[3], found = 0;
+  for (int c = 0; c < spec.nchannels && found < image.channels; ++c)
+    if (c != spec.alpha_channel) source[found++] = c;
+  for (size_t p = 0; p < image.pixels(); ++p)
+    for (int c = 0; c < found; ++c)
+      image.values[p * image.channels + c] = all[p * spec.nchannels + source[c]];
+  return image;
+}
+
+template <class Level>
+std::vector<Level> to_levels(const Image& image, const Encoding& encoding) {
+  const double full = std::numeric_limits<Level>::max();
+  std::vector<Level> levels(image.values.size());
+  for (size_t i = 0; i < levels.size(); ++i)
+    levels[i] = static_cast<Level>(std::lround(
+        std::clamp(encode(std::clamp<double>(image.values[i], 0, 1), encoding), 0.0, 1.0) * full));
+  return levels;
+}
+
+}  // namespace
+
+ImageHeader read_image_header(const fs::path& file) { return header_of(open_image(file)->spec()); }
+
+Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
+  const OIIO::ImageSpec spec = input->spec();
+  const std::string format = input->format_name();
+  std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
+  bool complete = false;
+  try {
+    complete = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data());
+  } catch (const std::exception&) {
+    complete = false;
+  }
+  const std::string why = one_line(input->geterror());
+  input->close();
+  if (!complete || !why.empty() || (format == "jpeg" && !jpeg_is_complete(file)))
+    unreadable(file, "the picture is truncated or damaged");
+  Image image = keep_colours(all, spec);
+  check_finite(file, image);
+  Encoding used;
+  if (!is_floating(spec) && spec.format.size() == 1) used.kind = Encoding::Kind::srgb;
+  if (encoding) used = *encoding;
+  if (used.kind != Encoding::Kind::linear)
+    for (float& value : image.values) value = static_cast<float>(decode(value, used));
+  return image;
+}
+
+void write_image(const fs::path& file, const Image& image, Encoding encoding) {
+  const std::string type = file.extension().string();
+  if (type != ".exr" && type != ".png" && type != ".tif" && type != ".tiff")
+    throw std::invalid_argument("write_image: no such format: " + type);
+  // The library chooses the format by the extension, so the temporary name keeps it.
+  const fs::path temporary =
+      file.parent_path() / fmt::format(".{}-{}{}", file.stem().string(), ::getpid(), type);
+  const auto fail = [&](const std::string& why) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), one_line(why)));
+  };
+  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(temporary.string());
+  if (!output) fail(OIIO::geterror());
+  const OIIO::TypeDesc stored = type == ".exr"   ? OIIO::TypeDesc::FLOAT
+                                : type == ".png" ? OIIO::TypeDesc::UINT8
+                                                 : OIIO::TypeDesc::UINT16;
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, stored);
+  if (type == ".exr") spec.attribute("compression", "zip");
+  if (!output->open(temporary.string(), spec)) fail(output->geterror());
+  bool written = false;
+  if (type == ".exr") written = output->write_image(stored, image.values.data());
+  if (type == ".png")
+    written = output->write_image(stored, to_levels<uint8_t>(image, encoding).data());
+  if (stored == OIIO::TypeDesc::UINT16)
+    written = output->write_image(stored, to_levels<uint16_t>(image, encoding).data());
+  if (!written || !output->close()) fail(output->geterror());
+  fs::rename(temporary, file);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "capture_io/capture.h"
+
+namespace hookeye {
+namespace {
+
+constexpr double saturated = 0.999;  ///< of full scale, formats of integers only
+/// A binary silhouette rounds a pixel's coverage: uniform over one level.
+const double binary_sigma = 1.0 / std::sqrt(12.0);
+
+void check_size(const PhotoSpec& spec, const std::string& what, const Image& image,
+                const Camera& camera) {
+  if (image.width == camera.width && image.height == camera.height) return;
+  throw InputError(spec.place,
+                   fmt::format("{} has {} x {} pixels, camera `{}` has {} x {}", what, image.width,
+                               image.height, camera.name, camera.width, camera.height),
+                   "photos are compared at the size that the camera was calibrated for");
+}
+
+Image plane_of(const Image& image, int channel) {
+  Image plane{image.width, image.height, 1, {}};
+  plane.values.resize(image.pixels());
+  for (size_t p = 0; p < image.pixels(); ++p)
+    plane.values[p] = image.values[p * image.channels + channel];
+  return plane;
+}
+
+Image sigma_of(const Image& plane, const NoiseModel& noise) {
+  Image sigma = plane;
+  for (float& value : sigma.values) value = static_cast<float>(noise.sigma(value));
+  return sigma;
+}
+
+/// sigma^2 = sum w_c^2 sigma_c^2: the channels' noise is independent.
+Image luminance_sigma(const Image& image, const NoiseModel& noise,
+                      const std::vector<double>& weights) {
+  Image sigma{image.width, image.height, 1, {}};
+  sigma.values.resize(image.pixels());
+  for (size_t p = 0; p < image.pixels(); ++p) {
+    double variance = 0;
+    for (int c = 0; c < image.channels; ++c)
+      variance += std::pow(weights[c] * noise.sigma(image.values[p * image.channels + c]), 2);
+    sigma.values[p] = static_cast<float>(std::sqrt(variance));
+  }
+  return sigma;
+}
+
+/// An estimate never falls below what rounding to levels adds (one level / sqrt 12).
+NoiseModel estimated_noise(const Image& image, const ImageHeader& header) {
+  NoiseModel noise = estimate_noise(image);
+  const double level = header.floating ? 1e-6 : std::exp2(-header.bits);
+  noise.read = std::max(noise.read, level / std::sqrt(12.0));
+  return noise;
+}
+
+void mark_invalid(const PhotoSpec& spec, const Camera& camera, const Image& image, bool floating,
+                  Photo& photo) {
+  photo.valid.assign(image.pixels(), 1);
+  if (!floating && photo.kind == PhotoSpec::Kind::image)
+    for (size_t i = 0; i < image.values.size(); ++i)
+      if (image.values[i] >= saturated) photo.valid[i / image.channels] = 0;
+  if (spec.mask.empty()) return;
+  const Image mask = luminance(read_image(spec.mask, Encoding{}));
+  check_size(spec, "the mask", mask, camera);
+  for (size_t p = 0; p < mask.pixels(); ++p)
+    if (mask.values[p] < 0.5f) photo.valid[p] = 0;
+}
+
+}  // namespace
+
+Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
+  Photo photo;
+  photo.camera = spec.camera;
+  photo.kind = spec.kind;
+  const ImageHeader header = read_image_header(spec.file);
+  const bool silhouette = spec.kind == PhotoSpec::Kind::silhouette;
+  std::optional<Encoding> encoding = spec.encoding;
+  if (silhouette && !encoding) encoding = Encoding{};  // a coverage, not a brightness
+  const Image image = read_image(spec.file, encoding);
+  check_size(spec, "the photo", image, camera);
+  if (spec.noise)
+    photo.noise = *spec.noise;
+  else if (silhouette)
+    photo.noise = {0.0, binary_sigma, true};
+  else
+    photo.noise = estimated_noise(image, header);
+  mark_invalid(spec, camera, image, header.floating, photo);
+  if (spec.rgb && image.channels == 3) {
+    photo.channel_weights = {1, 1, 1};
+    for (int c = 0; c < 3; ++c) {
+      photo.planes.push_back(plane_of(image, c));
+      photo.sigma.push_back(sigma_of(photo.planes.back(), photo.noise));
+    }
+    return photo;
+  }
+  photo.channel_weights = {1};
+  if (image.channels == 3) photo.channel_weights = {0.2126, 0.7152, 0.0722};
+  photo.planes = {luminance(image)};
+  photo.sigma = {luminance_sigma(image, photo.noise, photo.channel_weights)};
+  return photo;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,107 @@
+#include "render/ray_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+
+namespace hookeye {
+
+static_assert(sizeof(RayPacket) == sizeof(RTCRayHit16));
+static_assert(offsetof(RayPacket, tfar) == offsetof(RTCRay16, tfar));
+static_assert(offsetof(RayPacket, ng_x) == offsetof(RTCRayHit16, hit));
+static_assert(offsetof(RayPacket, triangle) ==
+              offsetof(RTCRayHit16, hit) + offsetof(RTCHit16, primID));
+
+namespace {
+
+/// One device a process. Its threads only build; scenes here are small, so one does.
+RTCDevice device() {
+  struct Holder {
+    RTCDevice handle = rtcNewDevice("threads=1,set_affinity=0");
+    ~Holder() {
+      if (handle) rtcReleaseDevice(handle);
+    }
+  };
+  static Holder holder;
+  if (!holder.handle) throw std::runtime_error("Embree gives no device on this processor");
+  return holder.handle;
+}
+
+RTCIntersectContext context(bool coherent) {
+  RTCIntersectContext c;
+  rtcInitIntersectContext(&c);
+  c.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return c;
+}
+
+}  // namespace
+
+void RayPacket::reset(float near, float far) {
+  for (int i = 0; i < 16; ++i) {
+    tnear[i] = near;
+    time[i] = 0;
+    tfar[i] = far;
+    mask[i] = ~0u;
+    id[i] = flags[i] = 0;
+    triangle[i] = geometry[i] = instance[i] = kNoTriangle;
+  }
+}
+
+struct RayScene::Impl {
+  RTCScene scene = nullptr;
+  RTCGeometry geometry = nullptr;
+  float* vertices = nullptr;
+  ~Impl() {
+    if (geometry) rtcReleaseGeometry(geometry);
+    if (scene) rtcReleaseScene(scene);
+  }
+};
+
+RayScene::RayScene(const std::vector<std::array<int, 3>>& triangles, const Eigen::Matrix3Xd& x)
+    : impl_(std::make_unique<Impl>()) {
+  const Eigen::Vector3d low = x.rowwise().minCoeff(), high = x.rowwise().maxCoeff();
+  centre_ = (low + high) / 2;
+  epsilon_ = 1e-5 * (high - low).norm();
+  Impl& m = *impl_;
+  m.scene = rtcNewScene(device());
+  // A LOW quality dynamic scene really refits; a MEDIUM one silently rebuilds at ten times the cost.
+  rtcSetSceneFlags(m.scene, RTCSceneFlags(RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST));
+  rtcSetSceneBuildQuality(m.scene, RTC_BUILD_QUALITY_LOW);
+  m.geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetGeometryBuildQuality(m.geometry, RTC_BUILD_QUALITY_REFIT);
+  m.vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(m.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                              3 * sizeof(float), std::max<size_t>(1, x.cols())));
+  auto* index = static_cast<unsigned*>(
+      rtcSetNewGeometryBuffer(m.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                              3 * sizeof(unsigned), std::max<size_t>(1, triangles.size())));
+  if (!m.vertices || !index) throw std::runtime_error("Embree gives no memory for the surface");
+  for (const auto& triangle : triangles)
+    for (int k : triangle) *index++ = static_cast<unsigned>(k);
+  rtcAttachGeometry(m.scene, m.geometry);
+  set_positions(x);
+}
+
+RayScene::~RayScene() = default;
+
+void RayScene::set_positions(const Eigen::Matrix3Xd& x) {
+  Impl& m = *impl_;
+  Eigen::Map<Eigen::Matrix3Xf>(m.vertices, 3, x.cols()) = (x.colwise() - centre_).cast<float>();
+  rtcUpdateGeometryBuffer(m.geometry, RTC_BUFFER_TYPE_VERTEX, 0);
+  rtcCommitGeometry(m.geometry);
+  rtcCommitScene(m.scene);
+}
+
+void RayScene::intersect(RayPacket& rays, const int* active, bool coherent) const {
+  RTCIntersectContext c = context(coherent);
+  rtcIntersect16(active, impl_->scene, &c, reinterpret_cast<RTCRayHit16*>(&rays));
+}
+
+void RayScene::occluded(RayPacket& rays, const int* active, bool coherent) const {
+  RTCIntersectContext c = context(coherent);
+  rtcOccluded16(active, impl_->scene, &c, reinterpret_cast<RTCRay16*>(&rays));
+}
+
+}  // namespace hookeye

@@ -1,0 +1,183 @@
+#include "render/renderer.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <deque>
+#include <stdexcept>
+
+#include "render/frame.h"
+#include "render/picture.h"
+#include "render/ray_scene.h"
+#include "render/vertex_normals.h"
+
+namespace hookeye {
+
+namespace {
+
+constexpr size_t kKept = 16;  ///< cameras and reference photos whose preparation is kept
+constexpr int kBandRows = 8;
+
+/// Same results for any number of threads: every task has its own output.
+template <class Body>
+void for_each_task(int tasks, int threads, const Body& body) {
+  if (threads <= 1 || tasks <= 1) {
+    for (int i = 0; i < tasks; ++i) body(i);
+    return;
+  }
+  tbb::task_arena arena(threads);
+  arena.execute([&] { tbb::parallel_for(0, tasks, [&](int i) { body(i); }); });
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  explicit Impl(SurfaceMesh s)
+      : surface(std::move(s)),
+        vertex_normals(surface.triangles, static_cast<int>(surface.X.cols())),
+        edges(surface_edges(surface)),
+        scene(surface.triangles, surface.X) {}
+
+  SurfaceMesh surface;
+  VertexNormals vertex_normals;
+  std::vector<SurfaceEdge> edges;
+  RayScene scene;
+  std::unique_ptr<RayScene> reference_scene;
+  Matrix3Xd reference_x;
+  // Of the last positions; several cameras look at the same state.
+  Matrix3Xd seen_x, seen_normals;
+  std::vector<double> seen_visibility;
+  int seen_rays = -1;
+  std::deque<RayGrid> grids;
+  std::deque<SplineImage> splines;
+
+  void set_state(const Matrix3Xd& x, int rays);
+  void set_reference(const Matrix3Xd& x);
+  const RayGrid& grid(const Camera& camera, const PixelFilter& filter);
+  const SplineImage& spline(const std::shared_ptr<const Image>& image);
+};
+
+void Renderer::Impl::set_state(const Matrix3Xd& x, int rays) {
+  const bool same = seen_x.cols() == x.cols() && seen_x == x;
+  if (!same) {
+    scene.set_positions(x);
+    seen_normals = vertex_normals.at(x);
+    seen_x = x;
+  }
+  if (same && rays == seen_rays) return;
+  seen_visibility = sky_visibility(scene, x, seen_normals, rays);
+  seen_rays = rays;
+}
+
+void Renderer::Impl::set_reference(const Matrix3Xd& x) {
+  if (reference_scene && reference_x == x) return;
+  reference_x = x;
+  if (reference_scene)
+    reference_scene->set_positions(x);
+  else
+    reference_scene = std::make_unique<RayScene>(surface.triangles, x);
+}
+
+const RayGrid& Renderer::Impl::grid(const Camera& camera, const PixelFilter& filter) {
+  for (const RayGrid& g : grids)
+    if (g.serves(camera, filter)) return g;
+  if (grids.size() >= kKept) grids.pop_front();
+  return grids.emplace_back(camera, filter);
+}
+
+const SplineImage& Renderer::Impl::spline(const std::shared_ptr<const Image>& image) {
+  for (const SplineImage& s : splines)
+    if (s.image() == image) return s;
+  if (splines.size() >= kKept) splines.pop_front();
+  return splines.emplace_back(image);
+}
+
+Renderer::Renderer(SurfaceMesh surface) : impl_(std::make_unique<Impl>(std::move(surface))) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const SurfaceMesh& Renderer::surface() const { return impl_->surface; }
+Matrix3Xd Renderer::normals(const Matrix3Xd& x) const { return impl_->vertex_normals.at(x); }
+Eigen::SparseMatrix<double, Eigen::RowMajor> Renderer::normal_derivative(const Matrix3Xd& x) const {
+  return impl_->vertex_normals.derivative(x);
+}
+
+namespace {
+
+Rendering empty_rendering(const PhotoState& photo) {
+  Rendering out;
+  out.I.width = out.coverage.width = photo.camera.width;
+  out.I.height = out.coverage.height = photo.camera.height;
+  out.I.channels = out.coverage.channels = 1;
+  out.I.values.assign(out.I.pixels(), static_cast<float>(photo.background));
+  out.coverage.values.assign(out.I.pixels(), 0.0f);
+  out.triangle.assign(out.I.pixels(), -1);
+  out.uv.assign(out.I.pixels(), Eigen::Vector2f::Zero());
+  return out;
+}
+
+/// dI/dv of the blurred picture: T(n, v) is the diffusion semigroup, dT/dv = 1/2 second difference.
+void set_blur_column(const Image& I, ImageDerivative* d) {
+  for (size_t i = 0; i < d->pixel.size(); ++i) {
+    const int x = d->pixel[i] % I.width, y = d->pixel[i] / I.width;
+    const double sum = double(I.at(std::max(x - 1, 0), y)) +
+                       I.at(std::min(x + 1, I.width - 1), y) + I.at(x, std::max(y - 1, 0)) +
+                       I.at(x, std::min(y + 1, I.height - 1));
+    d->d_photo(kBlur, static_cast<Eigen::Index>(i)) = static_cast<float>(sum / 2 - 2.0 * I.at(x, y));
+  }
+}
+
+std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
+                                  const std::vector<SurfaceEdge>& edges, int threads) {
+  constexpr size_t kEdges = 2048;
+  const int tasks = static_cast<int>((edges.size() + kEdges - 1) / kEdges);
+  std::vector<std::vector<EdgeSegment>> part(tasks);
+  for_each_task(tasks, threads, [&](int i) {
+    silhouette_segments(frame, filter, edges, i * kEdges,
+                        std::min(edges.size(), (i + 1) * kEdges), &part[i]);
+  });
+  std::vector<EdgeSegment> out;
+  for (const auto& p : part) out.insert(out.end(), p.begin(), p.end());
+  return out;
+}
+
+}  // namespace
+
+Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference,
+                           const Texture& texture, const PhotoState& photo,
+                           const RenderOptions& options, bool silhouette,
+                           const std::vector<unsigned char>* count) {
+  Impl& m = *impl_;
+  if (x.cols() != m.surface.X.cols()) throw std::invalid_argument("render: wrong vertex count");
+  const bool from_photo = texture.source == Texture::Source::photo;
+  m.set_state(x, photo.shaded ? options.visibility_rays : 0);
+  const View view(photo.camera, x, m.surface.triangles);
+  const PixelFilter filter(options.rays_per_axis, options.filter_width_px);
+  Frame frame{m.surface, x, view, m.scene, m.seen_normals, m.seen_visibility, texture, photo,
+              options};
+  std::optional<View> reference_view;
+  if (from_photo) {
+    if (!x_reference) throw std::invalid_argument("render: photo texture without reference state");
+    m.set_reference(*x_reference);
+    reference_view.emplace(texture.reference_camera, *x_reference, m.surface.triangles);
+    frame.x_reference = x_reference;
+    frame.reference_scene = m.reference_scene.get();
+    frame.reference_view = &*reference_view;
+    frame.spline = &m.spline(texture.photo);
+  }
+  Rendering out = empty_rendering(photo);
+  const BandTask task{frame, filter, m.grid(photo.camera, filter), silhouette, count};
+  std::vector<BandDerivative> bands((view.y1 - view.y0 + kBandRows - 1) / kBandRows);
+  for_each_task(static_cast<int>(bands.size()), options.threads, [&](int i) {
+    const int row = view.y0 + i * kBandRows;
+    render_band(task, row, std::min(row + kBandRows, view.y1), &out, &bands[i]);
+  });
+  if (options.derivatives)
+    out.dI = join(bands, contours(frame, filter, m.edges, options.threads), task);
+  out.I = blur(out.I, photo.blur_variance);
+  if (options.derivatives) set_blur_column(out.I, &out.dI);
+  return out;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,163 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "render/frame.h"
+
+namespace hookeye {
+
+std::vector<SurfaceEdge> surface_edges(const SurfaceMesh& surface) {
+  std::map<std::pair<int, int>, std::vector<int>> at;
+  for (size_t f = 0; f < surface.triangles.size(); ++f) {
+    const auto& t = surface.triangles[f];
+    for (int k = 0; k < 3; ++k)
+      at[std::minmax(t[k], t[(k + 1) % 3])].push_back(static_cast<int>(f));
+  }
+  std::vector<SurfaceEdge> out;
+  for (const auto& [edge, faces] : at)
+    out.push_back({edge.first, edge.second, {faces[0], faces.size() > 1 ? faces[1] : -1}});
+  return out;
+}
+
+namespace {
+
+constexpr double kStepPx = 0.02;  ///< how far beside an edge its two sides are looked at
+
+/// A point on a silhouette edge that may be visible.
+struct EdgePoint {
+  int inside;  ///< triangle
+  int a, b;
+  double s;          ///< position between the edge's ends
+  double length_px;  ///< of the edge that this point stands for
+  Vector2d px, normal;  ///< in the picture; normal away from the triangle
+  double depth;         ///< as Sample::depth
+  Vector2d h, step_h;   ///< ray through the point, and the change of h for kStepPx along the normal
+  Eigen::Matrix<double, 1, 3> n_by_point;   ///< normal motion [px] by camera-space position
+  Eigen::Matrix<double, 1, 7> n_by_camera;
+};
+
+/// The triangle turned to the camera where exactly one is, or the one at a boundary; else -1.
+int contour_triangle(const View& view, const SurfaceEdge& edge) {
+  const int f = edge.triangle[0], g = edge.triangle[1];
+  if (g < 0) return f;
+  const bool a = view.front[f] > 0, b = view.front[g] > 0;
+  return a == b ? -1 : (a ? f : g);
+}
+
+/// Points along the projected edge, `per_px` a pixel.
+void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_px,
+                std::vector<EdgePoint>* out) {
+  const View& view = f.view;
+  const Vector3d pa = view.p.col(edge.a), pb = view.p.col(edge.b);
+  const Vector2d ua = view.local.project(pa), ub = view.local.project(pb);
+  const double length = (ub - ua).norm();
+  if (!std::isfinite(length) || length <= 0) return;
+  const Vector2d low = ua.cwiseMin(ub), high = ua.cwiseMax(ub);
+  if (high.x() < -2 || high.y() < -2 || low.x() > view.camera.width + 1 ||
+      low.y() > view.camera.height + 1)
+    return;
+  const auto& t = f.surface.triangles[inside];
+  const int apex = t[0] + t[1] + t[2] - edge.a - edge.b;
+  const int count = static_cast<int>(std::ceil(length * per_px));
+  for (int i = 0; i < count; ++i) {
+    EdgePoint q;
+    q.inside = inside, q.a = edge.a, q.b = edge.b;
+    q.s = (i + 0.5) / count;
+    const Vector3d p = (1 - q.s) * pa + q.s * pb;
+    Camera::Jacobian3 by_point;
+    Camera::Jacobian7 by_camera;
+    q.px = view.local.project(p, &by_point, &by_camera);
+    const Vector2d along = by_point * (pb - pa);
+    q.length_px = along.norm() / count;
+    if (q.length_px <= 0) continue;
+    q.normal = Vector2d(along.y(), -along.x()).normalized();
+    if (q.normal.dot(by_point * (view.p.col(apex) - p)) > 0) q.normal = -q.normal;
+    q.n_by_point = q.normal.transpose() * by_point;
+    q.n_by_camera = q.normal.transpose() * by_camera;
+    q.h = view.perspective ? Vector2d(p.head<2>() / p.z()) : Vector2d(p.head<2>());
+    q.depth = view.perspective ? p.z() : p.z() - view.start;
+    const double scale = view.perspective ? p.z() : 1.0;
+    const Eigen::Matrix2d px_by_h = scale * by_point.leftCols<2>();
+    q.step_h = px_by_h.inverse() * q.normal * kStepPx;
+    out->push_back(q);
+  }
+}
+
+/// Inside minus outside; 0 where something lies in front of the edge.
+double contrast(const Frame& f, const EdgePoint& q, const Sample& inside, const Sample& outside) {
+  const double nearest = q.depth - 30 * f.scene.epsilon();
+  if (inside.triangle >= 0 && inside.triangle != q.inside && inside.depth < nearest) return 0;
+  if (outside.triangle >= 0 && outside.depth < nearest) return 0;
+  const double I_in = inside.triangle < 0 ? f.photo.background : shade(f, inside, false).I;
+  const double I_out = outside.triangle < 0 ? f.photo.background : shade(f, outside, false).I;
+  return I_in - I_out;
+}
+
+/// Adds to all pixels whose filter reaches the point. The filter is what the fixed rays amount to
+/// in the mean over their position: the weight of a ray over its cell of 1/n px.
+void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, double weight,
+            std::vector<EdgeSegment>* out) {
+  const int n = filter.n, taps = filter.taps();
+  const int ix = static_cast<int>(std::lround(q.px.x() * n + (n - 1) / 2.0)) + filter.margin;
+  const int iy = static_cast<int>(std::lround(q.px.y() * n + (n - 1) / 2.0)) + filter.margin;
+  const auto floor_div = [](int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); };
+  EdgeSegment segment;
+  segment.triangle = q.inside;
+  const auto& t = f.surface.triangles[q.inside];
+  const Vector3d by_point = f.view.camera.R.transpose() * q.n_by_point.transpose();
+  segment.d_position.setZero();
+  for (int k = 0; k < 3; ++k) {
+    if (t[k] == q.a) segment.d_position.col(k) = (1 - q.s) * weight * by_point;
+    if (t[k] == q.b) segment.d_position.col(k) = q.s * weight * by_point;
+  }
+  segment.d_camera = weight * q.n_by_camera.transpose();
+  for (int y = floor_div(iy - taps, n) + 1; y <= floor_div(iy, n); ++y)
+    for (int x = floor_div(ix - taps, n) + 1; x <= floor_div(ix, n); ++x) {
+      if (x < 0 || y < 0 || x >= f.view.camera.width || y >= f.view.camera.height) continue;
+      const double w = filter.axis[ix - x * n] * filter.axis[iy - y * n] * n * n;
+      const int pixel = y * f.view.camera.width + x;
+      // Neighbouring points of one edge mostly meet the same pixel.
+      EdgeSegment* same = nullptr;
+      for (size_t back = 1; back <= 4 && back <= out->size(); ++back) {
+        EdgeSegment& e = (*out)[out->size() - back];
+        if (e.pixel == pixel && e.triangle == q.inside) same = &e;
+      }
+      if (!same) {
+        out->push_back({pixel, q.inside, Matrix3d::Zero(), Eigen::Matrix<double, 7, 1>::Zero()});
+        same = &out->back();
+      }
+      same->d_position += w * segment.d_position;
+      same->d_camera += w * segment.d_camera;
+    }
+}
+
+}  // namespace
+
+void silhouette_segments(const Frame& f, const PixelFilter& filter,
+                         const std::vector<SurfaceEdge>& edges, size_t first, size_t last,
+                         std::vector<EdgeSegment>* out) {
+  std::vector<EdgePoint> points;
+  const double per_px = std::max(4, 2 * filter.n);
+  for (size_t e = first; e < last; ++e) {
+    const int inside = contour_triangle(f.view, edges[e]);
+    if (inside >= 0) add_points(f, edges[e], inside, per_px, &points);
+  }
+  for (size_t begin = 0; begin < points.size(); begin += 8) {
+    const int count = static_cast<int>(std::min<size_t>(8, points.size() - begin));
+    Vector2d h[16];
+    Sample sample[16];
+    for (int i = 0; i < count; ++i) {
+      h[2 * i] = points[begin + i].h - points[begin + i].step_h;
+      h[2 * i + 1] = points[begin + i].h + points[begin + i].step_h;
+    }
+    trace(f, h, 2 * count, sample);
+    for (int i = 0; i < count; ++i) {
+      const EdgePoint& q = points[begin + i];
+      const double jump = contrast(f, q, sample[2 * i], sample[2 * i + 1]);
+      if (jump != 0) spread(f, filter, q, jump * q.length_px, out);
+    }
+  }
+}
+
+}  // namespace hookeye
