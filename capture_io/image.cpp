@@ -104,7 +104,8 @@ double linear_to_srgb(double v) {
 
 double decode(double stored, const Encoding& encoding) {
   if (encoding.kind == Encoding::Kind::srgb) return srgb_to_linear(stored);
-  if (encoding.kind == Encoding::Kind::gamma) return std::pow(std::max(stored, 0.0), encoding.gamma);
+  if (encoding.kind == Encoding::Kind::gamma)
+    return std::pow(std::max(stored, 0.0), encoding.gamma);
   return stored;
 }
 double encode(double linear, const Encoding& encoding) {
@@ -118,11 +119,11 @@ void check_finite(const fs::path& file, const Image& image) {
   for (size_t i = 0; i < image.values.size(); ++i) {
     if (std::isfinite(image.values[i])) continue;
     const size_t pixel = i / image.channels;
-    throw InputError({file.string()},
-                     fmt::format("pixel ({}, {}) holds {}", pixel % image.width,
-                                 pixel / image.width,
-                                 std::isnan(image.values[i]) ? "not a number" : "infinity"),
-                     "every pixel must be a finite number");
+    throw InputError(
+        {file.string()},
+        fmt::format("pixel ({}, {}) holds {}", pixel % image.width, pixel / image.width,
+                    std::isnan(image.values[i]) ? "not a number" : "infinity"),
+        "every pixel must be a finite number");
   }
 }
 
@@ -145,9 +146,8 @@ std::vector<Level> to_levels(const Image& image, const Encoding& encoding) {
   const double full = std::numeric_limits<Level>::max();
   std::vector<Level> levels(image.values.size());
   for (size_t i = 0; i < levels.size(); ++i)
-    levels[i] = static_cast<Level>(
-        std::lround(std::clamp(encode(std::clamp<double>(image.values[i], 0, 1), encoding), 0.0, 1.0) *
-                    full));
+    levels[i] = static_cast<Level>(std::lround(
+        std::clamp(encode(std::clamp<double>(image.values[i], 0, 1), encoding), 0.0, 1.0) * full));
   return levels;
 }
 
@@ -202,7 +202,8 @@ void write_image(const fs::path& file, const Image& image, Encoding encoding) {
   if (!output->open(temporary.string(), spec)) fail(output->geterror());
   bool written = false;
   if (type == ".exr") written = output->write_image(stored, image.values.data());
-  if (type == ".png") written = output->write_image(stored, to_levels<uint8_t>(image, encoding).data());
+  if (type == ".png")
+    written = output->write_image(stored, to_levels<uint8_t>(image, encoding).data());
   if (stored == OIIO::TypeDesc::UINT16)
     written = output->write_image(stored, to_levels<uint16_t>(image, encoding).data());
   if (!written || !output->close()) fail(output->geterror());

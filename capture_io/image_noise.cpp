@@ -13,8 +13,8 @@
 namespace hookeye {
 namespace {
 
-constexpr int block = 8;               ///< side of a block [px]
-constexpr double calm_share = 0.2;     ///< of the blocks of a band
+constexpr int block = 8;                 ///< side of a block [px]
+constexpr double calm_share = 0.2;       ///< of the blocks of a band
 constexpr double calm_normal = -0.8416;  ///< normal quantile at calm_share
 /// Independent residuals in a block of 64: n / sum rho^2 over the filter's autocorrelation
 /// (1, -2/3, 1/6 along each axis; sum rho^2 = (35/18)^2), the block's rim counted.
@@ -34,7 +34,9 @@ std::vector<Block> calm_blocks(const Image& image, int channel) {
       bool clipped = false;
       for (int y = y0; y < y0 + block; ++y) {
         for (int x = x0; x < x0 + block; ++x) {
-          const auto v = [&](int dx, int dy) -> double { return image.at(x + dx, y + dy, channel); };
+          const auto v = [&](int dx, int dy) -> double {
+            return image.at(x + dx, y + dy, channel);
+          };
           const double centre = v(0, 0);
           clipped |= centre <= 0 || centre >= 0.999;
           sum += centre;
