@@ -39,7 +39,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
                      VectorXd& q);
 
 /// |R_free|_inf over the largest nodal force: reactions, external forces, and a floor that keeps
-/// an unloaded body from dividing rounding by rounding (stiffness times 1e-9 of the size).
+/// an unloaded body from dividing rounding by rounding (stiffness times 1e-5 of the size).
 double relative_error(const Problem& problem, const NewtonState& state, const VectorXd& R,
                       const VectorXd& q, double s);
 
