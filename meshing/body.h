@@ -15,9 +15,9 @@ namespace hookeye {
 /// edge is longer than the tetrahedra's edge (half of it for order 2), unless vertices of the file
 /// already coincide with corner nodes of the volume, in which case the file's triangles are kept.
 struct RenderSurface {
-  SurfaceMesh mesh;                      ///< rest
-  std::vector<int> file_triangle;        ///< triangle of the surface file each comes from
-  std::vector<SurfacePoint> points;      ///< of each vertex
+  SurfaceMesh mesh;                                ///< rest
+  std::vector<int> file_triangle;                  ///< triangle of the surface file each comes from
+  std::vector<SurfacePoint> points;                ///< of each vertex
   Eigen::SparseMatrix<double, Eigen::RowMajor> W;  ///< nv x n, rows sum to 1
   /// Vertex positions (3 x nv) of the deformed state q (3n, node-major x0 y0 z0 x1 ...).
   Matrix3Xd deformed(const TetMesh& mesh, const VectorXd& q) const;
@@ -34,7 +34,20 @@ struct Body {
 /// `edge_factor` scales the target edge (mesh_resolution checks use 0.5..0.8); `order` 0: as told.
 Body make_body(const Capture& capture, double edge_factor = 1.0, int order = 0);
 
-/// Nearest material point of the mesh's boundary to a rest position; distance returned.
+/// Nearest material points of the mesh's boundary, for many queries. Quadratic faces are taken as
+/// their four flat parts between the mid nodes. The mesh must outlive the locator.
+class BoundaryLocator {
+ public:
+  explicit BoundaryLocator(const TetMesh& mesh);
+  ~BoundaryLocator();
+  double locate(const Vector3d& X, SurfacePoint* point) const;  ///< returns the distance
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One query: nearest material point of the mesh's boundary to a rest position; distance returned.
 double locate_on_boundary(const TetMesh& mesh, const Vector3d& X, SurfacePoint* point);
 
 }  // namespace hookeye

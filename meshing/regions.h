@@ -14,12 +14,12 @@ namespace hookeye {
 /// One region on one mesh.
 struct Region {
   std::string name;
-  std::vector<int> nodes;     ///< boundary nodes in the region (closed: its edge too), ascending
+  std::vector<int> nodes;  ///< boundary nodes in the region (closed: its edge too), ascending
   /// Consistent nodal areas: integral of the shape function over the patch, sum = area. n entries
   /// (all nodes), zero away from the patch. Sub-triangle exact where the patch cuts through faces
   /// (face subdivided 16x16, midpoint rule).
   VectorXd nodal_area;
-  double area = 0.0;          ///< rest area of the patch [length^2]
+  double area = 0.0;  ///< rest area of the patch [length^2]
   Vector3d centroid = Vector3d::Zero();
   Vector3d normal = Vector3d::Zero();  ///< mean outward normal, unit (zero for closed patches)
   /// Boundary faces with the fraction of each that belongs to the patch (0..1].

@@ -16,8 +16,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 struct SurfaceMesh {
-  Matrix3Xd X;                                   ///< 3 x nv, rest positions [length]
-  std::vector<std::array<int, 3>> triangles;     ///< outward (counter-clockwise seen from outside)
+  Matrix3Xd X;                                ///< 3 x nv, rest positions [length]
+  std::vector<std::array<int, 3>> triangles;  ///< outward (counter-clockwise seen from outside)
   /// Texture coordinates of each triangle corner (v up, bottom row 0); empty: none.
   std::vector<std::array<Vector2d, 3>> uv;
 };
@@ -32,8 +32,8 @@ struct SurfaceFaults {
   std::vector<std::array<int, 2>> crowded_edges;       ///< with three or more
   std::vector<std::array<int, 2>> self_intersections;  ///< triangle pairs
   std::vector<int> degenerate, duplicated;             ///< triangles
-  std::vector<int> inverted;   ///< triangles turned against their neighbours
-  bool inside_out = false;     ///< the whole surface: negative volume
+  std::vector<int> inverted;  ///< triangles turned against their neighbours
+  bool inside_out = false;    ///< the whole surface: negative volume
   bool clean() const;
   /// One sentence with the place (vertex position, triangle index) of the first fault.
   std::string describe(const SurfaceMesh& surface) const;

@@ -23,7 +23,8 @@ struct TetMesh {
   /// element they belong to.
   Eigen::MatrixXi boundary;  ///< (3 or 6) x nb
   std::vector<int> boundary_element;
-  std::map<std::string, std::vector<int>> volume_groups;    ///< name -> elements (msh physical groups)
+  std::map<std::string, std::vector<int>>
+      volume_groups;  ///< name -> elements (msh physical groups)
   std::map<std::string, std::vector<int>> boundary_groups;  ///< name -> columns of boundary
   /// For meshes made by fill(): triangle of the surface each boundary triangle lies on; else empty.
   std::vector<int> boundary_parent;
@@ -57,13 +58,19 @@ struct FillOptions {
 TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place);
 
 /// msh 2.2 / 4.1, vtu, inp (C3D4, C3D10), mesh (medit, and "nnodes ntets nodes_per_tet" text).
-/// Inverted elements are refused with their number. Throws InputError.
-TetMesh read_volume(const std::filesystem::path& file, const Place& place);
+/// Inverted elements are refused with their number. Nodes in no element are dropped and `said`
+/// tells so; without `said` they are refused. Throws InputError.
+TetMesh read_volume(const std::filesystem::path& file, const Place& place,
+                    std::vector<std::string>* said = nullptr);
 
 /// Raises order 1 to 2 (straight edges) or lowers 2 to 1.
 TetMesh with_order(const TetMesh& mesh, int order);
 
-struct VtuArray { std::string name; Eigen::MatrixXd values; bool on_points = true; };  ///< c x n
+struct VtuArray {
+  std::string name;
+  Eigen::MatrixXd values;
+  bool on_points = true;
+};  ///< c x n
 /// Points in the rest state; double precision; appended/binary. Written whole or not at all.
 void write_vtu(const std::filesystem::path& file, const TetMesh& mesh,
                const std::vector<VtuArray>& arrays);

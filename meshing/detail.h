@@ -1,0 +1,59 @@
+// Shared inside meshing only.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "meshing/surface_mesh.h"
+#include "meshing/tet_mesh.h"
+
+namespace hookeye::detail {
+
+/// Corners of the four faces of an element, outward, and (order 2) the mids of 01 12 20.
+inline constexpr int kFaces[4][6] = {
+    {0, 2, 1, 6, 5, 4}, {0, 1, 3, 4, 9, 7}, {1, 2, 3, 5, 8, 9}, {0, 3, 2, 7, 8, 6}};
+/// Corners of the edges in the order of the mid nodes 4..9.
+inline constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
+
+/// Triangle corners before welding, as a file gives them.
+struct TriangleSoup {
+  Matrix3Xd corners;                        ///< 3 x (3 triangles)
+  std::vector<std::array<Vector2d, 3>> uv;  ///< empty: none
+};
+/// Raw tetrahedra of a file: node order ours, no checks done yet.
+struct RawVolume {
+  Matrix3Xd X;
+  Eigen::MatrixXi elements;
+  std::vector<std::string> element_names;  ///< number of each element in the file; empty: 1-based
+  std::map<std::string, std::vector<int>> volume_groups;
+  std::map<std::string, std::vector<std::array<int, 3>>> face_groups;  ///< corner nodes
+  std::map<std::string, std::vector<int>> node_groups;
+};
+
+// vtk_io.cpp
+TriangleSoup read_ply(const std::filesystem::path& file);
+TriangleSoup read_stl(const std::filesystem::path& file);
+RawVolume read_vtu(const std::filesystem::path& file, const Place& place);
+// gmsh_io.cpp
+RawVolume read_gmsh(const std::filesystem::path& file, const Place& place);
+// inp.cpp
+RawVolume read_inp(const std::filesystem::path& file);
+// text_mesh.cpp
+RawVolume read_text_mesh(const std::filesystem::path& file);
+
+/// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): fill.cpp.
+int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
+
+/// Jacobian determinant of an element at barycentric coordinates (6 x volume when straight).
+double jacobian(const TetMesh& mesh, int element, const Eigen::Vector4d& barycentric);
+
+/// Diagonal of the bounding box.
+double diagonal(const Matrix3Xd& X);
+
+/// "(1, 2, 3)" for messages.
+std::string where(const Vector3d& x);
+
+}  // namespace hookeye::detail
