@@ -1,1 +1,172 @@
-int main() { return 1; }
+// The program: options in, one command, an exit status out.
+//   0 done | 1 internal error | 2 bad input | 3 the numbers failed | 130 stopped by Ctrl-C
+#include <spdlog/sinks/ansicolor_sink.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
+
+#include "app/commands/commands.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "capture_io/input_error.h"
+#include "capture_io/scope.h"
+
+namespace hookeye {
+namespace {
+
+enum Exit { kDone = 0, kInternal = 1, kBadInput = 2, kNumericalFailure = 3, kInterrupted = 130 };
+
+/// Log lines on standard error that do not run into the progress bar.
+class LogSink : public spdlog::sinks::base_sink<std::mutex> {
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    Progress::clear_line();
+    out_.log(message);
+  }
+  void flush_() override { out_.flush(); }
+  void set_pattern_(const std::string& pattern) override { out_.set_pattern(pattern); }
+  void set_formatter_(std::unique_ptr<spdlog::formatter> formatter) override {
+    out_.set_formatter(std::move(formatter));
+  }
+  spdlog::sinks::ansicolor_stderr_sink_st out_;
+};
+
+void set_up_log(bool verbose) {
+  auto logger = std::make_shared<spdlog::logger>("hookeye", std::make_shared<LogSink>());
+  logger->set_pattern("%^%l%$: %v");
+  logger->set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+/// The one document of --json; true where standard output took it.
+bool print(const nlohmann::ordered_json& document) {
+  using nlohmann::ordered_json;
+  const std::string text =
+      document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+}
+
+int report(const Session& session, Exit status, const std::string& kind, const std::string& wrong,
+           nlohmann::ordered_json more = nlohmann::ordered_json::object()) {
+  Progress::clear_line();
+  fmt::print(stderr, "{}\n", wrong);
+  if (session.json) {
+    more["kind"] = kind;
+    more["message"] = wrong;
+    print({{"hookeye", 1}, {"exit", static_cast<int>(status)}, {"error", std::move(more)}});
+  }
+  return status;
+}
+
+int report_failure(const Session& session, const NumericalFailure& failure) {
+  const std::string where =
+      failure.example.empty() ? "" : fmt::format("example {}: ", failure.example);
+  return report(session, kNumericalFailure, "numbers failed",
+                fmt::format("{}{}\n  reached {:.4g} of the load", where, failure.reason,
+                            failure.load_fraction),
+                {{"example", failure.example},
+                 {"load_fraction", failure.load_fraction},
+                 {"reason", failure.reason}});
+}
+
+int run(const CommandBody& body, Session& session) {
+  try {
+    body(session);
+    if (session.json && !print(session.document)) throw std::runtime_error("cannot write stdout");
+    if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write stdout");
+    return kDone;
+  } catch (const InputError& error) {
+    return report(session, kBadInput, "bad input", error.what(),
+                  {{"file", error.place().file},
+                   {"line", error.place().line},
+                   {"column", error.place().column},
+                   {"wrong", error.wrong()},
+                   {"right", error.right()}});
+  } catch (const Failed& failed) {
+    return report_failure(session, failed.failure);
+  } catch (const Interrupted&) {
+    return report(session, kInterrupted, "interrupted", "stopped");
+  } catch (const std::exception& error) {
+    const std::string context = Scope::take_context();
+    return report(session, kInternal, "internal error",
+                  fmt::format("internal error: {}{}{}", error.what(),
+                              context.empty() ? "" : "\n  while working on: ", context));
+  }
+}
+
+/// "did you mean": the nearest name to a word that CLI11 did not take.
+std::string hint(const CLI::App& app, const std::vector<std::string>& words) {
+  const auto chosen = app.get_subcommands();
+  std::vector<std::string> known;
+  for (const auto* command : app.get_subcommands({}))
+    if (chosen.empty()) known.push_back(command->get_name());
+  for (const auto* option : (chosen.empty() ? &app : chosen.front())->get_options())
+    for (const auto& name : option->get_lnames()) known.push_back("--" + name);
+  for (const auto& word : words) {
+    const std::string near = nearest_name(word.substr(0, word.find('=')), known);
+    if (!near.empty()) return fmt::format("did you mean {}? ", near);
+  }
+  return {};
+}
+
+int report_usage(const CLI::App& app, Session& session, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const std::string name = chosen.empty() ? "hookeye" : "hookeye " + chosen.front()->get_name();
+  return report(session, kBadInput, "bad input",
+                fmt::format("{}: {}\n  {}{} --help tells what is right", name, error.what(),
+                            hint(app, app.remaining(true)), name),
+                {{"file", ""}, {"line", 0}, {"column", 0}});
+}
+
+int run_program(int argc, char** argv) {
+  Session session;
+  CommandBody chosen;
+  CLI::App app{
+      "Finds the elastic model whose pictures match the photos of a soft object,\n"
+      "and names the physical effect that the model lacks."};
+  app.name("hookeye");
+  app.set_version_flag("--version", "hookeye " HOOKEYE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "\nExit status: 0 done, 1 internal error, 2 bad input, 3 the numbers failed,\n"
+      "130 stopped by Ctrl-C (finished steps are kept).");
+  for (const AddCommand add : kCommands) add(app, chosen);
+  for (CLI::App* command : app.get_subcommands({})) {
+    command->add_flag("--json", session.json, "One JSON document on standard output");
+    command->add_option("--threads", session.threads, "Cores to use (default: all)")
+        ->check(CLI::PositiveNumber);
+    command->add_flag("-v,--verbose", session.verbose, "More about what is going on");
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& error) {
+    // Options are only stored when all of them were understood.
+    session.json = std::any_of(argv, argv + argc, [](std::string_view a) { return a == "--json"; });
+    return report_usage(app, session, error);
+  }
+  set_up_log(session.verbose);
+  const auto threads =
+      session.threads > 0
+          ? static_cast<size_t>(session.threads)
+          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  return run(chosen, session);
+}
+
+}  // namespace
+}  // namespace hookeye
+
+int main(int argc, char** argv) {
+  hookeye::watch_interrupts();
+  try {
+    return hookeye::run_program(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "internal error: {}\n", error.what());
+    return 1;
+  }
+}

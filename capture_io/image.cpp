@@ -37,6 +37,23 @@ bool jpeg_is_complete(const fs::path& file) {
   return scan != std::string::npos && end != std::string::npos && end > scan;
 }
 
+/// libpng reports a missing rest on standard error before it returns; walking the chunks (length,
+/// name, data, checksum) finds it silently and sooner.
+bool png_has_chunk(const fs::path& file, const char* name) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  for (uintmax_t at = 8; at + 12 <= size;) {
+    unsigned char head[8] = {};
+    stream.seekg(static_cast<std::streamoff>(at));
+    if (!stream.read(reinterpret_cast<char*>(head), sizeof head)) return false;
+    if (std::equal(head + 4, head + 8, name)) return true;
+    at += 12 + (uintmax_t{head[0]} << 24 | uintmax_t{head[1]} << 16 | uintmax_t{head[2]} << 8 |
+                uintmax_t{head[3]});
+  }
+  return false;
+}
+
 void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
   const double pixels = double(spec.width) * spec.height;
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
@@ -59,12 +76,20 @@ void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
                      "stored pixels");
 }
 
+bool is_png(const fs::path& file) {
+  char signature[8] = {};
+  std::ifstream(file, std::ios::binary).read(signature, sizeof signature);
+  return std::equal(signature, signature + 8, "\x89PNG\r\n\x1a\n");
+}
+
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     throw InputError({file.string()}, "there is no such file", "check the name and its folder");
   if (!fs::is_regular_file(file, ignored))
     throw InputError({file.string()}, "this is not a file", "name a picture");
+  if (is_png(file) && !png_has_chunk(file, "IDAT"))
+    unreadable(file, "the file cannot be read as a picture");
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
   config.attribute("raw:ColorSpace", "linear");
@@ -159,6 +184,9 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
+  if ((format == "jpeg" && !jpeg_is_complete(file)) ||
+      (format == "png" && !png_has_chunk(file, "IEND")))
+    unreadable(file, "the picture is truncated or damaged");
   std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
   bool complete = false;
   try {
@@ -168,8 +196,7 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   }
   const std::string why = one_line(input->geterror());
   input->close();
-  if (!complete || !why.empty() || (format == "jpeg" && !jpeg_is_complete(file)))
-    unreadable(file, "the picture is truncated or damaged");
+  if (!complete || !why.empty()) unreadable(file, "the picture is truncated or damaged");
   Image image = keep_colours(all, spec);
   check_finite(file, image);
   Encoding used;

@@ -17,7 +17,7 @@
 namespace hookeye {
 
 /// Everything that a fit never changes: capture, body, photos. Shared by all models of a capture.
-struct Scene {
+struct Scene : std::enable_shared_from_this<Scene> {
   Capture capture;
   std::shared_ptr<const Body> body;
   std::vector<std::vector<Photo>> photos;  ///< [example][photo], order of the capture

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
 
 #include "simulation/newton.h"
+#include "simulation/rigid_modes.h"
 
 namespace hookeye {
 
@@ -67,22 +69,35 @@ NewtonGoal goal_of(const EquilibriumOptions& options, double s) {
   return goal;
 }
 
+/// Unknowns to hold besides the prescribed ones where supports leave rigid motions free and the
+/// loads do not drive them (any placement is an equilibrium: one is chosen). Nothing where forces
+/// with a stiffness may hold the body. Sets `fault` when the loads do drive a free motion.
+std::vector<int> pins_of(const Problem& problem, const VectorXd& rest, std::string& fault) {
+  for (const auto& f : problem.loading.forces)
+    if (!f->dead()) return {};
+  const RigidModes modes(problem.mesh);
+  const MatrixXd free = modes.free(problem.loading.prescribed);
+  if (free.cols() == 0) return {};
+  if (modes.imbalance(free, problem.external(rest, 1.0)) > 1e-9) {
+    fault = fmt::format("nothing holds the body against {}",
+                        fmt::join(free_rigid_motions(problem.mesh, problem.loading), ", "));
+    return {};
+  }
+  return modes.pins(free);
+}
+
 }  // namespace
 
 /// From the last solution straight to the full load, with the last factor as long as it serves.
 bool EquilibriumSolver::Impl::warm(const Problem& problem, const EquilibriumOptions& options,
                                    VectorXd& x) {
   if (!state.factor || !state.factor->positive()) return false;
-  problem.tangent(x, 1.0, false, state.K);
-  if (!state.symbolic->fits(state.K, state.free)) return false;
+  // The last solution's tangent moves the interior along with the supports; without such a move
+  // Newton starts where it is.
   const VectorXd jump = prescribed_jump(problem, rest, x, x, 1.0);
-  const VectorXd d = predict(problem, state, state.K, x, 1.0, jump);
-  const bool moved = !jump.isZero(0.0);
-  VectorXd trial = x + d;
-  if (!(assembly.smallest_J(trial) > 0)) {
-    if (moved) return false;
-    trial = x;
-  }
+  VectorXd trial = x;
+  if (!jump.isZero(0.0)) trial += predict(problem, state, state.K, x, 1.0, jump);
+  if (!(assembly.smallest_J(trial) > 0)) return false;
   NewtonGoal goal = goal_of(options, 1.0);
   goal.reuse_factor = true;
   goal.max_iterations = std::min(goal.max_iterations, 25);
@@ -177,7 +192,11 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
     const VectorXd* start) {
   Impl& s = *impl_;
   const Problem problem{*s.mesh, s.assembly, energy, loading};
+  std::string fault;
+  const std::vector<int> pins = pins_of(problem, s.rest, fault);
+  if (!fault.empty()) return NumericalFailure{loading.name, 0.0, fault};
   std::vector<int> free = problem.free_unknowns();
+  std::erase_if(free, [&](int u) { return std::binary_search(pins.begin(), pins.end(), u); });
   if (free != s.state.free) {
     s.state.free = std::move(free);
     s.state.symbolic.reset();

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <map>
 
+#include "simulation/rigid_modes.h"
+
 namespace hookeye {
 namespace {
 
@@ -108,31 +110,16 @@ std::string motion_text(const Vector3d& move, const Vector3d& turn, const Vector
 }  // namespace
 
 std::vector<std::string> free_rigid_motions(const TetMesh& mesh, const Loading& loading) {
-  const Vector3d center = mesh.X.rowwise().mean();
-  const double size = (mesh.X.colwise() - center).colwise().norm().maxCoeff();
-  // A rigid motion (v, w size) moves unknown (a, i) by v_i + (w x (X_a - center))_i.
-  Eigen::Matrix<double, 6, 6> AtA = Eigen::Matrix<double, 6, 6>::Zero();
-  for (int unknown : loading.prescribed) {
-    const int i = unknown % 3;
-    const Vector3d r = (mesh.X.col(unknown / 3) - center) / size;
-    Eigen::Matrix<double, 6, 1> row;
-    row << Vector3d::Unit(i), r.cross(Vector3d::Unit(i));
-    AtA += row * row.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(AtA);
-  const double least = 1e-10 * std::max(1.0, eigen.eigenvalues()[5]);
-  Eigen::MatrixXd free(0, 6);
-  for (int k = 0; k < 6 && eigen.eigenvalues()[k] < least; ++k) {
-    free.conservativeResize(free.rows() + 1, 6);
-    // Rotations first, so that the echelon form leaves pure translations where it can.
-    free.bottomRows(1) << eigen.eigenvectors().col(k).tail<3>().transpose(),
-        eigen.eigenvectors().col(k).head<3>().transpose();
-  }
+  const RigidModes modes(mesh);
+  const Eigen::MatrixXd null = modes.free(loading.prescribed);
+  Eigen::MatrixXd free(null.cols(), 6);
+  // Rotations first, so that the echelon form leaves pure translations where it can.
+  free << null.bottomRows<3>().transpose(), null.topRows<3>().transpose();
   const Eigen::MatrixXd basis = tidy(free);
   std::vector<std::string> names;
   for (Eigen::Index k = 0; k < basis.rows(); ++k)
-    names.push_back(motion_text(basis.row(k).tail<3>().transpose() * size,
-                                basis.row(k).head<3>().transpose(), center));
+    names.push_back(motion_text(basis.row(k).tail<3>().transpose() * modes.size,
+                                basis.row(k).head<3>().transpose(), modes.center));
   return names;
 }
 

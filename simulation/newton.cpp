@@ -9,6 +9,8 @@ namespace {
 
 /// Conjugate gradients dearer than this many solves lose against a factorization.
 constexpr int kMaxCg = 15;
+/// Below this error the tangent changes little from one iteration to the next.
+constexpr double kNear = 0.3;
 
 VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::Index size) {
   VectorXd all = VectorXd::Zero(size);
@@ -56,14 +58,15 @@ LineSearch search(const Problem& problem, double s, const VectorXd& q, const Vec
   return out;
 }
 
-/// A descent direction from the true tangent, else from the projected one, else from that with a
-/// growing shift. Returns false when nothing factorizes.
+/// A descent direction from the true tangent (unless `project` says that it will be indefinite),
+/// else from the projected one, else from that with a growing shift. False: nothing factorizes.
 bool direction_by_factor(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
-                         const VectorXd& q, const VectorXd& b, VectorXd& x) {
-  if (state.factorize()) {
+                         const VectorXd& q, const VectorXd& b, bool& project, VectorXd& x) {
+  if (!project && state.factorize()) {
     state.factor->solve(b, x);
     return x.allFinite();
   }
+  project = true;
   problem.tangent(q, goal.s, true, state.K);
   double shift = 0;
   const double diagonal = state.K.diagonal().cwiseAbs().mean();
@@ -97,7 +100,7 @@ double relative_error(const Problem& problem, const NewtonState& state, const Ve
   for (int u : problem.loading.prescribed) largest = std::max(largest, std::abs(R[u]));
   if (state.K.nonZeros() > 0) {
     const double size = (problem.mesh.X.rowwise().maxCoeff() - problem.mesh.X.rowwise().minCoeff()).norm();
-    largest = std::max(largest, 1e-9 * size * state.K.diagonal().cwiseAbs().maxCoeff());
+    largest = std::max(largest, 1e-5 * size * state.K.diagonal().cwiseAbs().maxCoeff());
   }
   double error = 0;
   for (int u : state.free) error = std::max(error, std::abs(R[u]));
@@ -112,7 +115,8 @@ int conjugate_gradients(const SparseMatrix& K, const TangentFactor& factor, cons
   x = VectorXd::Zero(b.size());
   VectorXd p = z;
   double rz = r.dot(z);
-  const double goal = tolerance * b.norm();
+  const double goal = tolerance * tolerance * rz;  // |r| in the norm of K^-1: soft modes count
+  if (rz == 0) return 1;
   for (int i = 1; i <= max_iterations; ++i) {
     Kp = select(K * spread(p, free, K.cols()), free);
     const double curvature = p.dot(Kp);
@@ -120,9 +124,9 @@ int conjugate_gradients(const SparseMatrix& K, const TangentFactor& factor, cons
     const double alpha = rz / curvature;
     x += alpha * p;
     r -= alpha * Kp;
-    if (r.norm() <= goal) return i;
     factor.solve(r, z);
     const double next = r.dot(z);
+    if (next <= goal) return i;
     p = z + (next / rz) * p;
     rz = next;
   }
@@ -134,6 +138,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
   NewtonOutcome out;
   const bool use_potential = problem.has_potential();
   bool reuse = goal.reuse_factor && state.factor && state.factor->positive();
+  bool projected = false;
   VectorXd R = problem.residual(q, goal.s);
   double last_error = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= goal.max_iterations; ++i) {
@@ -148,15 +153,19 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     ++state.iterations;
     const VectorXd b = -select(R, state.free);
     VectorXd x;
-    // Forcing term: as tight as quadratic convergence can use (Eisenstat and Walker 1996).
-    const double forcing = std::clamp(0.1 * out.error, 1e-6, 1e-3);
+    // Forcing term: what quadratic convergence can use (Eisenstat and Walker 1996), and no more
+    // than the last step needs.
+    const double forcing = std::clamp(std::max(0.01 * out.error, 0.05 * goal.tolerance / out.error),
+                                      1e-7, 1e-2);
     const bool by_cg = reuse && state.symbolic->fits(state.K, state.free) &&
                        conjugate_gradients(state.K, *state.factor, b, forcing, kMaxCg, x) > 0;
     if (!by_cg) {
-      reuse = false;
-      if (!direction_by_factor(problem, goal, state, q, b, x))
+      // Far from the solution an indefinite tangent is followed by others.
+      projected = projected && out.error > kNear;
+      if (!direction_by_factor(problem, goal, state, q, b, projected, x))
         return {false, out.error, "the tangent is singular: something is not held"};
     }
+    reuse = (by_cg || !projected) && (by_cg || out.error < kNear);
     LineSearch found = search(problem, goal.s, q, R, spread(x, state.free, q.size()), use_potential);
     if (found.step == 0) {
       if (out.error <= 100 * goal.tolerance && out.error <= 1e-7) {  // rounding stops it

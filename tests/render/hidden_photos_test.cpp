@@ -138,6 +138,7 @@ void compare(const std::string& name) {
   RenderOptions options;
   options.derivatives = false;
   if (const char* n = std::getenv("RAYS")) options.rays_per_axis = atoi(n);
+  if (const char* n = std::getenv("WIDTH")) options.filter_width_px = atof(n);
   for (const ExampleSpec& e : c.capture.examples)
     for (const PhotoSpec& p : e.photos) {
       const char* folder = std::getenv("HOOKEYE_PICTURES");

@@ -1,0 +1,250 @@
+// hookeye check: reads everything a capture names and says what it was understood to mean.
+#include <CLI/CLI.hpp>
+
+#include "app/commands/commands.h"
+#include "app/commands/describe.h"
+#include "capture_io/scope.h"
+#include "estimation/model.h"
+
+namespace hookeye {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json describe_camera(const Camera& camera) {
+  return {{"name", camera.name},
+          {"size", {camera.width, camera.height}},
+          {"projection",
+           camera.projection == Camera::Projection::perspective ? "perspective" : "orthographic"},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"distortion", camera.distortion},
+          {"centre", describe_vector(camera.centre())}};
+}
+
+Json describe_region(const Region& region) {
+  return {{"name", region.name},
+          {"area", region.area},
+          {"nodes", region.nodes.size()},
+          {"centroid", describe_vector(region.centroid)},
+          {"normal", describe_vector(region.normal)}};
+}
+
+std::string support_text(const SupportSpec& support) {
+  if (support.kind == SupportSpec::Kind::rigid_fit) return support.region + ": rigid, fitted";
+  if (support.kind == SupportSpec::Kind::rigid) return support.region + ": rigid, told";
+  std::string text = support.region + ":";
+  for (int i = 0; i < 3; ++i)
+    if (support.displacement[i])
+      text += fmt::format(" {} {:+.4g}", "xyz"[i], *support.displacement[i]);
+  return text;
+}
+
+std::string load_text(const LoadSpec& load, const Units& units) {
+  if (load.force)
+    return fmt::format("{}: {} {}", load.region, vector_text(*load.force), units.force);
+  return fmt::format("{}: pressure {:.4g} {}", load.region, load.pressure.value_or(0.0),
+                     units.stress());
+}
+
+std::string measured_text(const MeasuredSpec& measured) {
+  switch (measured.kind) {
+    case MeasuredSpec::Kind::force:
+      return "force on " + measured.region;
+    case MeasuredSpec::Kind::moment:
+      return "moment on " + measured.region;
+    case MeasuredSpec::Kind::position:
+      return "position of " + vector_text(measured.point);
+  }
+  return {};
+}
+
+std::string joined(const Json& texts) {
+  std::string line;
+  for (const auto& text : texts) line += (line.empty() ? "" : "; ") + text.get<std::string>();
+  return line.empty() ? "-" : line;
+}
+
+Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
+  const auto valid = std::count(photo.valid.begin(), photo.valid.end(), 1);
+  double mean = 0.0;
+  for (const float value : photo.planes.front().values) mean += value;
+  mean /= std::max<double>(1.0, static_cast<double>(photo.planes.front().values.size()));
+  return {{"camera", photo.camera},
+          {"file", spec.file.string()},
+          {"kind", photo.kind == PhotoSpec::Kind::image ? "image" : "silhouette"},
+          {"planes", photo.planes.size()},
+          {"counted", valid / std::max(1.0, static_cast<double>(photo.valid.size()))},
+          {"mean", mean},
+          {"noise",
+           {{"estimated", photo.noise.estimated},
+            {"full_well", photo.noise.full_well},
+            {"read", photo.noise.read},
+            {"sigma_at_mean", photo.noise.sigma(mean)}}}};
+}
+
+Json describe_example(const Scene& scene, const Model& model, size_t e) {
+  const ExampleSpec& example = scene.capture.examples[e];
+  const Scope scope("example " + example.name);
+  Json one{{"name", example.name},
+           {"use", example.validate ? "validate" : "fit"},
+           {"rest", is_rest(example)}};
+  for (const char* key : {"supports", "loads", "photos", "measured"}) one[key] = Json::array();
+  for (const auto& support : example.supports) one["supports"].push_back(support_text(support));
+  for (const auto& load : example.loads)
+    one["loads"].push_back(load_text(load, scene.capture.units));
+  for (size_t k = 0; k < example.photos.size(); ++k)
+    one["photos"].push_back(describe_photo(scene.photos[e][k], example.photos[k]));
+  for (const auto& measured : example.measured) one["measured"].push_back(measured_text(measured));
+  one["free_rigid_motions"] = free_rigid_motions(scene.body->mesh, model.examples[e].loading);
+  return one;
+}
+
+Json describe_parameter(const Parameter& parameter) {
+  return {{"name", parameter.name},   {"unit", parameter.unit}, {"long_name", parameter.long_name},
+          {"value", parameter.value}, {"low", parameter.low},   {"high", parameter.high}};
+}
+
+/// What the capture cannot tell, whatever its photos show.
+void warn_of_gaps(const Capture& capture, const Json& examples, Session& session) {
+  bool force_known = capture.gravity.has_value() && capture.body.density > 0.0;
+  for (const auto& example : capture.examples) {
+    force_known |= !example.loads.empty();
+    for (const auto& measured : example.measured)
+      force_known |= measured.kind != MeasuredSpec::Kind::position;
+  }
+  if (!force_known && !capture.fit.empty())
+    session.warn(
+        "no force is known (no load, no measured force, no weight): the photos fix only ratios of "
+        "stiffness, not its size");
+  bool held_out = false;
+  for (const auto& example : examples) {
+    held_out |= example["use"] == "validate";
+    const auto& free = example["free_rigid_motions"];
+    if (!free.empty() && !example["rest"].get<bool>())
+      session.warn(fmt::format("example {} leaves the body free: {}",
+                               example["name"].get<std::string>(), joined(free)));
+  }
+  if (!held_out && !capture.examples.empty())
+    session.warn("no example is held out (use: validate): nothing will judge the fit from outside");
+}
+
+void say_capture(const Session& session, const Json& d, const Scene& scene) {
+  const Capture& capture = scene.capture;
+  session.say("{}{}\n", capture.file.string(), capture.title.empty() ? "" : ": " + capture.title);
+  session.say("\nunits: length {}, force {}, stress {}\n", capture.units.length,
+              capture.units.force, capture.units.stress());
+  session.say("\nbody\n{}", mesh_lines(scene.body->mesh));
+  session.say("  surface of {} triangles, as it is photographed\n",
+              scene.body->surface.mesh.triangles.size());
+  std::vector<std::vector<std::string>> rows{{"law", "region", "parameters"}};
+  for (const auto& material : d["materials"])
+    rows.push_back({material["law"],
+                    material["region"].get<std::string>().empty()
+                        ? std::string("whole body")
+                        : material["region"].get<std::string>(),
+                    material["text"]});
+  session.say("\nmaterial\n{}", table(rows));
+  rows = {{"fitted", "unit", "start", "meaning"}};
+  for (const auto& p : d["parameters"])
+    rows.push_back(
+        {p["name"], p["unit"], fmt::format("{:.6g}", p["value"].get<double>()), p["long_name"]});
+  session.say("\nparameters of the base model\n{}", table(rows));
+  if (capture.gravity)
+    session.say("  gravity {} {}\n", vector_text(*capture.gravity), capture.units.acceleration());
+  rows = {{"camera", "size", "projection", "fx", "centre [" + capture.units.length + "]"}};
+  for (const auto& camera : capture.cameras)
+    rows.push_back(
+        {camera.name, fmt::format("{} x {}", camera.width, camera.height),
+         camera.projection == Camera::Projection::perspective ? "perspective" : "orthographic",
+         fmt::format("{:.5g}", camera.fx), vector_text(camera.centre())});
+  if (!capture.cameras.empty()) session.say("\ncameras\n{}", table(rows));
+  rows = {{"region", "area [" + capture.units.length + "^2]", "nodes", "centroid", "normal"}};
+  for (const auto& [name, region] : scene.body->regions.all())
+    rows.push_back({name, fmt::format("{:.5g}", region.area), std::to_string(region.nodes.size()),
+                    vector_text(region.centroid), vector_text(region.normal)});
+  if (rows.size() > 1) session.say("\nregions\n{}", table(rows));
+}
+
+void say_examples(const Session& session, const Json& examples) {
+  std::vector<std::vector<std::string>> rows{{"example", "use", "supports", "loads", "measured"}};
+  for (const auto& e : examples)
+    rows.push_back(
+        {e["name"], e["use"], joined(e["supports"]), joined(e["loads"]), joined(e["measured"])});
+  session.say("\nexamples\n{}", table(rows));
+  rows = {{"example", "camera", "kind", "counted", "mean", "noise at mean", "noise is"}};
+  for (const auto& e : examples)
+    for (const auto& photo : e["photos"])
+      rows.push_back({e["name"], photo["camera"], photo["kind"],
+                      fmt::format("{:.1f} %", 100.0 * photo["counted"].get<double>()),
+                      fmt::format("{:.4f}", photo["mean"].get<double>()),
+                      fmt::format("{:.2g}", photo["noise"]["sigma_at_mean"].get<double>()),
+                      photo["noise"]["estimated"].get<bool>() ? "estimated" : "told"});
+  if (rows.size() > 1) session.say("\nphotos (linear intensity, full scale 1)\n{}", table(rows));
+  for (const auto& e : examples)
+    if (!e["free_rigid_motions"].empty())
+      session.say("\nexample {} leaves free: {}\n", e["name"].get<std::string>(),
+                  joined(e["free_rigid_motions"]));
+}
+
+Json describe_materials(const Capture& capture) {
+  Json materials = Json::array();
+  for (const auto& spec : capture.materials) {
+    const auto law = make_law(spec);  // throws InputError with the place of an unknown law
+    std::string text;
+    Json values = Json::object();
+    for (const auto& p : law->parameters(capture.units)) {
+      values[p.name] = p.value;
+      text += fmt::format("{}{} {:.6g} {}", text.empty() ? "" : ", ", p.name, p.value, p.unit);
+    }
+    materials.push_back(
+        {{"law", spec.law}, {"region", spec.region}, {"values", values}, {"text", text}});
+  }
+  return materials;
+}
+
+void run_check(const std::string& path, Session& session) {
+  const Capture capture = read_capture(path);
+  const Scope scope(capture.file.string());
+  auto& d = session.document;
+  d["hookeye"] = 1;
+  d["command"] = "check";
+  d["capture"] = capture.file.string();
+  d["title"] = capture.title;
+  d["warnings"] = Json::array();
+  d["units"] = {{"length", capture.units.length},
+                {"force", capture.units.force},
+                {"stress", capture.units.stress()}};
+  d["materials"] = describe_materials(capture);
+  const auto scene = load_scene(capture);
+  const ModelForm form = base_form(scene);
+  const Model model = form.realise(form.initial());
+  for (const auto& said : scene->body->said) session.warn(said);
+  d["body"] = describe_mesh(scene->body->mesh);
+  d["body"]["surface_triangles"] = scene->body->surface.mesh.triangles.size();
+  for (const char* key : {"parameters", "cameras", "regions", "examples"}) d[key] = Json::array();
+  for (const auto& p : form.parameters()) d["parameters"].push_back(describe_parameter(p));
+  for (const auto& camera : capture.cameras) d["cameras"].push_back(describe_camera(camera));
+  for (const auto& [name, region] : scene->body->regions.all())
+    d["regions"].push_back(describe_region(region));
+  for (size_t e = 0; e < capture.examples.size(); ++e)
+    d["examples"].push_back(describe_example(*scene, model, e));
+  say_capture(session, d, *scene);
+  say_examples(session, d["examples"]);
+  if (!session.json) std::fflush(stdout);
+  warn_of_gaps(capture, d["examples"], session);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, CommandBody& chosen) {
+  CLI::App* command =
+      app.add_subcommand("check", "Read everything and say what is wrong or cannot be identified");
+  const auto capture = std::make_shared<std::string>();
+  command->add_option("CAPTURE", *capture, "capture.yaml or its folder")->required();
+  command->callback([&chosen, capture] {
+    chosen = [capture](Session& session) { run_check(*capture, session); };
+  });
+}
+
+}  // namespace hookeye

@@ -1,0 +1,23 @@
+// The commands of the program, one file each. A new command: write its file with an AddCommand and
+// list it here; main.cpp reads this list.
+#pragma once
+
+#include "app/session.h"
+
+namespace hookeye {
+
+void add_check(CLI::App& app, CommandBody& chosen);
+void add_mesh(CLI::App& app, CommandBody& chosen);
+void add_simulate(CLI::App& app, CommandBody& chosen);
+void add_render(CLI::App& app, CommandBody& chosen);
+void add_fit(CLI::App& app, CommandBody& chosen);
+void add_compare(CLI::App& app, CommandBody& chosen);
+void add_diagnose(CLI::App& app, CommandBody& chosen);
+void add_add(CLI::App& app, CommandBody& chosen);
+void add_discover(CLI::App& app, CommandBody& chosen);
+
+inline constexpr AddCommand kCommands[] = {add_check,    add_mesh, add_simulate,
+                                           add_render,   add_fit,  add_compare,
+                                           add_diagnose, add_add,  add_discover};
+
+}  // namespace hookeye

@@ -1,0 +1,18 @@
+// What several commands say about a body, a parameter, a material: as JSON and as lines.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "capture_io/capture.h"
+#include "capture_io/parameter.h"
+#include "meshing/tet_mesh.h"
+
+namespace hookeye {
+
+nlohmann::ordered_json describe_mesh(const TetMesh& mesh);
+std::string mesh_lines(const TetMesh& mesh);
+nlohmann::ordered_json describe_vector(const Vector3d& v);
+std::string vector_text(const Vector3d& v);
+
+}  // namespace hookeye

@@ -1,0 +1,37 @@
+// hookeye diagnose: the ranked missing effects of a run's newest step.
+#include <CLI/CLI.hpp>
+
+#include "app/commands/commands.h"
+#include "app/commands/run_support.h"
+#include "app/interrupt.h"
+#include "estimation/step_json.h"
+
+namespace hookeye {
+namespace {
+
+void run_diagnose(const std::string& folder, Session& session) {
+  Run run = Run::open(folder, true);
+  Bench bench = open_capture(run.capture(), session);
+  Step step = newest_step(run, bench);
+  DiagnosisOptions options;
+  options.cancel = &interrupted();
+  step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
+  record_diagnosis(run, step);
+  session.document = to_json(step.diagnosis);
+  session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name,
+              step.fitted.evaluation.chi(false), step.diagnosis.floor.chi);
+  session.say("{}", diagnosis_table(step.diagnosis));
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, CommandBody& chosen) {
+  CLI::App* command = app.add_subcommand("diagnose", "The ranked missing effects");
+  const auto folder = std::make_shared<std::string>();
+  command->add_option("RUN", *folder, "Run folder")->required();
+  command->callback([&chosen, folder] {
+    chosen = [folder](Session& session) { run_diagnose(*folder, session); };
+  });
+}
+
+}  // namespace hookeye

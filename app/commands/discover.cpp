@@ -1,0 +1,93 @@
+// hookeye discover: fit, diagnose, add, until what is left is noise.
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "app/commands/commands.h"
+#include "app/commands/run_support.h"
+#include "estimation/step_json.h"
+
+namespace hookeye {
+namespace {
+
+struct DiscoverArguments {
+  std::string capture, run;
+  std::vector<std::string> without;
+};
+
+DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
+  auto recorded = std::make_shared<bool>(first_is_recorded);
+  DiscoverEvents events;
+  events.step = [&run, &bench, recorded](const Step& step) {
+    if (*recorded)
+      record_diagnosis(run, step);
+    else
+      record(run, *bench.scene, step);
+    *recorded = false;
+    spdlog::info("{}: chi {:.3f} fitted, {:.3f} held out (floor {:.3f})", step.name,
+                 step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true),
+                 step.diagnosis.floor.chi);
+    for (const auto& effect : step.diagnosis.effects)
+      if (effect.testable && effect.evidence > kNameable)
+        spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
+  };
+  events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
+  events.refitted = [](const std::string& effect, const Fitted& fitted) {
+    spdlog::info("  {}: chi {:.3f} fitted, {:.3f} held out", effect, fitted.evaluation.chi(false),
+                 fitted.evaluation.chi(true));
+  };
+  return events;
+}
+
+std::string steps_table(const Discovery& discovery) {
+  std::vector<std::vector<std::string>> rows = {
+      {"step", "chi fitted", "chi held out", "rms px", "over the floor"}};
+  const double top =
+      discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
+  for (const auto& step : discovery.steps) {
+    const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
+    rows.push_back({step.name, fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
+                    fmt::format("{:.3f}", step.fitted.evaluation.chi(true)),
+                    fmt::format("{:.3f}", step.fitted.evaluation.rms_px(false)),
+                    fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
+  }
+  return table(rows);
+}
+
+void run_discover(const DiscoverArguments& arguments, Session& session) {
+  Bench bench = open_capture(arguments.capture, session);
+  Run run = Run::create(arguments.run, bench.scene->capture.file);
+  DiscoverOptions options = discover_options();
+  options.diagnosis.without = arguments.without;
+  const bool resumed = !run.steps().empty();
+  const DiscoverEvents on = events(run, bench, resumed);
+  const ModelForm form = base_form(bench.scene);
+  const Discovery found = value_or_fail(
+      resumed ? discover_from(bench.workspace, newest_step(run, bench), options, on)
+              : discover(bench.workspace, form, form.initial(), options, on));
+  run.update([&](nlohmann::json& timeline) {
+    timeline["verdict"] = to_string(found.verdict);
+    timeline["sentence"] = found.sentence;
+    timeline["tie"] = found.tie;
+    timeline["floor"] = to_json(found.floor);
+  });
+  session.document = run.timeline();
+  session.say("{}\n{}", steps_table(found), parameter_table(found.steps.back().fitted));
+  session.say("\n{}: {}\n", to_string(found.verdict), found.sentence);
+  session.say("run: {}\n", arguments.run);
+}
+
+}  // namespace
+
+void add_discover(CLI::App& app, CommandBody& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "discover", "Fit, diagnose, add, until what is left is noise; resumes a run");
+  const auto arguments = std::make_shared<DiscoverArguments>();
+  command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
+  command->add_option("-o,--out", arguments->run, "Run folder")->required();
+  command->add_option("--without", arguments->without, "Effects to leave out of the catalogue");
+  command->callback([&chosen, arguments] {
+    chosen = [arguments](Session& session) { run_discover(*arguments, session); };
+  });
+}
+
+}  // namespace hookeye

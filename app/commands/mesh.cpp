@@ -1,0 +1,60 @@
+// hookeye mesh: a closed surface filled with tetrahedra.
+#include <CLI/CLI.hpp>
+
+#include "app/commands/commands.h"
+#include "app/commands/describe.h"
+#include "capture_io/scope.h"
+#include "meshing/surface_mesh.h"
+#include "meshing/tet_mesh.h"
+
+namespace hookeye {
+namespace {
+
+struct MeshOptions {
+  std::string surface, body;
+  FillOptions fill;
+};
+
+void run_mesh(const MeshOptions& options, Session& session) {
+  const Scope scope("surface " + options.surface);
+  const std::filesystem::path out = options.body;
+  if (out.extension() != ".vtu")
+    throw InputError({options.body}, "a body is written as .vtu",
+                     "-o " + std::filesystem::path(out).replace_extension(".vtu").string());
+  const Place place{options.surface};
+  const SurfaceMesh surface = read_surface(options.surface);
+  const MendedSurface mended = mend(surface, place);
+  const TetMesh mesh = fill(mended.surface, options.fill, place);
+  if (out.has_parent_path()) std::filesystem::create_directories(out.parent_path());
+  write_vtu(out, mesh, {});
+
+  auto& document = session.document;
+  document = {{"hookeye", 1}, {"command", "mesh"}, {"surface", options.surface}};
+  document["body"] = out.string();
+  document["triangles"] = surface.triangles.size();
+  document["said"] = mended.said;
+  document["quality"] = describe_mesh(mesh);
+  for (const auto& said : mended.said) session.warn(said);
+  session.say("{}: {} triangles\n", options.surface, surface.triangles.size());
+  session.say("{}", mesh_lines(mesh));
+  session.say("written to {}\n", out.string());
+}
+
+}  // namespace
+
+void add_mesh(CLI::App& app, CommandBody& chosen) {
+  CLI::App* command = app.add_subcommand("mesh", "Fill a closed surface with tetrahedra");
+  const auto options = std::make_shared<MeshOptions>();
+  command->add_option("SURFACE", options->surface, "Closed triangle surface: obj, ply, stl")
+      ->required();
+  command->add_option("-o,--out", options->body, "The body to write: BODY.vtu")->required();
+  command->add_option("--edge", options->fill.edge, "Target edge (default: diagonal / 12)")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--order", options->fill.order, "Order of the tetrahedra (default: 2)")
+      ->check(CLI::IsMember({1, 2}));
+  command->callback([&chosen, options] {
+    chosen = [options](Session& session) { run_mesh(*options, session); };
+  });
+}
+
+}  // namespace hookeye

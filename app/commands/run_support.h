@@ -1,0 +1,45 @@
+// What the commands on a run share: opening it, its newest model, writing a step, tables.
+#pragma once
+
+#include <optional>
+
+#include "app/session.h"
+#include "capture_io/run.h"
+#include "estimation/discover.h"
+
+namespace hookeye {
+
+/// A capture opened for estimation.
+struct Bench {
+  std::shared_ptr<const Scene> scene;
+  Workspace workspace;
+};
+Bench open_capture(const std::filesystem::path& capture, Session& session);
+
+/// Throws Interrupted or Failed where there is a failure instead of a value.
+template <class T>
+T value_or_fail(std::variant<T, NumericalFailure> result) {
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) fail(std::move(*failure));
+  return std::get<T>(std::move(result));
+}
+
+/// The newest step of a run, its model evaluated again (pictures and derivatives).
+Step newest_step(const Run& run, Bench& bench);
+
+/// Options with the progress bar and Ctrl-C wired in.
+FitOptions fit_options();
+DiscoverOptions discover_options();
+
+/// Writes the step's folder and the timeline's entry.
+std::filesystem::path record(Run& run, const Scene& scene, const Step& step);
+/// Puts a diagnosis into the newest step and the timeline.
+void record_diagnosis(Run& run, const Step& step);
+
+/// For the terminal, within 100 columns.
+std::string parameter_table(const Fitted& fitted);
+std::string photo_table(const Scene& scene, const Fitted& fitted, const Floor& floor);
+std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
+/// "0.83 ########--": a share as a small bar.
+std::string bar(double share, int width = 10);
+
+}  // namespace hookeye

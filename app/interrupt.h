@@ -1,0 +1,15 @@
+// Ctrl-C: the first asks the work to stop at the next safe place, the second ends the process.
+#pragma once
+
+#include <atomic>
+
+namespace hookeye {
+
+/// Set by SIGINT and SIGTERM; every long loop polls it (EquilibriumOptions, FitOptions ...).
+const std::atomic<bool>& interrupted();
+void watch_interrupts();
+
+/// Thrown by commands when they stopped because of it; exit status 130.
+struct Interrupted {};
+
+}  // namespace hookeye

@@ -1,0 +1,50 @@
+// What one command is told by the shell and hands back to it.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "capture_io/numerical_failure.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hookeye {
+
+/// Commands fill `document`, which is printed with --json, and say() lines for people, which are
+/// printed without. Warnings go through warn(): standard error and the document's "warnings".
+struct Session {
+  bool json = false;
+  bool verbose = false;
+  int threads = 0;  ///< 0: all cores
+  nlohmann::ordered_json document;
+
+  template <class... Args>
+  void say(fmt::format_string<Args...> format, Args&&... args) const {
+    if (!json) fmt::print(format, std::forward<Args>(args)...);
+  }
+  void warn(const std::string& sentence);
+};
+
+/// A numerical failure on its way to the shell: exit status 3.
+struct Failed {
+  NumericalFailure failure;
+};
+/// Throws Interrupted when the user stopped the work, else Failed.
+[[noreturn]] void fail(NumericalFailure failure);
+
+using CommandBody = std::function<void(Session&)>;
+/// Adds a subcommand whose callback sets `chosen`.
+using AddCommand = void (*)(CLI::App& app, CommandBody& chosen);
+
+/// Lines of columns, aligned: the first row is the head.
+std::string table(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace hookeye

@@ -1,0 +1,358 @@
+#include "estimation/diagnosis.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "estimation/evidence.h"
+
+namespace hookeye {
+
+namespace {
+
+struct Candidate {
+  const Effect* effect;
+  std::shared_ptr<const Ingredient> ingredient;
+  Hypothesis hypothesis;
+};
+
+bool already_in(const ModelForm& form, const std::string& name) {
+  for (const auto& ingredient : form.ingredients)
+    if (ingredient->name() == name) return true;
+  return false;
+}
+
+/// All candidates with their columns; effects that do not apply go straight to `out`.
+std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& options,
+                               std::vector<EffectScore>& out) {
+  const Model model = fitted.form.realise(fitted.p);
+  std::vector<Candidate> all;
+  int column = fitted.form.size();
+  for (const Effect* effect : catalogue()) {
+    if (std::count(options.without.begin(), options.without.end(), effect->name())) continue;
+    std::string why_not;
+    if (already_in(fitted.form, effect->name())) why_not = "already in the model";
+    const auto candidates = why_not.empty() ? effect->candidates(model, &why_not)
+                                            : std::vector<std::shared_ptr<const Ingredient>>{};
+    if (candidates.empty()) {
+      EffectScore score;
+      score.effect = effect->name();
+      score.testable = false;
+      score.why_not = why_not.empty() ? "does not apply to this capture" : why_not;
+      out.push_back(std::move(score));
+      continue;
+    }
+    for (const auto& ingredient : candidates) {
+      const auto parameters = ingredient->parameters();
+      Candidate one{effect, ingredient, {}};
+      one.hypothesis.first = column;
+      one.hypothesis.count = static_cast<int>(parameters.size());
+      one.hypothesis.typical.resize(parameters.size());
+      for (size_t i = 0; i < parameters.size(); ++i)
+        one.hypothesis.typical[i] = parameters[i].positive ? std::abs(parameters[i].value)
+                                                           : parameters[i].typical;
+      one.hypothesis.one_sided =
+          parameters.size() == 1 && parameters[0].low >= parameters[0].value;
+      column += one.hypothesis.count;
+      all.push_back(std::move(one));
+    }
+  }
+  return all;
+}
+
+/// Sums over cells rather than pixels, every photo weighted by its effective share, and the
+/// covariance of the score under noise correlated as the residual is.
+struct Sums {
+  EffectiveSums effective;
+  Eigen::MatrixXd noise;            ///< covariance of effective.s under the null
+  NormalEquations fitted, held_out; ///< plain pixel sums
+  double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
+  double whiteness_p = 1.0;
+};
+
+Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
+  Sums out;
+  const int m = evaluation.columns;
+  out.effective.H.setZero(m, m);
+  out.effective.s.setZero(m);
+  out.effective.floor2 = floor.chi * floor.chi;
+  out.noise.setZero(m, m);
+  int photos = 0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos) {
+      (example.held_out ? out.held_r2 : out.photo_r2) += photo.r2;
+      (example.held_out ? out.held_count : out.photo_count) += photo.count;
+      if (example.held_out) continue;
+      const FlowStatistics flow = flow_statistics(photo.flow);
+      if (flow.count == 0.0) continue;
+      ++photos;
+      out.whiteness_p = std::min(out.whiteness_p, flow.whiteness_p);
+      const double w = flow.effective / flow.count;
+      out.effective.H += w * photo.sums.JtJ;
+      out.effective.s += w * photo.sums.Jtr;
+      out.effective.r2 += w * flow.variance * flow.count;
+      out.effective.count += w * flow.count;
+      out.noise += w * w * flow.inflation * photo.sums.JtJ;
+    }
+  out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out) continue;
+    for (const auto& measured : example.measured) {
+      const Eigen::MatrixXd JtJ = measured.J.transpose() * measured.J;
+      out.effective.H += JtJ;
+      out.effective.s += measured.J.transpose() * measured.r;
+      out.effective.r2 += measured.r.squaredNorm();
+      out.effective.count += 3.0;
+      out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
+    }
+  }
+  out.fitted = normal_equations(evaluation, false);
+  out.held_out = normal_equations(evaluation, true);
+  return out;
+}
+
+/// Removes from |r|^2 what the base parameters alone would still gain under these weights.
+double without_base(const EffectiveSums& sums, int base) {
+  if (base == 0) return sums.r2;
+  const VectorXd s = sums.s.head(base);
+  const Eigen::MatrixXd H = sums.H.topLeftCorner(base, base);
+  const double gain = s.dot(H.completeOrthogonalDecomposition().solve(s));
+  return std::max(sums.r2 - gain, 0.1 * sums.r2);
+}
+
+/// Evidence of every effect from its candidates' evidence.
+std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
+                                        const VectorXd& evidence) {
+  std::map<std::string, std::vector<double>> lists;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    lists[candidates[i].effect->name()].push_back(evidence[i]);
+  std::map<std::string, double> out;
+  for (const auto& [name, list] : lists)
+    out[name] = log_mean_exp(Eigen::Map<const VectorXd>(list.data(), list.size()));
+  return out;
+}
+
+/// Largest evidence over the catalogue when nothing is missing, sorted.
+std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
+                                  const std::vector<ProjectedHypothesis>& projected,
+                                  const Sums& sums, double r2, const DiagnosisOptions& options) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sums.noise);
+  const Eigen::MatrixXd root =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::mt19937 engine(options.seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> largest;
+  for (int b = 0; b < options.null_simulations; ++b) {
+    VectorXd white(root.cols());
+    for (double& x : white) x = normal(engine);
+    const VectorXd s = root * white;
+    VectorXd evidence(candidates.size());
+    for (size_t i = 0; i < candidates.size(); ++i)
+      evidence[i] =
+          log_evidence(projected[i], s, r2, sums.effective.count, sums.effective.floor2);
+    double most = 0.0;
+    for (const auto& [name, value] : by_effect(candidates, evidence)) most = std::max(most, value);
+    largest.push_back(most);
+  }
+  std::sort(largest.begin(), largest.end());
+  return largest;
+}
+
+/// Change of the sum of squares by a joint step.
+double change(const Eigen::MatrixXd& H, const VectorXd& s, const VectorXd& step) {
+  return 2.0 * step.dot(s) + step.dot(H * step);
+}
+
+VectorXd joint_step(int columns, const ProjectedHypothesis& hypothesis, const EffectScore& score,
+                    const VectorXd& null_values) {
+  VectorXd step = VectorXd::Zero(columns);
+  step.head(hypothesis.base) = score.base_step;
+  step.segment(hypothesis.first, score.dof) = score.values - null_values;
+  return step;
+}
+
+/// "seen in both cameras, most in 'side'": where the step removes misfit.
+std::string where_seen(const Scene& scene, const Evaluation& evaluation, const VectorXd& step) {
+  std::map<std::string, double> by_camera, by_example;
+  double total = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos) {
+      if (example.held_out) continue;
+      const double fall = -change(photo.sums.JtJ, photo.sums.Jtr, step);
+      const auto& spec = scene.capture.examples[example.example];
+      by_camera[spec.photos[photo.photo].camera] += fall;
+      by_example[spec.name] += fall;
+      total += fall;
+    }
+  if (by_camera.empty() || total <= 0.0) return "";
+  std::vector<std::string> cameras;
+  for (const auto& [name, fall] : by_camera)
+    if (fall > 0.05 * total) cameras.push_back("'" + name + "'");
+  const auto most = std::max_element(by_example.begin(), by_example.end(),
+                                     [](auto& a, auto& b) { return a.second < b.second; });
+  const std::string who = cameras.size() == by_camera.size() && cameras.size() > 1
+                              ? fmt::format("all {} cameras", cameras.size())
+                              : fmt::format("{}", fmt::join(cameras, " and "));
+  return fmt::format("; seen in {}, most in '{}'", who, most->first);
+}
+
+struct Context {
+  const Fitted& fitted;
+  const Scene& scene;
+  const Evaluation& evaluation;
+  const Sums& sums;
+  const Model model;
+};
+
+EffectScore describe(const Context& context, const Candidate& candidate,
+                     const ProjectedHypothesis& weighted) {
+  EffectScore score;
+  score.effect = candidate.effect->name();
+  score.best = candidate.ingredient;
+  score.dof = candidate.hypothesis.count;
+  const auto parameters = candidate.ingredient->parameters();
+  VectorXd null_values(score.dof);
+  for (int i = 0; i < score.dof; ++i) null_values[i] = parameters[i].value;
+  // The step and its share come from the plain sums: that is what a refit will minimise.
+  const ProjectedHypothesis plain =
+      project(context.sums.fitted.JtJ, weighted.base, candidate.hypothesis);
+  const VectorXd t = plain.step(context.sums.fitted.Jtr);
+  score.values = null_values + t;
+  for (int i = 0; i < score.dof; ++i)
+    score.values[i] = std::clamp(score.values[i], parameters[i].low, parameters[i].high);
+  score.base_step = -plain.to_base * t;
+  const double structured =
+      context.sums.photo_r2 - context.sums.photo_count * context.sums.effective.floor2;
+  const double held =
+      context.sums.held_r2 - context.sums.held_count * context.sums.effective.floor2;
+  const VectorXd step =
+      joint_step(context.evaluation.columns, weighted, score, null_values);
+  if (structured > 0.0)
+    score.explains = std::clamp(plain.fall(context.sums.fitted.Jtr) / structured, 0.0, 1.0);
+  if (held > 0.0)
+    score.explains_held_out = std::clamp(
+        -change(context.sums.held_out.JtJ, context.sums.held_out.Jtr, step) / held, -1.0, 1.0);
+  const Eigen::MatrixXd V = context.sums.noise.block(candidate.hypothesis.first,
+                                                     candidate.hypothesis.first, score.dof,
+                                                     score.dof);
+  const Eigen::MatrixXd inverse = weighted.M.completeOrthogonalDecomposition().pseudoInverse();
+  score.standard_error = (inverse * V * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
+  score.why = fmt::format(
+      "{} would remove {:.0f} % of the misfit{}",
+      candidate.effect->sentence(context.model, *candidate.ingredient, score.values),
+      100.0 * score.explains, where_seen(context.scene, context.evaluation, step));
+  return score;
+}
+
+/// Share of each effect's signature that the others can imitate.
+void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candidate>& candidates,
+                     const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores) {
+  const Eigen::MatrixXd H_aa_inverse =
+      base > 0 ? Eigen::MatrixXd(
+                     H.topLeftCorner(base, base).completeOrthogonalDecomposition().pseudoInverse())
+               : Eigen::MatrixXd(0, 0);
+  auto block = [&](const Hypothesis& a, const Hypothesis& b) -> Eigen::MatrixXd {
+    return H.block(a.first, b.first, a.count, b.count) -
+           H.block(0, a.first, base, a.count).transpose() * H_aa_inverse *
+               H.block(0, b.first, base, b.count);
+  };
+  for (auto& score : scores) {
+    if (!score.testable || score.evidence <= 0.0) continue;
+    const Hypothesis& mine = candidates[best.at(score.effect)].hypothesis;
+    VectorXd t = score.values;
+    const auto parameters = score.best->parameters();
+    for (int i = 0; i < t.size(); ++i) t[i] -= parameters[i].value;
+    const double length = t.dot(block(mine, mine) * t);
+    if (length <= 0.0) continue;
+    for (const auto& other : scores) {
+      if (!other.testable || other.effect == score.effect || other.evidence <= 0.0) continue;
+      const Hypothesis& theirs = candidates[best.at(other.effect)].hypothesis;
+      const VectorXd projection = block(theirs, mine) * t;
+      const double imitated = projection.dot(
+          block(theirs, theirs).completeOrthogonalDecomposition().solve(projection));
+      const double cosine = std::sqrt(std::clamp(imitated / length, 0.0, 1.0));
+      // A wrong cause at cosine 0.9 still removes 80 % of the removable error.
+      if (cosine > 0.9) score.confused_with.push_back({other.effect, cosine});
+    }
+    std::sort(score.confused_with.begin(), score.confused_with.end(),
+              [](auto& a, auto& b) { return a.cosine > b.cosine; });
+  }
+}
+
+void weigh(std::vector<EffectScore>& scores) {
+  double largest = 0.0, sum = 0.0;
+  for (const auto& score : scores)
+    if (score.testable) largest = std::max(largest, score.evidence);
+  for (const auto& score : scores)
+    if (score.testable) sum += std::exp(score.evidence - largest);
+  for (auto& score : scores)
+    if (score.testable) score.weight = std::exp(score.evidence - largest) / sum;
+}
+
+}  // namespace
+
+std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
+                                                   const DiagnosisOptions& options) {
+  Diagnosis out;
+  const Scene& scene = workspace.scene();
+  std::vector<EffectScore> idle;
+  const std::vector<Candidate> candidates = collect(fitted, options, idle);
+  std::vector<std::shared_ptr<const Ingredient>> ingredients;
+  for (const auto& candidate : candidates) ingredients.push_back(candidate.ingredient);
+  EvaluationOptions evaluation_options;
+  evaluation_options.pictures = true;
+  evaluation_options.held_out = true;
+  evaluation_options.cancel = options.cancel;
+  auto result = workspace.evaluate(fitted.form, fitted.p, evaluation_options, ingredients);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  const Evaluation& evaluation = std::get<Evaluation>(result);
+  out.floor = measure_floor(scene, evaluation);
+  const Sums sums = sum_up(evaluation, out.floor);
+  const int base = fitted.form.size();
+  out.effective_count = sums.effective.count;
+  out.whiteness_p = sums.whiteness_p;
+
+  std::vector<ProjectedHypothesis> projected;
+  VectorXd evidence(candidates.size());
+  const double r2 = without_base(sums.effective, base);
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    projected.push_back(project(sums.effective.H, base, candidates[i].hypothesis));
+    evidence[i] = log_evidence(projected[i], sums.effective.s, r2, sums.effective.count,
+                               sums.effective.floor2);
+  }
+  const std::vector<double> null =
+      simulate_null(candidates, projected, sums, r2, options);
+  if (!null.empty()) out.gate = null[static_cast<size_t>(0.95 * (null.size() - 1))];
+
+  const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
+  std::map<std::string, size_t> best;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const std::string name = candidates[i].effect->name();
+    if (!best.count(name) || evidence[i] > evidence[best[name]]) best[name] = i;
+  }
+  for (const auto& [name, value] : by_effect(candidates, evidence)) {
+    EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
+    score.evidence = value;
+    const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
+    score.p_value = (1.0 + above) / (1.0 + null.size());
+    if (projected[best[name]].best_signal() < 4.0) {
+      score.testable = false;
+      score.why_not = "untestable with these photos: a change that would matter moves them by "
+                      "less than two standard deviations";
+    }
+    out.effects.push_back(std::move(score));
+  }
+  find_confusions(sums.effective.H, base, candidates, best, out.effects);
+  weigh(out.effects);
+  std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.testable, a.evidence) > std::pair(b.testable, b.evidence);
+  });
+  out.effects.insert(out.effects.end(), idle.begin(), idle.end());
+  return out;
+}
+
+}  // namespace hookeye

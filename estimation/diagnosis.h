@@ -1,0 +1,61 @@
+// Which effect is missing: every effect of the catalogue tested against the residual without
+// refitting (method.md, "Which effect is missing").
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimation/effect.h"
+#include "estimation/fit.h"
+#include "estimation/floor.h"
+
+namespace hookeye {
+
+struct Confusion {
+  std::string effect;
+  double cosine;  ///< share (as a cosine) of the signature that the other effect can imitate
+};
+
+struct EffectScore {
+  std::string effect;
+  bool testable = true;
+  std::string why_not;      ///< not applicable, already in the model, or untestable, and why
+  std::shared_ptr<const Ingredient> best;  ///< best candidate
+  VectorXd values;          ///< its parameters after one linear step from the null
+  VectorXd base_step;       ///< what the fitted parameters would do at the same time
+  VectorXd standard_error;  ///< of values, correlated residuals counted
+  int dof = 0;
+  double explains = 0.0;    ///< predicted share of (chi^2 - floor^2) removed, fitted photos
+  double explains_held_out = 0.0;  ///< the same step on the held-out photos
+  double evidence = 0.0;    ///< log marginal likelihood over the current model
+  double p_value = 1.0;     ///< of the largest evidence in the catalogue under the simulated null
+  double weight = 0.0;      ///< evidence among the tested effects, summing to one
+  std::vector<Confusion> confused_with;
+  std::string why;          ///< one plain sentence
+};
+
+struct Diagnosis {
+  std::vector<EffectScore> effects;  ///< by falling evidence; untestable ones last
+  double gate = 0.0;          ///< 95 % point of the largest evidence when nothing is missing
+  double effective_count = 0.0;
+  double whiteness_p = 1.0;   ///< smallest photo p-value, Bonferroni
+  Floor floor;
+};
+
+struct DiagnosisOptions {
+  int null_simulations = 400;
+  unsigned seed = 1;
+  /// Names to leave out (leave-one-out benchmarks).
+  std::vector<std::string> without;
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
+                                                   const DiagnosisOptions& options = {});
+
+/// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
+constexpr double kNameable = 5.0;
+constexpr double kTie = 3.0;
+
+}  // namespace hookeye

@@ -1,0 +1,72 @@
+// The loop of the product: fit, diagnose, add, until what is left is noise.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimation/diagnosis.h"
+#include "estimation/fit.h"
+
+namespace hookeye {
+
+/// Refits with one effect: the scored candidate moved to its refit form, warm-started.
+std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
+                                                  const EffectScore& score,
+                                                  const FitOptions& options);
+
+/// log-likelihood of a fitted model with the effective number of residuals: fitted and held-out
+/// photos and measurements; minus (dof/2) log N (BIC). `reference` gives the correlation.
+double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor);
+
+struct DiscoverOptions {
+  FitOptions fit;
+  DiagnosisOptions diagnosis;
+  int leaders = 3;       ///< effects refitted at each step
+  int max_effects = 4;
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+/// One step of a run.
+struct Step {
+  std::string name;               ///< "base" or the added effect
+  std::string added;              ///< "" for the base
+  Fitted fitted;
+  Diagnosis diagnosis;            ///< of this step's model
+  std::vector<std::pair<std::string, double>> rivals;  ///< refitted, with score minus the winner's
+};
+
+enum class Verdict { explained, unexplained, ambiguous };
+const char* to_string(Verdict verdict);
+
+struct Discovery {
+  std::vector<Step> steps;
+  Verdict verdict = Verdict::unexplained;
+  std::string sentence;           ///< one line: what was missing, how sure, what else
+  std::vector<std::string> tie;   ///< effects that could not be told apart
+  Floor floor;
+};
+
+/// Called with every finished step and refit; what is printed and written is the caller's matter.
+struct DiscoverEvents {
+  std::function<void(const Step&)> step;
+  std::function<void(const std::string& effect)> refitting;
+  std::function<void(const std::string& effect, const Fitted&)> refitted;
+};
+
+std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const ModelForm& form,
+                                                   const VectorXd& start,
+                                                   const DiscoverOptions& options,
+                                                   const DiscoverEvents& events = {});
+
+/// Continues a run from its last step's model.
+std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
+                                                        const DiscoverOptions& options,
+                                                        const DiscoverEvents& events = {});
+
+/// What the diagnosis of the newest model says about the run.
+Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
+              std::string* why);
+
+}  // namespace hookeye

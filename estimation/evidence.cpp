@@ -1,0 +1,98 @@
+#include "estimation/evidence.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace hookeye {
+
+namespace {
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
+  if (H.size() == 0) return H;
+  // scaled, because columns of different units differ by many powers of ten
+  const Eigen::VectorXd scale =
+      H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * H *
+                                                             scale.asDiagonal());
+  Eigen::VectorXd inverse = eigen.eigenvalues();
+  for (double& x : inverse) x = x > 1e-10 ? 1.0 / x : 0.0;
+  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
+         eigen.eigenvectors().transpose() * scale.asDiagonal();
+}
+
+}  // namespace
+
+ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis) {
+  ProjectedHypothesis out;
+  out.first = hypothesis.first;
+  out.base = base;
+  out.typical = hypothesis.typical;
+  out.one_sided = hypothesis.one_sided && hypothesis.count == 1;
+  const auto H_ac = H.block(0, hypothesis.first, base, hypothesis.count);
+  out.to_base = pseudo_inverse(H.topLeftCorner(base, base)) * H_ac;
+  out.M = H.block(hypothesis.first, hypothesis.first, hypothesis.count, hypothesis.count) -
+          H_ac.transpose() * out.to_base;
+  out.M = 0.5 * (out.M + out.M.transpose()).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      hypothesis.typical.asDiagonal() * out.M * hypothesis.typical.asDiagonal());
+  out.modes = eigen.eigenvectors();
+  out.eigenvalues = eigen.eigenvalues().cwiseMax(0.0);
+  return out;
+}
+
+double ProjectedHypothesis::best_signal() const {
+  return eigenvalues.size() ? eigenvalues.maxCoeff() : 0.0;
+}
+
+Eigen::VectorXd ProjectedHypothesis::projected_score(const Eigen::VectorXd& s) const {
+  return s.segment(first, M.cols()) - to_base.transpose() * s.head(base);
+}
+
+Eigen::VectorXd ProjectedHypothesis::step(const Eigen::VectorXd& s) const {
+  Eigen::VectorXd score = modes.transpose() * typical.cwiseProduct(projected_score(s));
+  const double least = 1e-9 * std::max(best_signal(), 1e-300);
+  for (int i = 0; i < score.size(); ++i)
+    score[i] = eigenvalues[i] > least ? -score[i] / eigenvalues[i] : 0.0;
+  Eigen::VectorXd t = typical.cwiseProduct(modes * score);
+  if (one_sided) t = t.cwiseMax(0.0);
+  return t;
+}
+
+double ProjectedHypothesis::fall(const Eigen::VectorXd& s) const {
+  const Eigen::VectorXd t = step(s);
+  return -2.0 * t.dot(projected_score(s)) - t.dot(M * t);
+}
+
+double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
+                    double count, double floor2) {
+  const double null_noise = std::max(floor2, r2 / count);
+  const double null = -0.5 * count * std::log(null_noise) - 0.5 * r2 / null_noise;
+  if (hypothesis.one_sided && hypothesis.projected_score(s)[0] >= 0.0) return 0.0;
+  const Eigen::VectorXd score =
+      hypothesis.modes.transpose() * hypothesis.typical.cwiseProduct(hypothesis.projected_score(s));
+  double best = 0.0;  // prior variance 0: the effect is not there
+  for (int k = -16; k <= 16; ++k) {
+    const double prior = std::pow(10.0, 0.5 * k);  // variance over typical^2
+    double noise = null_noise, gain = 0.0;
+    for (int iteration = 0; iteration < 3; ++iteration) {
+      gain = 0.0;
+      for (int i = 0; i < score.size(); ++i)
+        gain += score[i] * score[i] * prior / (prior * hypothesis.eigenvalues[i] + noise);
+      noise = std::max(floor2, (r2 - gain) / count);
+    }
+    double log_det = 0.0;
+    for (int i = 0; i < score.size(); ++i)
+      log_det += std::log1p(prior * hypothesis.eigenvalues[i] / noise);
+    const double value =
+        -0.5 * count * std::log(noise) - 0.5 * std::max(r2 - gain, 0.0) / noise - 0.5 * log_det;
+    best = std::max(best, value - null + (hypothesis.one_sided ? std::log(2.0) : 0.0));
+  }
+  return best;
+}
+
+double log_mean_exp(const Eigen::VectorXd& values) {
+  const double largest = values.maxCoeff();
+  return largest + std::log((values.array() - largest).exp().mean());
+}
+
+}  // namespace hookeye

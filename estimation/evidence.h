@@ -1,0 +1,53 @@
+// Evidence of a linear hypothesis on a residual: Gaussian marginal likelihood with the effective
+// number of residuals, one maximum-likelihood prior variance, and noise at least the floor
+// (method.md, "Which effect is missing", 3; MacKay 1992).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hookeye {
+
+/// Sums over the effective residuals, in units of noise.
+struct EffectiveSums {
+  Eigen::MatrixXd H;   ///< J^T J over all columns, weighted
+  Eigen::VectorXd s;   ///< J^T r, weighted
+  double r2 = 0.0;     ///< |r|^2, weighted
+  double count = 0.0;  ///< N_eff
+  double floor2 = 1.0; ///< least noise variance
+};
+
+/// A hypothesis: columns of the sums, projected against the first `base` columns.
+struct Hypothesis {
+  int first = 0, count = 0;
+  Eigen::VectorXd typical;   ///< prior scale of each parameter
+  bool one_sided = false;    ///< one parameter that may only grow from its null
+};
+
+/// Quadratic form left after the base columns: M = H_cc - H_ca H_aa^+ H_ac, eigen-decomposed in
+/// units of `typical`.
+struct ProjectedHypothesis {
+  Eigen::MatrixXd M;            ///< count x count, parameter units
+  Eigen::MatrixXd to_base;      ///< H_aa^+ H_ac: base x count
+  Eigen::MatrixXd modes;        ///< columns: eigenvectors of D M D
+  Eigen::VectorXd eigenvalues;
+  Eigen::VectorXd typical;
+  int first = 0, base = 0;
+  bool one_sided = false;
+  /// Largest squared signal over noise that a change of typical size makes: below 4 (two standard
+  /// deviations) these photos cannot test the effect.
+  double best_signal() const;
+  Eigen::VectorXd projected_score(const Eigen::VectorXd& s) const;  ///< s~
+  /// Step t = -M^+ s~ (directions without signal stay at the null).
+  Eigen::VectorXd step(const Eigen::VectorXd& s) const;
+  double fall(const Eigen::VectorXd& s) const;  ///< s~^T M^+ s~
+};
+ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis);
+
+/// log p(r | effect) - log p(r | no effect) for the score s and |r|^2 = r2 (base part removed).
+double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
+                    double count, double floor2);
+
+/// log of the mean of exp: evidence of an effect with several forms.
+double log_mean_exp(const Eigen::VectorXd& values);
+
+}  // namespace hookeye

@@ -1,0 +1,20 @@
+// The floor: what misfit would remain if only noise, texture and shading errors were left.
+#pragma once
+
+#include <string>
+
+#include "estimation/evaluation.h"
+
+namespace hookeye {
+
+struct Floor {
+  double chi = 1.0;
+  std::string source = "noise model";  ///< or "rest photos"
+};
+
+/// From the rest photos, after the residual displacement of every cell is taken out of them
+/// (weight, swelling and placement act at rest too, so the raw residual is no floor). Needs
+/// pictures. Without compared rest photos: 1, "noise model".
+Floor measure_floor(const Scene& scene, const Evaluation& evaluation);
+
+}  // namespace hookeye

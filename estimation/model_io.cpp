@@ -1,0 +1,98 @@
+// model.yaml: what a step of a run believes; usable as -m. The file holds every ingredient with its
+// variant and values; the capture gives the rest.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "capture_io/run.h"
+#include "capture_io/yaml_section.h"
+#include "capture_io/yaml_tree.h"
+#include "estimation/effect.h"
+#include "estimation/model.h"
+
+namespace hookeye {
+
+std::string write_model(const ModelForm& form, const VectorXd& p) {
+  std::string out = "hookeye_model: 1\ningredients:";
+  out += form.ingredients.empty() ? " []\n" : "\n";
+  int offset = 0;
+  for (const auto& ingredient : form.ingredients) {
+    out += fmt::format("  - name: {}\n", ingredient->name());
+    // a JSON string is a yaml string
+    if (!ingredient->variant().empty())
+      out += fmt::format("    variant: {}\n", nlohmann::json(ingredient->variant()).dump());
+    const auto parameters = ingredient->parameters();
+    out += parameters.empty() ? "    values: {}\n" : "    values:\n";
+    for (const auto& parameter : parameters)
+      out += fmt::format("      {}: {:.17g}{}\n", parameter.name, p[offset++],
+                         parameter.unit.empty() ? "" : "  # " + parameter.unit);
+  }
+  return out;
+}
+
+namespace {
+
+/// Values of one ingredient by name; every parameter must be there and no other.
+void read_values(const YamlNode& node, const Ingredient& ingredient, std::vector<double>& values) {
+  std::vector<std::string> known;
+  for (const auto& parameter : ingredient.parameters()) known.push_back(parameter.name);
+  const YamlSection map(node, fmt::format("values of {}", ingredient.name()), known);
+  for (const auto& parameter : ingredient.parameters()) {
+    const YamlNode& given = map.need(parameter.name, "write every parameter under `values`");
+    const double value = read_number(given, parameter.name);
+    if (!(value >= parameter.low && value <= parameter.high))
+      throw InputError(given.place, fmt::format("{} = {} is out of range", parameter.name, value),
+                       fmt::format("between {} and {}", parameter.low, parameter.high));
+    values.push_back(value);
+  }
+}
+
+std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, const ModelForm& base,
+                                                  const Model& model) {
+  const YamlNode& named = section.need("name", "name: material, or an effect's name");
+  const std::string name = read_string(named, "name");
+  std::vector<std::string> known;
+  for (const auto& ingredient : base.ingredients) {
+    if (ingredient->name() == name) return ingredient;
+    known.push_back(ingredient->name());
+  }
+  if (const Effect* effect = find_effect(name)) {
+    const YamlNode* given = section.find("variant");
+    const std::string variant = given ? read_string(*given, "variant") : std::string();
+    if (auto ingredient = effect->candidate(model, variant)) return ingredient;
+    throw InputError(given ? given->place : named.place,
+                     fmt::format("`{}` has no variant `{}` in this capture", name, variant),
+                     "take the variant from a model.yaml of the same capture");
+  }
+  for (const Effect* effect : catalogue()) known.push_back(effect->name());
+  throw InputError(named.place, fmt::format("unknown ingredient `{}`", name), suggest(name, known));
+}
+
+}  // namespace
+
+std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
+                                          std::shared_ptr<const Scene> scene) {
+  const YamlNode root = parse_yaml(read_text(file), file.string());
+  const YamlSection top(root, "a model", {"hookeye_model", "ingredients"});
+  const char* right = "a model.yaml as a run's step holds it (hookeye_model: 1)";
+  const YamlNode& version = top.need("hookeye_model", right);
+  if (read_integer(version, "hookeye_model") != 1)
+    throw InputError(version.place, "a model of another version", right);
+  const ModelForm base = base_form(scene);
+  ModelForm form = base;
+  form.ingredients.clear();
+  std::vector<double> values;
+  for (const YamlNode& node : read_list(top.need("ingredients", right), "ingredients", right)) {
+    const YamlSection section(node, "an ingredient", {"name", "variant", "values"});
+    // variants are chosen on the model so far, as they were when the effect was added
+    const Model so_far = form.realise(Eigen::Map<const VectorXd>(values.data(), values.size()));
+    auto ingredient = find_ingredient(section, base, so_far);
+    read_values(section.need("values", "the ingredient's parameters"), *ingredient, values);
+    form.ingredients.push_back(std::move(ingredient));
+  }
+  return {form, Eigen::Map<const VectorXd>(values.data(), values.size())};
+}
+
+}  // namespace hookeye

@@ -1,0 +1,252 @@
+#include "estimation/step_json.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "capture_io/run.h"
+#include "estimation/compare_picture.h"
+
+namespace hookeye {
+
+using nlohmann::json;
+
+json to_json(const Floor& floor) { return {{"chi", floor.chi}, {"source", floor.source}}; }
+
+namespace {
+
+json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& value,
+                     const VectorXd* low, const VectorXd* high) {
+  json all = json::array();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    json one = {{"name", parameters[i].name},
+                {"unit", parameters[i].unit},
+                {"long_name", parameters[i].long_name},
+                {"value", value[i]}};
+    if (low) one["low"] = (*low)[i], one["high"] = (*high)[i];
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+json effect_json(const EffectScore& score) {
+  json out = {{"effect", score.effect}, {"testable", score.testable}};
+  if (!score.why_not.empty()) out["why_not"] = score.why_not;
+  if (!score.best) return out;
+  out["variant"] = score.best->variant();
+  out["explains"] = score.explains;
+  out["explains_held_out"] = score.explains_held_out;
+  out["dof"] = score.dof;
+  out["evidence"] = score.evidence;
+  out["p_value"] = score.p_value;
+  out["weight"] = score.weight;
+  out["confused_with"] = json::array();
+  out["confusion"] = json::array();
+  for (const auto& other : score.confused_with) {
+    out["confused_with"].push_back(other.effect);
+    out["confusion"].push_back({{"effect", other.effect}, {"cosine", other.cosine}});
+  }
+  out["why"] = score.why;
+  const VectorXd low = score.values - 1.959964 * score.standard_error;
+  const VectorXd high = score.values + 1.959964 * score.standard_error;
+  out["predicted"] = parameters_json(score.best->parameters(), score.values, &low, &high);
+  return out;
+}
+
+}  // namespace
+
+json to_json(const Diagnosis& diagnosis) {
+  json effects = json::array();
+  for (const auto& score : diagnosis.effects) effects.push_back(effect_json(score));
+  return {{"floor", to_json(diagnosis.floor)},
+          {"gate", diagnosis.gate},
+          {"effective_count", diagnosis.effective_count},
+          {"whiteness_p", diagnosis.whiteness_p},
+          {"effects", std::move(effects)}};
+}
+
+json timeline_entry(const Step& step) {
+  const Fitted& fitted = step.fitted;
+  const double held = fitted.evaluation.chi(true);
+  json entry = {
+      {"name", step.name},
+      {"added", step.added.empty() ? json() : json(step.added)},
+      {"chi_fit", fitted.evaluation.chi(false)},
+      {"chi_validate", held > 0.0 ? json(held) : json()},
+      {"rms_px_fit", fitted.evaluation.rms_px(false)},
+      {"rms_px_validate", held > 0.0 ? json(fitted.evaluation.rms_px(true)) : json()},
+      {"converged", fitted.converged},
+      {"iterations", fitted.iterations},
+      {"undetermined", fitted.undetermined},
+      {"parameters",
+       parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high)},
+      {"diagnosis", json::array()}};
+  if (!step.diagnosis.effects.empty()) {
+    const json diagnosis = to_json(step.diagnosis);
+    entry["gate"] = diagnosis["gate"];
+    entry["diagnosis"] = diagnosis["effects"];
+  }
+  for (const auto& [effect, score] : step.rivals)
+    entry["rivals"].push_back({{"effect", effect}, {"score", score}});
+  return entry;
+}
+
+namespace {
+
+/// Sums of squares by a key, as chi.
+json chi_table(const std::map<std::string, std::pair<double, double>>& sums) {
+  json out = json::object();
+  for (const auto& [key, sum] : sums)
+    if (sum.second > 0.0) out[key] = std::sqrt(sum.first / sum.second);
+  return out;
+}
+
+json measured_json(const Scene& scene, const Fitted& fitted) {
+  json all = json::array();
+  for (const auto& example : fitted.evaluation.examples)
+    for (const auto& one : example.measured) {
+      const auto& spec = scene.capture.examples[example.example];
+      const auto& told = spec.measured[one.index];
+      const char* kind = told.kind == MeasuredSpec::Kind::force    ? "force_on"
+                         : told.kind == MeasuredSpec::Kind::moment ? "moment_on"
+                                                                   : "position_of";
+      auto list = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
+      all.push_back({{"example", spec.name}, {"kind", kind}, {"region", told.region},
+                     {"measured", list(told.value)}, {"predicted", list(one.predicted)},
+                     {"sigma", told.sigma}, {"over_sigma", list(one.r)}});
+    }
+  return all;
+}
+
+}  // namespace
+
+json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
+  json photos = json::array();
+  std::map<std::string, std::pair<double, double>> by_example, by_camera;
+  for (const auto& example : fitted.evaluation.examples)
+    for (const auto& photo : example.photos) {
+      const auto& spec = scene.capture.examples[example.example];
+      const std::string& camera = spec.photos[photo.photo].camera;
+      const FlowStatistics flow = flow_statistics(photo.flow);
+      photos.push_back({{"example", spec.name},
+                        {"camera", camera},
+                        {"plane", photo.plane},
+                        {"use", example.held_out ? "validate" : "fit"},
+                        {"chi", photo.chi()},
+                        {"rms_px", photo.flow.rms_px()},
+                        {"pixels", photo.count},
+                        {"effective_count", flow.effective},
+                        {"whiteness_p", flow.whiteness_p},
+                        {"only_noise", flow.whiteness_p > 0.01}});
+      for (auto* sum : {&by_example[spec.name], &by_camera[camera]})
+        sum->first += photo.r2, sum->second += photo.count;
+    }
+  const MeshQuality mesh = quality(scene.body->mesh);
+  return {{"chi_fit", fitted.evaluation.chi(false)},
+          {"chi_validate", fitted.evaluation.chi(true)},
+          {"rms_px_fit", fitted.evaluation.rms_px(false)},
+          {"rms_px_validate", fitted.evaluation.rms_px(true)},
+          {"floor", to_json(floor)},
+          {"photos", std::move(photos)},
+          {"chi_by_example", chi_table(by_example)},
+          {"chi_by_camera", chi_table(by_camera)},
+          {"measured", measured_json(scene, fitted)},
+          {"undetermined", fitted.undetermined},
+          {"converged", fitted.converged},
+          {"iterations", fitted.iterations},
+          {"mesh", {{"nodes", mesh.nodes}, {"elements", mesh.elements},
+                    {"order", scene.body->mesh.order}, {"mean_edge", mesh.mean_edge}}}};
+}
+
+namespace {
+
+std::string parameters_csv(const Fitted& fitted) {
+  std::string csv = "name,unit,long_name,value,low,high\n";
+  const auto parameters = fitted.form.parameters();
+  for (size_t i = 0; i < parameters.size(); ++i)
+    csv += fmt::format("{},{},\"{}\",{:.9g},{:.9g},{:.9g}\n", parameters[i].name,
+                       parameters[i].unit, parameters[i].long_name, fitted.p[i], fitted.low[i],
+                       fitted.high[i]);
+  return csv;
+}
+
+/// Length that one pixel covers at the body: from the depth of its rest centroid.
+double length_per_px(const Scene& scene, const PhotoState& state) {
+  if (state.camera.projection == Camera::Projection::orthographic) return 1.0 / state.camera.fx;
+  return state.camera.depth(scene.body->mesh.X.rowwise().mean()) / state.camera.fx;
+}
+
+void write_photo(const std::filesystem::path& folder, const Scene& scene, const Model& model,
+                 const PhotoEvaluation& photo) {
+  const auto& spec = scene.capture.examples[photo.example];
+  std::string name = spec.name + "-" + spec.photos[photo.photo].camera;
+  const Photo& shown = scene.photos[photo.example][photo.photo];
+  if (shown.planes.size() > 1) name += fmt::format("-{}", "rgb"[photo.plane]);
+  write_image(folder / "residuals" / (name + ".exr"), photo.residual);
+  write_residual_png(folder / "residuals" / (name + ".png"), photo.residual);
+  write_compare_picture(folder / "compare" / (name + ".png"), shown.planes[photo.plane], photo,
+                        name, length_per_px(scene, model.examples[photo.example].photos[photo.photo]),
+                        scene.capture.units.length);
+}
+
+/// Residual of the photos on the nodes: root mean square over the photos that see the node, of the
+/// cells it projects into.
+VectorXd nodal_residual(const Scene& scene, const Model& model, const ExampleEvaluation& example) {
+  const int n = scene.body->mesh.nodes();
+  VectorXd sum = VectorXd::Zero(n), count = VectorXd::Zero(n);
+  for (const auto& photo : example.photos) {
+    const Camera& camera = model.examples[photo.example].photos[photo.photo].camera;
+    const Image& r = photo.residual;
+    for (int a = 0; a < n; ++a) {
+      const Eigen::Vector2d px = camera.project(example.equilibrium->q.segment<3>(3 * a));
+      if (!px.allFinite()) continue;
+      const int cx = static_cast<int>(std::lround(px.x())), cy = static_cast<int>(std::lround(px.y()));
+      for (int y = std::max(0, cy - 4); y <= std::min(r.height - 1, cy + 4); ++y)
+        for (int x = std::max(0, cx - 4); x <= std::min(r.width - 1, cx + 4); ++x)
+          if (!std::isnan(r.at(x, y))) sum[a] += r.at(x, y) * r.at(x, y), count[a] += 1.0;
+    }
+  }
+  return (sum.array() / count.array().max(1.0)).sqrt();
+}
+
+void write_deformed(const std::filesystem::path& file, const Scene& scene, const Model& model,
+                    const ExampleEvaluation& example) {
+  const TetMesh& mesh = scene.body->mesh;
+  const VectorXd& q = example.equilibrium->q;
+  const Eigen::MatrixXd u = Eigen::Map<const Matrix3Xd>(q.data(), 3, mesh.nodes()) - mesh.X;
+  const Eigen::MatrixXd reaction =
+      Eigen::Map<const Matrix3Xd>(example.equilibrium->R.data(), 3, mesh.nodes());
+  const ElementState state = element_state(mesh, model.energy_of(example.example), q);
+  write_vtu(file, mesh,
+            {{"displacement", u, true},
+             {"reaction", reaction, true},
+             {"residual", nodal_residual(scene, model, example).transpose(), true},
+             {"green_strain", state.green_strain, false},
+             {"cauchy_stress", state.cauchy_stress, false},
+             {"von_mises", state.von_mises.transpose(), false},
+             {"J", state.J.transpose(), false}});
+}
+
+}  // namespace
+
+void write_step(const std::filesystem::path& folder, const Scene& scene, const Step& step) {
+  const Fitted& fitted = step.fitted;
+  const Model model = fitted.form.realise(fitted.p);
+  for (const char* sub : {"residuals", "compare", "deformed"})
+    std::filesystem::create_directories(folder / sub);
+  write_text(folder / "model.yaml", write_model(fitted.form, fitted.p));
+  const Floor floor = measure_floor(scene, fitted.evaluation);
+  write_text(folder / "metrics.json", metrics(scene, fitted, floor).dump(1) + "\n");
+  if (!step.diagnosis.effects.empty())
+    write_text(folder / "diagnosis.json", to_json(step.diagnosis).dump(1) + "\n");
+  write_text(folder / "parameters.csv", parameters_csv(fitted));
+  for (const auto& example : fitted.evaluation.examples) {
+    for (const auto& photo : example.photos) write_photo(folder, scene, model, photo);
+    write_deformed(
+        folder / "deformed" / (scene.capture.examples[example.example].name + ".vtu"), scene,
+        model, example);
+  }
+}
+
+}  // namespace hookeye

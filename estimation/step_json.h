@@ -1,0 +1,22 @@
+// The figures of a step as product.md's JSON.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "estimation/discover.h"
+
+namespace hookeye {
+
+nlohmann::json to_json(const Floor& floor);
+nlohmann::json to_json(const Diagnosis& diagnosis);
+/// The step's entry of run.json.
+nlohmann::json timeline_entry(const Step& step);
+/// metrics.json: chi, rms_px and whiteness of every photo, by camera, example and region, measured
+/// forces, what is undetermined, the facts of the capture and of the mesh.
+nlohmann::json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor);
+
+/// Fills a step's folder: model.yaml, metrics.json, diagnosis.json, parameters.csv,
+/// residuals/EXAMPLE-CAMERA.{exr,png}, compare/EXAMPLE-CAMERA.png, deformed/EXAMPLE.vtu.
+void write_step(const std::filesystem::path& folder, const Scene& scene, const Step& step);
+
+}  // namespace hookeye

@@ -1,0 +1,283 @@
+// The program from outside: exit status, standard output, standard error.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+
+std::string read(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+/// A folder of its own, removed at the end.
+class Cli : public testing::Test {
+ protected:
+  struct Result {
+    int status;
+    std::string out, err;
+  };
+
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "hookeye-cli-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Result hookeye(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" HOOKEYE_PROGRAM "' " +
+                                arguments + " >out.txt 2>err.txt </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"),
+            read(folder_ / "err.txt")};
+  }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
+
+  /// A cube of 10 mm on a table; `move` is the prescribed motion of its top.
+  void write_cube(const std::string& move, const std::string& law = "neo-hookean") const {
+    write("cube.obj", R"(v 0 0 0
+v 10 0 0
+v 10 10 0
+v 0 10 0
+v 0 0 10
+v 10 0 10
+v 10 10 10
+v 0 10 10
+f 1 3 2
+f 1 4 3
+f 5 6 7
+f 5 7 8
+f 1 2 6
+f 1 6 5
+f 2 3 7
+f 2 7 6
+f 3 4 8
+f 3 8 7
+f 4 1 5
+f 4 5 8
+)");
+    write("capture.yaml", R"(hookeye: 1
+title: cube
+units: {length: mm, force: N}
+body:
+  surface: cube.obj
+  mesh: {edge: 6, order: 1}
+model:
+  material: {law: )" + law + R"(, mu: 0.05, kappa: 0.5}
+  fit: [mu]
+regions:
+  base: {box: [[-1, -1, -0.1], [11, 11, 0.1]]}
+  top: {box: [[-1, -1, 9.9], [11, 11, 10.1]]}
+examples:
+  pull:
+    supports:
+      - {region: base, fix: [x, y, z]}
+      - {region: top, move: )" +
+                              move + R"(}
+)");
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Cli, HelpListsTheCommandsAndFitsAHundredColumns) {
+  const Result help = hookeye("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_EQ(help.err, "");
+  for (const std::string command : {"check", "mesh", "simulate"}) {
+    EXPECT_THAT(help.out, HasSubstr("  " + command));
+    const Result one = hookeye(command + " --help");
+    EXPECT_EQ(one.status, 0);
+    EXPECT_THAT(one.out, HasSubstr("--json"));
+  }
+  // every command there is, those added later too
+  std::string pages = help.out, line;
+  std::istringstream lines(help.out.substr(help.out.find("Subcommands:")));
+  for (std::getline(lines, line); std::getline(lines, line) && line.starts_with("  ");)
+    pages += hookeye(line.substr(2, line.find(' ', 2) - 2) + " --help").out;
+  std::istringstream all(pages);
+  while (std::getline(all, line)) EXPECT_LE(line.size(), 100U) << line;
+}
+
+TEST_F(Cli, VersionGoesToStandardOutput) {
+  const Result version = hookeye("--version");
+  EXPECT_EQ(version.status, 0);
+  EXPECT_THAT(version.out, ContainsRegex("^hookeye [0-9]+\\.[0-9]+\\.[0-9]+\n$"));
+}
+
+TEST_F(Cli, UsageErrorsAreBadInput) {
+  EXPECT_EQ(hookeye("").status, 2);
+  const Result command = hookeye("simulat x");
+  EXPECT_EQ(command.status, 2);
+  EXPECT_EQ(command.out, "");
+  EXPECT_THAT(command.err, HasSubstr("did you mean simulate"));
+  const Result option = hookeye("simulate x -o y --jsn");
+  EXPECT_EQ(option.status, 2);
+  EXPECT_THAT(option.err, HasSubstr("did you mean --json"));
+  EXPECT_EQ(hookeye("simulate").status, 2);
+  EXPECT_EQ(hookeye("mesh cube.obj -o b.vtu --edge -1").status, 2);
+  const Result asked = hookeye("check --json --frobnicate");
+  EXPECT_EQ(asked.status, 2);
+  EXPECT_EQ(json::parse(asked.out).at("exit"), 2);
+}
+
+TEST_F(Cli, MissingFilesAreBadInput) {
+  for (const std::string arguments :
+       {"check nowhere", "mesh nothing.obj -o body.vtu", "simulate nowhere -o out"}) {
+    const Result result = hookeye(arguments);
+    EXPECT_EQ(result.status, 2) << arguments << ": " << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_THAT(result.err, HasSubstr("no")) << arguments;
+  }
+}
+
+TEST_F(Cli, AnUnknownKeyIsNamedWithItsPlace) {
+  write_cube("{z: 1}");
+  const std::string text = read(folder_ / "capture.yaml");
+  write("capture.yaml", text + "exampels: {}\n");
+  const Result result = hookeye("check .");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, ContainsRegex("capture\\.yaml:[0-9]+:1: "));
+  EXPECT_THAT(result.err, HasSubstr("examples"));
+  const Result as_json = hookeye("check . --json");
+  EXPECT_EQ(as_json.status, 2);
+  const json document = json::parse(as_json.out);
+  EXPECT_EQ(document.at("error").at("kind"), "bad input");
+  EXPECT_EQ(document.at("error").at("line"), 1 + std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST_F(Cli, AnUnknownLawIsNamedWithItsPlace) {
+  write_cube("{z: 1}", "neo-hokean");
+  const Result result = hookeye("check .");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, ContainsRegex("capture\\.yaml:8:"));
+  EXPECT_THAT(result.err, HasSubstr("neo-hookean"));
+}
+
+TEST_F(Cli, CheckSaysWhatItUnderstood) {
+  write_cube("{z: 1}");
+  const Result lines = hookeye("check .");
+  EXPECT_EQ(lines.status, 0) << lines.err;
+  EXPECT_THAT(lines.out, HasSubstr("stress MPa"));
+  EXPECT_THAT(lines.err, HasSubstr("only ratios of stiffness"));  // no force is told
+  EXPECT_THAT(lines.err, HasSubstr("held out"));
+  const Result result = hookeye("check capture.yaml --json");
+  EXPECT_EQ(result.status, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_NEAR(document.at("body").at("volume").get<double>(), 1000.0, 1e-6);
+  ASSERT_EQ(document.at("regions").size(), 2U);
+  for (const auto& region : document.at("regions"))
+    EXPECT_NEAR(region.at("area").get<double>(), 100.0, 1e-6);
+  EXPECT_EQ(document.at("examples").at(0).at("name"), "pull");
+  EXPECT_EQ(document.at("examples").at(0).at("free_rigid_motions"), json::array());
+  EXPECT_EQ(document.at("parameters").at(0).at("name"), "mu");
+}
+
+TEST_F(Cli, CheckNamesFreeRigidMotions) {
+  write_cube("{z: 1}");
+  std::string text = read(folder_ / "capture.yaml");
+  text.replace(text.find("fix: [x, y, z]"), 14, "fix: [z]");
+  write("capture.yaml", text);
+  const Result result = hookeye("check . --json");
+  EXPECT_EQ(result.status, 0) << result.err;
+  // sliding along x, along y, turning about z
+  EXPECT_EQ(json::parse(result.out).at("examples").at(0).at("free_rigid_motions").size(), 3U);
+  EXPECT_THAT(result.err, HasSubstr("leaves the body free"));
+}
+
+TEST_F(Cli, MeshFillsASurfaceThatSimulateCanUse) {
+  write_cube("{x: 0, y: 0, z: 1}");
+  const Result result = hookeye("mesh cube.obj -o made/body.vtu --edge 4 --order 2 --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json quality = json::parse(result.out).at("quality");
+  EXPECT_NEAR(quality.at("volume").get<double>(), 1000.0, 1e-6);
+  EXPECT_EQ(quality.at("order"), 2);
+  EXPECT_GT(quality.at("min_dihedral_deg").get<double>(), 5.0);
+  ASSERT_TRUE(fs::exists(folder_ / "made/body.vtu"));
+
+  std::string text = read(folder_ / "capture.yaml");
+  const std::string body = "surface: cube.obj\n  mesh: {edge: 6, order: 1}";
+  text.replace(text.find(body), body.size(), "volume: made/body.vtu");
+  write("capture.yaml", text);
+  const Result simulated = hookeye("simulate . -o out --json");
+  ASSERT_EQ(simulated.status, 0) << simulated.err;
+  EXPECT_EQ(json::parse(simulated.out).at("unknowns"), quality.at("unknowns"));
+
+  EXPECT_EQ(hookeye("mesh cube.obj -o body.txt").status, 2);
+}
+
+/// First Piola-Kirchhoff stress of the neo-Hookean law in uniaxial stress at stretch l: the sides a
+/// are where dW/da = 0, found by bisection. W(l, a) as in the capture's laws.
+double uniaxial_stress(double mu, double kappa, double l) {
+  const auto W = [&](double stretch, double a) {
+    const double J = stretch * a * a;
+    return mu / 2 * (std::pow(J, -2.0 / 3) * (stretch * stretch + 2 * a * a) - 3) +
+           kappa / 2 * (J - 1) * (J - 1);
+  };
+  const double h = 1e-6;
+  double low = 0.5, high = 1.5;
+  while (high - low > 1e-14) {
+    const double a = (low + high) / 2;
+    (W(l, a + h) > W(l, a - h) ? high : low) = a;
+  }
+  // dW/da = 0, so an error of a enters squared
+  return (W(l + h, low) - W(l - h, low)) / (2 * h);
+}
+
+TEST_F(Cli, SimulateWritesEveryExampleAndBalancesTheSupports) {
+  write_cube("{z: 1}");
+  // Free to contract: the state is uniform, so that any mesh gives the closed form.
+  std::string text = read(folder_ / "capture.yaml");
+  text.replace(text.find("fix: [x, y, z]"), 14, "fix: [z]");
+  text.replace(text.find("examples:"), 9,
+               "  left: {box: [[-0.1, -1, -1], [0.1, 11, 11]]}\n"
+               "  front: {box: [[-1, -0.1, -1], [11, 0.1, 11]]}\nexamples:");
+  text += "      - {region: left, fix: [x]}\n      - {region: front, fix: [y]}\n";
+  write("capture.yaml", text);
+  const Result result = hookeye("simulate . -o out --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out/deformed/pull.vtu"));
+  const json example = json::parse(result.out).at("examples").at(0);
+  const double base = example.at("supports").at(0).at("force").at(2);
+  const double top = example.at("supports").at(1).at("force").at(2);
+  EXPECT_NEAR(top, 100.0 * uniaxial_stress(0.05, 0.5, 1.1), 1e-7);
+  EXPECT_NEAR(top + base, 0.0, 1e-7);
+  const Result lines = hookeye("simulate . -o again");
+  EXPECT_EQ(lines.status, 0);
+  EXPECT_THAT(lines.out, HasSubstr("pull"));
+  EXPECT_EQ(read(folder_ / "out/deformed/pull.vtu"), read(folder_ / "again/deformed/pull.vtu"));
+}
+
+TEST_F(Cli, NoEquilibriumIsExitThreeWithExampleAndLoad) {
+  write_cube("{x: 0, y: 0, z: -20}");  // the top would have to pass through the base
+  const Result result = hookeye("simulate . -o out --json");
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("pull"));
+  const json error = json::parse(result.out).at("error");
+  EXPECT_EQ(error.at("example"), "pull");
+  EXPECT_GT(error.at("load_fraction").get<double>(), 0.05);
+  EXPECT_LT(error.at("load_fraction").get<double>(), 0.5);
+  EXPECT_FALSE(fs::exists(folder_ / "out/deformed/pull.vtu"));
+}
+
+}  // namespace

@@ -1,0 +1,1 @@
+#include "meshing/tet_mesh.h"
