@@ -15,7 +15,7 @@ using States = std::vector<VectorXd>;
 States solve(const ModelForm& form, const VectorXd& p, const States& start) {
   const Model model = form.realise(p);
   EquilibriumOptions options;
-  options.tolerance = 1e-11;
+  options.tolerance = 1e-10;
   States q;
   for (size_t e = 0; e < model.examples.size(); ++e) {
     EquilibriumSolver solver(model.scene->mesh());
