@@ -123,12 +123,13 @@ class Reporter final : public ceres::IterationCallback {
 
  private:
   /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
-  /// white noise; below 1e-7 of |r|^2 rays that change triangles hide it. A refused step that
-  /// changed next to nothing has met the same limit.
+  /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
+  /// apart in a modulus differ by some 1e-5). A refused step that changed next to nothing has met
+  /// the same limit.
   bool done(const ceres::IterationSummary& summary) const {
     if (summary.step_is_successful)
-      return cost_.promised() < std::max(0.01, 1e-7 * cost_.r2());
-    return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-5 * summary.cost;
+      return cost_.promised() < std::max(0.01, 1e-6 * cost_.r2());
+    return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
   }
 
   const FitOptions& options_;
