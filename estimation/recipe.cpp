@@ -206,10 +206,13 @@ HiddenRecipe read_hidden(const YamlNode& node) {
     hidden.variant = read_string(*variant, "variant");
     hidden.variant_place = variant->place;
   }
-  const YamlNode& values = section.need("values", "values: {gravity.z: -9810}");
-  hidden.values_place = values.place;
-  for (const YamlNode::Entry& entry : read_named(values, "values"))
-    hidden.values[entry.key] = {read_number(entry.value, entry.key), entry.place};
+  hidden.values_place = effect.place;
+  if (const YamlNode* values = section.find("values")) {
+    hidden.drawn = false;
+    hidden.values_place = values->place;
+    for (const YamlNode::Entry& entry : read_named(*values, "values"))
+      hidden.values[entry.key] = {read_number(entry.value, entry.key), entry.place};
+  }
   if (const YamlNode* size = section.find("rms_px"))
     hidden.rms_px = read_positive(*size, "rms_px");
   return hidden;

@@ -64,6 +64,7 @@ struct HiddenRecipe {
     Place place;
   };
   std::string effect, variant;
+  bool drawn = true;                    ///< `values` left out: drawn by the seed, like `variant`
   std::map<std::string, Value> values;  ///< what is not named stays at its null
   /// Values are scaled in common until they move the pictures by this much; empty: as they are.
   std::optional<double> rms_px;

@@ -1,10 +1,15 @@
-#include "estimation/synth_truth.h"
+    const bool still = !(put.rms_px > 1e-9);  // light, exposure: there is nothing to scale
+    const bool reached = hidden.rms_px && std::abs(put.rms_px / *hidden.rms_px - 1.0) < 0.03;
+    const bool at_bound = factor == largest && put.rms_px < hidden.rms_px.value_or(0.0);
+    if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {#include "estimation/synth_truth.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -51,8 +56,9 @@ std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::sol
 
 namespace {
 
+/// The variant that the recipe names; the only one; or, where values are drawn too, a drawn one.
 std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effect& effect,
-                                         const Model& model) {
+                                         const Model& model, std::mt19937_64& random) {
   if (auto found = effect.candidate(model, hidden.variant)) return found;
   std::string why;
   const auto all = effect.candidates(model, &why);
@@ -60,6 +66,7 @@ std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effec
     throw InputError(hidden.place, fmt::format("`{}` cannot be hidden in this capture", hidden.effect),
                      why);
   if (hidden.variant.empty() && all.size() == 1) return all.front();
+  if (hidden.variant.empty() && hidden.drawn) return all[random() % all.size()];
   std::vector<std::string> known;
   for (const auto& one : all)
     if (known.size() < 8) known.push_back(fmt::format("\"{}\"", one->variant()));
@@ -99,6 +106,32 @@ VectorXd told_values(const HiddenRecipe& hidden, const std::vector<Parameter>& p
   return values;
 }
 
+/// Each parameter one to two typical changes off its null, to a side that its bounds allow.
+VectorXd drawn_values(const std::vector<Parameter>& parameters, std::mt19937_64& random) {
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    const double size = uniform(random, 1.0, 2.0) * p.typical;
+    const bool up = random() % 2 == 0;
+    values[i] = p.value + (up ? size : -size);
+    if (values[i] > p.high || values[i] < p.low) values[i] = p.value + (up ? -size : size);
+    values[i] = std::clamp(values[i], p.low, p.high);
+  }
+  return values;
+}
+
+/// Largest factor on values - null that stays within 90 % of the way to every bound.
+double largest_factor(const std::vector<Parameter>& parameters, const VectorXd& null,
+                      const VectorXd& values) {
+  double factor = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const double step = values[i] - null[i];
+    const double bound = step > 0.0 ? parameters[i].high : parameters[i].low;
+    if (step != 0.0) factor = std::min(factor, 0.9 * (bound - null[i]) / step);
+  }
+  return factor;
+}
+
 /// Root mean square of the motion of the surface's points in the fitted pictures.
 double rms_px(const Scene& scene, const Model& a, const std::vector<TruthSolver::State>& in_a,
               const Model& b, const std::vector<TruthSolver::State>& in_b) {
@@ -120,19 +153,22 @@ double rms_px(const Scene& scene, const Model& a, const std::vector<TruthSolver:
 }
 
 /// Adds one hidden effect to the truth found so far.
-std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, TruthSolver& solver,
-                                       Truth& truth) {
+std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, unsigned seed,
+                                       TruthSolver& solver, Truth& truth) {
+  auto random = random_of(seed, "hidden " + hidden.effect);
   PutIn put;
   put.effect = find_effect(hidden.effect);
-  put.ingredient = choose(hidden, *put.effect, truth.model);
+  put.ingredient = choose(hidden, *put.effect, truth.model, random);
   const auto parameters = put.ingredient->parameters();
-  const VectorXd told = told_values(hidden, parameters);
+  const VectorXd told =
+      hidden.drawn ? drawn_values(parameters, random) : told_values(hidden, parameters);
   VectorXd null(parameters.size());
   for (size_t i = 0; i < parameters.size(); ++i) null[i] = parameters[i].value;
   ModelForm form = truth.form;
   form.ingredients.push_back(put.ingredient);
   const Scene& scene = *truth.model.scene;
-  double factor = 1.0;
+  const double largest = hidden.drawn ? largest_factor(parameters, null, told) : 1e300;
+  double factor = std::min(1.0, largest);
   const int most = hidden.rms_px ? 6 : 1;
   for (int i = 0; i < most; ++i) {
     put.values = null + factor * (told - null);
@@ -156,10 +192,10 @@ std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, TruthSolver& 
       truth.hidden.push_back(std::move(put));
       return {};
     }
-    if (!(put.rms_px > 1e-9))
+    if (still)
       throw InputError(hidden.place, fmt::format("`{}` moves nothing in these pictures", hidden.effect),
                        "leave rms_px out and give the values as they are");
-    factor *= *hidden.rms_px / put.rms_px;
+    factor = std::min(factor * *hidden.rms_px / put.rms_px, largest);
   }
   return {};
 }
@@ -178,7 +214,7 @@ std::variant<Truth, NumericalFailure> find_truth(const Recipe& recipe,
   if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
   truth.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
   for (const HiddenRecipe& hidden : recipe.hidden)
-    if (auto failure = put_in(hidden, solver, truth)) return std::move(*failure);
+    if (auto failure = put_in(hidden, recipe.seed, solver, truth)) return std::move(*failure);
   return truth;
 }
 
