@@ -1,7 +1,4 @@
-    const bool still = !(put.rms_px > 1e-9);  // light, exposure: there is nothing to scale
-    const bool reached = hidden.rms_px && std::abs(put.rms_px / *hidden.rms_px - 1.0) < 0.03;
-    const bool at_bound = factor == largest && put.rms_px < hidden.rms_px.value_or(0.0);
-    if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {#include "estimation/synth_truth.h"
+#include "estimation/synth_truth.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -182,8 +179,10 @@ std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, unsigned seed
     if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
     auto& states = std::get<std::vector<TruthSolver::State>>(solved);
     put.rms_px = rms_px(scene, truth.model, truth.states, model, states);
-    if (i + 1 == most ||
-        std::abs(put.rms_px / hidden.rms_px.value_or(put.rms_px) - 1.0) < 0.03) {
+    const bool still = !(put.rms_px > 1e-9);  // light, exposure: there is nothing to scale
+    const bool reached = hidden.rms_px && std::abs(put.rms_px / *hidden.rms_px - 1.0) < 0.03;
+    const bool at_bound = factor == largest && put.rms_px < hidden.rms_px.value_or(0.0);
+    if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {
       put.sentence = put.effect->sentence(truth.model, *put.ingredient, put.values);
       truth.form = std::move(form);
       truth.p = std::move(p);

@@ -144,8 +144,9 @@ TEST_F(SynthTest, TheTruthStandsBesideTheCaptureAndTheCaptureDoesNotTellIt) {
   EXPECT_THAT(bytes(made.truth), testing::HasSubstr("-9810"));
   for (const auto& file : files_of(made.capture)) {
     EXPECT_THAT(file, testing::Not(testing::HasSubstr("truth")));
-    if (fs::path(file).extension() == ".yaml")
+    if (fs::path(file).extension() == ".yaml") {
       EXPECT_THAT(bytes(made.capture / file), testing::Not(testing::HasSubstr("gravity")));
+    }
   }
   ASSERT_EQ(made.hidden.size(), 1u);
   EXPECT_GT(made.hidden[0].rms_px, 0.05);
@@ -182,6 +183,15 @@ TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
     fs::remove_all(folder);
     fs::remove(truth_file(folder));
   }
+}
+
+TEST_F(SynthTest, DrawsWhatTheRecipeLeavesOpenFromTheSeed) {
+  const std::string text =
+      recipe_text("hidden:\n  - {effect: anisotropy, rms_px: 0.4}\n", kFast);
+  const Synthesis a = make(text, "a"), b = make(text, "b");
+  EXPECT_NEAR(a.hidden.at(0).rms_px, 0.4, 0.02);
+  EXPECT_EQ(bytes(a.truth), bytes(b.truth));
+  EXPECT_THAT(bytes(a.truth), testing::HasSubstr("along ("));
 }
 
 /// Photos and measurements of the truth differ from the true model by their noise alone, where mesh
