@@ -25,7 +25,7 @@ Eigen::Vector2d Camera::project(const Eigen::Vector3d& x_in_world, Jacobian3* d_
                                 Jacobian7* d_dcamera) const {
   const Eigen::Vector3d x = R * x_in_world + t;
   const Eigen::Vector2d f(fx, fy);
-  Eigen::Vector2d plane;                 // distorted normalised coordinates
+  Eigen::Vector2d plane;                  // distorted normalised coordinates
   Eigen::Matrix<double, 2, 3> dplane_dx;  // by camera coordinates
   if (projection == Projection::orthographic) {
     plane = x.head<2>();

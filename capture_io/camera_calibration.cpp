@@ -35,11 +35,11 @@ class Calibration {
     throw InputError({file_}, wrong, right);
   }
   double number(const cv::FileNode& node, const std::string& name) const {
-    if (!node.isInt() && !node.isReal()) fail(fmt::format("`{}` holds no number", name),
-                                              "a finite number is expected");
+    if (!node.isInt() && !node.isReal())
+      fail(fmt::format("`{}` holds no number", name), "a finite number is expected");
     const double value = static_cast<double>(node);
-    if (!std::isfinite(value)) fail(fmt::format("`{}` is not finite", name),
-                                    "a finite number is expected");
+    if (!std::isfinite(value))
+      fail(fmt::format("`{}` is not finite", name), "a finite number is expected");
     return value;
   }
   /// A matrix {rows, cols, data} or a plain list (a column).
@@ -47,7 +47,8 @@ class Calibration {
     Numbers result;
     const cv::FileNode data = node.isMap() ? node["data"] : node;
     if (!data.isSeq() || data.size() > 1000)
-      fail(fmt::format("`{}` is not a matrix", name), "write !!opencv-matrix with rows, cols, data");
+      fail(fmt::format("`{}` is not a matrix", name),
+           "write !!opencv-matrix with rows, cols, data");
     for (const cv::FileNode& item : data) result.values.push_back(number(item, name));
     result.rows = node.isMap() ? static_cast<int>(number(node["rows"], name))
                                : static_cast<int>(result.values.size());
@@ -67,11 +68,14 @@ class Calibration {
 void read_intrinsics(const Calibration& from, Camera& camera) {
   const auto [name, node] =
       from.find({"camera_matrix", "K", "cameraMatrix", "Camera_Matrix", "intrinsic_matrix", "M1"});
-  if (name.empty()) from.fail("there is no camera matrix", "the key `camera_matrix` or `K` is read");
+  if (name.empty())
+    from.fail("there is no camera matrix", "the key `camera_matrix` or `K` is read");
   const Numbers k = from.numbers(node, name);
   if (k.values.size() != 9)
-    from.fail(fmt::format("`{}` has {} numbers", name, k.values.size()), "a 3 x 3 matrix is expected");
-  camera.fx = k.values[0], camera.fy = k.values[4], camera.cx = k.values[2], camera.cy = k.values[5];
+    from.fail(fmt::format("`{}` has {} numbers", name, k.values.size()),
+              "a 3 x 3 matrix is expected");
+  camera.fx = k.values[0], camera.fy = k.values[4], camera.cx = k.values[2],
+  camera.cy = k.values[5];
   if (!(camera.fx > 0) || !(camera.fy > 0))
     from.fail(fmt::format("the focal lengths are {} and {} px", camera.fx, camera.fy),
               "both must be above zero");

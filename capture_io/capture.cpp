@@ -30,8 +30,7 @@ YamlNode load_yaml(const fs::path& file) {
 void check_version(const YamlSection& top) {
   const YamlNode& version = top.need("hookeye", "a capture begins with `hookeye: 1`");
   if (version.kind != YamlNode::Kind::scalar || version.text != "1")
-    throw InputError(version.place,
-                     fmt::format("the capture has format {}", describe(version)),
+    throw InputError(version.place, fmt::format("the capture has format {}", describe(version)),
                      "this program reads format 1: write `hookeye: 1`");
 }
 
@@ -39,22 +38,22 @@ void check_version(const YamlSection& top) {
 void check_references(const Capture& capture) {
   const BodySpec& body = capture.body;
   if (body.texture == BodySpec::Texture::rest) {
-    const auto example = std::find_if(
-        capture.examples.begin(), capture.examples.end(),
-        [&](const ExampleSpec& e) { return e.name == body.texture_example; });
+    const auto example =
+        std::find_if(capture.examples.begin(), capture.examples.end(),
+                     [&](const ExampleSpec& e) { return e.name == body.texture_example; });
     if (example == capture.examples.end())
-      throw InputError(body.texture_place,
-                       fmt::format("there is no example `{}` to take the texture from",
-                                   body.texture_example),
-                       suggest(body.texture_example, names_of(capture.examples)));
+      throw InputError(
+          body.texture_place,
+          fmt::format("there is no example `{}` to take the texture from", body.texture_example),
+          suggest(body.texture_example, names_of(capture.examples)));
     const bool has_image =
         std::any_of(example->photos.begin(), example->photos.end(),
                     [](const PhotoSpec& p) { return p.kind == PhotoSpec::Kind::image; });
     if (!has_image)
-      throw InputError(body.texture_place,
-                       fmt::format("example `{}` has no photos to take the texture from",
-                                   body.texture_example),
-                       "name an example with photos, usually the one at rest");
+      throw InputError(
+          body.texture_place,
+          fmt::format("example `{}` has no photos to take the texture from", body.texture_example),
+          "name an example with photos, usually the one at rest");
   }
 }
 
@@ -111,17 +110,20 @@ Capture read_capture(const fs::path& path) {
   if (const YamlNode* title = top.find("title")) capture.title = read_string(*title, "title");
   capture.units = read_units(top.need("units", "write `units: {length: mm, force: N}`"));
   capture.body = read_body(top.need("body", "write `body: {surface: rest.obj}`"), folder);
-  read_model(top.need("model", "write `model: {material: {law: neo-hookean, mu: ..., kappa: ...}}`"),
-             capture);
-  if (const YamlNode* cameras = top.find("cameras")) capture.cameras = read_cameras(*cameras, folder);
+  read_model(
+      top.need("model", "write `model: {material: {law: neo-hookean, mu: ..., kappa: ...}}`"),
+      capture);
+  if (const YamlNode* cameras = top.find("cameras"))
+    capture.cameras = read_cameras(*cameras, folder);
   if (const YamlNode* light = top.find("light")) capture.light = read_light(*light);
   PhotoDefaults defaults;
   if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);
   capture.background = defaults.photo.background;
-  if (const YamlNode* regions = top.find("regions")) capture.regions = read_regions(*regions, folder);
-  capture.examples = read_examples(
-      top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`"), capture, defaults,
-      folder);
+  if (const YamlNode* regions = top.find("regions"))
+    capture.regions = read_regions(*regions, folder);
+  capture.examples =
+      read_examples(top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`"),
+                    capture, defaults, folder);
   check_references(capture);
   return capture;
 }

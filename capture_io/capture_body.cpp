@@ -11,7 +11,7 @@ namespace {
 void read_texture(const YamlNode& node, const CaptureFolder& folder, BodySpec& body) {
   const YamlSection texture(node, "texture", {"image", "encoding", "from", "uniform"});
   body.texture_place = node.place;
-  const std::string& source = texture.one_of({"image", "from", "uniform"});
+  const std::string source = texture.one_of({"image", "from", "uniform"});
   const YamlNode& value = *texture.find(source);
   if (const YamlNode* encoding = texture.find("encoding")) {
     if (source != "image")
@@ -96,7 +96,8 @@ std::vector<MaterialSpec> read_materials(const YamlNode& node, const BodySpec& b
       });
   if (!by_region) return {read_material(node, "")};
   if (body.volume.empty())
-    throw InputError(node.place, "material names regions of the body, but the body has no volume mesh",
+    throw InputError(node.place,
+                     "material names regions of the body, but the body has no volume mesh",
                      "give `body: {volume: FILE}` with named groups, or one law");
   std::vector<MaterialSpec> materials;
   for (const YamlNode::Entry& entry : node.entries)

@@ -105,12 +105,16 @@ Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
       throw InputError(projection->place, "an OpenCV calibration describes a perspective camera",
                        "give `intrinsics: {scale: ...}` for an orthographic one");
   }
-  if (const YamlNode* size = section.find("size")) read_size(*size, camera);
-  else if (camera.width == 0) section.need("size", "write `size: [800, 600]`");
+  if (const YamlNode* size = section.find("size"))
+    read_size(*size, camera);
+  else if (camera.width == 0)
+    section.need("size", "write `size: [800, 600]`");
   if (!calibration)
     read_intrinsics(
-        section.need("intrinsics", "give `intrinsics`, or `calibration: FILE` from OpenCV"), camera);
-  if (const YamlNode* pose = section.find("pose")) read_pose(*pose, camera);
+        section.need("intrinsics", "give `intrinsics`, or `calibration: FILE` from OpenCV"),
+        camera);
+  if (const YamlNode* pose = section.find("pose"))
+    read_pose(*pose, camera);
   else if (!has_pose)
     section.need("pose", "write `pose: {rotation: [...], translation: [...]}` (world to camera)");
   return camera;

@@ -104,7 +104,8 @@ SupportSpec ExampleReader::support(const YamlNode& node) {
   }
   for (const char* other : {"fix", "move"})
     if (const YamlNode::Entry* entry = section.entry(other))
-      throw InputError(entry->place, fmt::format("{} has both `rigid` and `{}`", section.what(), other),
+      throw InputError(entry->place,
+                       fmt::format("{} has both `rigid` and `{}`", section.what(), other),
                        "keep one of the two");
   for (int i = 0; i < 3; ++i) claim(rigid_motion->place, support.region, i);
   if (rigid_motion->kind == YamlNode::Kind::scalar && rigid_motion->text == "fit") {
@@ -122,16 +123,18 @@ LoadSpec ExampleReader::load(const YamlNode& node) const {
   load.place = node.place;
   load.region =
       region(section.need("region", "write `{region: grip, force: [0, 0, 2.5]}`"), section.what());
-  const std::string& kind = section.one_of({"force", "pressure"});
-  if (kind == "force") load.force = read_vector3(*section.find(kind), "force");
-  else load.pressure = read_number(*section.find(kind), "pressure");
+  const std::string kind = section.one_of({"force", "pressure"});
+  if (kind == "force")
+    load.force = read_vector3(*section.find(kind), "force");
+  else
+    load.pressure = read_number(*section.find(kind), "pressure");
   return load;
 }
 
 MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
   const YamlSection section(node, "a measurement" + of_,
                             {"force_on", "moment_on", "position_of", "about", "value", "sigma"});
-  const std::string& kind = section.one_of({"force_on", "moment_on", "position_of"});
+  const std::string kind = section.one_of({"force_on", "moment_on", "position_of"});
   const YamlNode& subject = *section.find(kind);
   MeasuredSpec measured;
   measured.place = node.place;
@@ -165,8 +168,8 @@ ExampleSpec read_example(const YamlNode::Entry& entry, const Capture& capture,
   if (const YamlNode* use = section.find("use"))
     example.validate = read_choice(*use, "use of " + what, {"fit", "validate"}) == "validate";
   if (const YamlNode* supports = section.find("supports"))
-    for (const YamlNode& item : read_list(*supports, "supports of " + what,
-                                          "write `- {region: base, fix: [x, y, z]}`"))
+    for (const YamlNode& item :
+         read_list(*supports, "supports of " + what, "write `- {region: base, fix: [x, y, z]}`"))
       example.supports.push_back(reader.support(item));
   if (const YamlNode* loads = section.find("loads"))
     for (const YamlNode& item :

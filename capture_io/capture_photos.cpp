@@ -73,11 +73,11 @@ void check_same_size(const Place& place, const std::string& what, const fs::path
                      const Camera& camera) {
   const ImageHeader header = read_image_header(file);
   if (header.width != camera.width || header.height != camera.height)
-    throw InputError(place,
-                     fmt::format("{} has {} x {} pixels, camera `{}` has {} x {}", what,
-                                 header.width, header.height, camera.name, camera.width,
-                                 camera.height),
-                     "photos are compared at the size that the camera was calibrated for");
+    throw InputError(
+        place,
+        fmt::format("{} has {} x {} pixels, camera `{}` has {} x {}", what, header.width,
+                    header.height, camera.name, camera.width, camera.height),
+        "photos are compared at the size that the camera was calibrated for");
 }
 
 PhotoSpec read_photo_of(const YamlNode::Entry& entry, const std::string& example,
@@ -91,8 +91,7 @@ PhotoSpec read_photo_of(const YamlNode::Entry& entry, const std::string& example
   Place mask_place = photo.place;
   if (entry.value.kind == YamlNode::Kind::map) {
     const YamlSection section(
-        entry.value, what,
-        {"file", "kind", "encoding", "noise", "channels", "mask", "background"});
+        entry.value, what, {"file", "kind", "encoding", "noise", "channels", "mask", "background"});
     file = &section.need("file", "write `{file: photos/pull_left.png}`");
     const bool silhouette_here =
         section.has("kind") && section.find("kind")->text == "silhouette" && !defaults.kind_given;
@@ -156,10 +155,10 @@ std::vector<PhotoSpec> read_photos(const YamlNode& node, const std::string& exam
     const auto camera = std::find_if(capture.cameras.begin(), capture.cameras.end(),
                                      [&](const Camera& c) { return c.name == entry.key; });
     if (camera == capture.cameras.end())
-      throw InputError(entry.place,
-                       fmt::format("example `{}` has a photo of the unknown camera `{}`", example,
-                                   entry.key),
-                       suggest(entry.key, names_of(capture.cameras)));
+      throw InputError(
+          entry.place,
+          fmt::format("example `{}` has a photo of the unknown camera `{}`", example, entry.key),
+          suggest(entry.key, names_of(capture.cameras)));
     photos.push_back(read_photo_of(entry, example, *camera, defaults, folder));
   }
   return photos;

@@ -20,8 +20,8 @@ std::vector<RegionSpec> read_regions(const YamlNode& node, const CaptureFolder& 
 
 /// The photo keys that may stand once for all.
 struct PhotoDefaults {
-  PhotoSpec photo;           ///< without camera and file
-  bool kind_given = false;   ///< silhouettes by default: encoding and noise hold for them
+  PhotoSpec photo;          ///< without camera and file
+  bool kind_given = false;  ///< silhouettes by default: encoding and noise hold for them
 };
 PhotoDefaults read_photo_defaults(const YamlNode& node, const CaptureFolder& folder);
 /// The photos of one example; sizes and channels are checked against the files' headers.

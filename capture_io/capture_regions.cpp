@@ -59,7 +59,7 @@ RegionSpec read_region(const YamlNode::Entry& entry, const CaptureFolder& folder
   const std::string of = " of " + what;
   const std::vector<std::string> shapes{"box", "faces", "sphere", "halfspace", "group"};
   const YamlSection section(entry.value, what, shapes);
-  const std::string& shape = section.one_of(shapes);
+  const std::string shape = section.one_of(shapes);
   const YamlNode& value = *section.find(shape);
   RegionSpec region;
   region.name = entry.key;
@@ -78,9 +78,8 @@ RegionSpec read_region(const YamlNode::Entry& entry, const CaptureFolder& folder
   } else if (shape == "halfspace") {
     const YamlSection half(value, "halfspace" + of, {"point", "normal"});
     const std::string right = "write `halfspace: {point: [0, 0, 80], normal: [0, 0, 1]}`";
-    region.shape =
-        RegionSpec::Halfspace{read_vector3(half.need("point", right), "point" + of),
-                              read_direction(half.need("normal", right), "normal" + of)};
+    region.shape = RegionSpec::Halfspace{read_vector3(half.need("point", right), "point" + of),
+                                         read_direction(half.need("normal", right), "normal" + of)};
   } else {
     region.shape = RegionSpec::Group{read_string(value, "group" + of)};
   }

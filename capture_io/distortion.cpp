@@ -46,9 +46,9 @@ Eigen::Vector2d distort(const std::vector<double>& coefficients, const Eigen::Ve
       y * radial + m.p1 * (r2 + 2 * y * y) + 2 * m.p2 * x * y + m.s3 * r2 + m.s4 * r4);
   Eigen::Matrix2d jacobian;
   // d radial / d r2, with dr2/dx = 2x and dr4/dr2 = 2 r2.
-  const double dradial = ((m.k1 + 2 * m.k2 * r2 + 3 * m.k3 * r4) -
-                          radial * (m.k4 + 2 * m.k5 * r2 + 3 * m.k6 * r4)) /
-                         below;
+  const double dradial =
+      ((m.k1 + 2 * m.k2 * r2 + 3 * m.k3 * r4) - radial * (m.k4 + 2 * m.k5 * r2 + 3 * m.k6 * r4)) /
+      below;
   const double prism_x = m.s1 + 2 * m.s2 * r2, prism_y = m.s3 + 2 * m.s4 * r2;
   const double shared = 2 * x * y * dradial + 2 * m.p1 * x + 2 * m.p2 * y;
   jacobian(0, 0) = radial + 2 * x * x * dradial + 2 * m.p1 * y + 6 * m.p2 * x + 2 * x * prism_x;
@@ -78,8 +78,9 @@ Eigen::Vector2d undistort(const std::vector<double>& coefficients,
     Eigen::Matrix2d jacobian;
     const Eigen::Vector2d miss = distort(coefficients, x, &jacobian) - distorted;
     if (!miss.allFinite()) break;
-    if (miss.norm() <= 1e-12 * (1 + distorted.norm())) return x;
     x -= jacobian.inverse() * miss;
+    // Newton squares the error: the step just taken leaves rounding only.
+    if (miss.norm() <= 1e-9 * (1 + distorted.norm())) return x;
   }
   const double nan = std::numeric_limits<double>::quiet_NaN();
   return {nan, nan};

@@ -12,8 +12,8 @@ namespace hookeye {
 Eigen::Vector2d distort(const std::vector<double>& coefficients, const Eigen::Vector2d& ideal,
                         Eigen::Matrix2d* d_dideal = nullptr);
 
-/// The inverse: fixed-point steps, then Newton to 1e-12. NaN where the model has no inverse there
-/// (a strong polynomial folds back far outside the picture).
+/// The inverse: fixed-point steps, then Newton to rounding. NaN where the model has no inverse
+/// there (a strong polynomial folds back far outside the picture).
 Eigen::Vector2d undistort(const std::vector<double>& coefficients,
                           const Eigen::Vector2d& distorted);
 

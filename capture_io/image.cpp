@@ -37,6 +37,23 @@ bool jpeg_is_complete(const fs::path& file) {
   return scan != std::string::npos && end != std::string::npos && end > scan;
 }
 
+/// libpng reports a missing rest on standard error before it returns; walking the chunks (length,
+/// name, data, checksum) finds it silently and sooner.
+bool png_has_chunk(const fs::path& file, const char* name) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  for (uintmax_t at = 8; at + 12 <= size;) {
+    unsigned char head[8] = {};
+    stream.seekg(static_cast<std::streamoff>(at));
+    if (!stream.read(reinterpret_cast<char*>(head), sizeof head)) return false;
+    if (std::equal(head + 4, head + 8, name)) return true;
+    at += 12 + (uintmax_t{head[0]} << 24 | uintmax_t{head[1]} << 16 | uintmax_t{head[2]} << 8 |
+                uintmax_t{head[3]});
+  }
+  return false;
+}
+
 void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
   const double pixels = double(spec.width) * spec.height;
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
@@ -59,12 +76,20 @@ void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
                      "stored pixels");
 }
 
+bool is_png(const fs::path& file) {
+  char signature[8] = {};
+  std::ifstream(file, std::ios::binary).read(signature, sizeof signature);
+  return std::equal(signature, signature + 8, "\x89PNG\r\n\x1a\n");
+}
+
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     throw InputError({file.string()}, "there is no such file", "check the name and its folder");
   if (!fs::is_regular_file(file, ignored))
     throw InputError({file.string()}, "this is not a file", "name a picture");
+  if (is_png(file) && !png_has_chunk(file, "IDAT"))
+    unreadable(file, "the file cannot be read as a picture");
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
   config.attribute("raw:ColorSpace", "linear");
@@ -104,7 +129,8 @@ double linear_to_srgb(double v) {
 
 double decode(double stored, const Encoding& encoding) {
   if (encoding.kind == Encoding::Kind::srgb) return srgb_to_linear(stored);
-  if (encoding.kind == Encoding::Kind::gamma) return std::pow(std::max(stored, 0.0), encoding.gamma);
+  if (encoding.kind == Encoding::Kind::gamma)
+    return std::pow(std::max(stored, 0.0), encoding.gamma);
   return stored;
 }
 double encode(double linear, const Encoding& encoding) {
@@ -118,11 +144,11 @@ void check_finite(const fs::path& file, const Image& image) {
   for (size_t i = 0; i < image.values.size(); ++i) {
     if (std::isfinite(image.values[i])) continue;
     const size_t pixel = i / image.channels;
-    throw InputError({file.string()},
-                     fmt::format("pixel ({}, {}) holds {}", pixel % image.width,
-                                 pixel / image.width,
-                                 std::isnan(image.values[i]) ? "not a number" : "infinity"),
-                     "every pixel must be a finite number");
+    throw InputError(
+        {file.string()},
+        fmt::format("pixel ({}, {}) holds {}", pixel % image.width, pixel / image.width,
+                    std::isnan(image.values[i]) ? "not a number" : "infinity"),
+        "every pixel must be a finite number");
   }
 }
 
@@ -145,16 +171,19 @@ std::vector<Level> to_levels(const Image& image, const Encoding& encoding) {
   const double full = std::numeric_limits<Level>::max();
   std::vector<Level> levels(image.values.size());
   for (size_t i = 0; i < levels.size(); ++i)
-    levels[i] = static_cast<Level>(
-        std::lround(std::clamp(encode(std::clamp<double>(image.values[i], 0, 1), encoding), 0.0, 1.0) *
-                    full));
+    levels[i] = static_cast<Level>(std::lround(
+        std::clamp(encode(std::clamp<double>(image.values[i], 0, 1), encoding), 0.0, 1.0) * full));
   return levels;
 }
 
+/// The picture as its file holds it.
 Image read_stored(const fs::path& file, Encoding& stored_as) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
+  if ((format == "jpeg" && !jpeg_is_complete(file)) ||
+      (format == "png" && !png_has_chunk(file, "IEND")))
+    unreadable(file, "the picture is truncated or damaged");
   std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
   bool complete = false;
   try {
@@ -164,8 +193,7 @@ Image read_stored(const fs::path& file, Encoding& stored_as) {
   }
   const std::string why = one_line(input->geterror());
   input->close();
-  if (!complete || !why.empty() || (format == "jpeg" && !jpeg_is_complete(file)))
-    unreadable(file, "the picture is truncated or damaged");
+  if (!complete || !why.empty()) unreadable(file, "the picture is truncated or damaged");
   if (!is_floating(spec) && spec.format.size() == 1) stored_as.kind = Encoding::Kind::srgb;
   return keep_colours(all, spec);
 }
@@ -173,6 +201,11 @@ Image read_stored(const fs::path& file, Encoding& stored_as) {
 }  // namespace
 
 ImageHeader read_image_header(const fs::path& file) { return header_of(open_image(file)->spec()); }
+
+Image read_image_with_holes(const fs::path& file) {
+  Encoding ignored;
+  return read_stored(file, ignored);
+}
 
 Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   Encoding used;
@@ -182,11 +215,6 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   if (used.kind != Encoding::Kind::linear)
     for (float& value : image.values) value = static_cast<float>(decode(value, used));
   return image;
-}
-
-Image read_image_with_holes(const fs::path& file) {
-  Encoding ignored;
-  return read_stored(file, ignored);
 }
 
 void write_image(const fs::path& file, const Image& image, Encoding encoding) {
@@ -211,7 +239,8 @@ void write_image(const fs::path& file, const Image& image, Encoding encoding) {
   if (!output->open(temporary.string(), spec)) fail(output->geterror());
   bool written = false;
   if (type == ".exr") written = output->write_image(stored, image.values.data());
-  if (type == ".png") written = output->write_image(stored, to_levels<uint8_t>(image, encoding).data());
+  if (type == ".png")
+    written = output->write_image(stored, to_levels<uint8_t>(image, encoding).data());
   if (stored == OIIO::TypeDesc::UINT16)
     written = output->write_image(stored, to_levels<uint16_t>(image, encoding).data());
   if (!written || !output->close()) fail(output->geterror());

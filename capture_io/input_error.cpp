@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -33,6 +34,11 @@ size_t edit_distance(const std::string& a, const std::string& b) {
   return last[b.size()];
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 }  // namespace
 
 std::string Place::str() const {
@@ -52,10 +58,10 @@ std::string nearest_name_of(const std::string& word, const std::string* begin,
   // Longer words than any key are no slips of the pen, and would cost quadratic time.
   if (word.size() > 100) return "";
   const std::string* best = nullptr;
-  size_t best_distance = std::max<size_t>(1, (word.size() + 2) / 3) + 1;
+  size_t best_distance = word.size() / 3 + 1;
   for (const std::string* name = begin; name != end; ++name) {
     if (name->size() > 200) continue;
-    const size_t distance = edit_distance(word, *name);
+    const size_t distance = edit_distance(lower_case(word), lower_case(*name));
     if (distance < best_distance) {
       best_distance = distance;
       best = name;

@@ -30,7 +30,8 @@ class InputError : public std::runtime_error {
   std::string right_;
 };
 
-/// The entry of `known` nearest to `word` (edit distance, at most a third of its length), or "".
+/// The entry of `known` nearest to `word` (edit distance without regard to case, at most a third of
+/// its length), or "".
 template <class Strings>
 std::string nearest_name(const std::string& word, const Strings& known);
 std::string nearest_name_of(const std::string& word, const std::string* begin,

@@ -81,9 +81,12 @@ Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
   if (silhouette && !encoding) encoding = Encoding{};  // a coverage, not a brightness
   const Image image = read_image(spec.file, encoding);
   check_size(spec, "the photo", image, camera);
-  if (spec.noise) photo.noise = *spec.noise;
-  else if (silhouette) photo.noise = {0.0, binary_sigma, true};
-  else photo.noise = estimated_noise(image, header);
+  if (spec.noise)
+    photo.noise = *spec.noise;
+  else if (silhouette)
+    photo.noise = {0.0, binary_sigma, true};
+  else
+    photo.noise = estimated_noise(image, header);
   mark_invalid(spec, camera, image, header.floating, photo);
   if (spec.rgb && image.channels == 3) {
     photo.channel_weights = {1, 1, 1};

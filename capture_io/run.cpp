@@ -89,8 +89,8 @@ bool same_content(const fs::path& a, const fs::path& b) {
     if (!fs::exists(other) || !same_content(entry.path(), other)) return false;
     ++count;
   }
-  return count == static_cast<size_t>(
-                      std::distance(fs::directory_iterator(b), fs::directory_iterator()));
+  return count ==
+         static_cast<size_t>(std::distance(fs::directory_iterator(b), fs::directory_iterator()));
 }
 
 void check_name(const std::string& name) {
@@ -144,10 +144,10 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
   if (is_run) {
     Run run = open(folder, true);
     if (run.capture() != fs::weakly_canonical(capture))
-      throw InputError({folder.string()},
-                       fmt::format("the folder holds a run of another capture: {}",
-                                   run.capture().string()),
-                       "name a new folder for this capture's run");
+      throw InputError(
+          {folder.string()},
+          fmt::format("the folder holds a run of another capture: {}", run.capture().string()),
+          "name a new folder for this capture's run");
     return run;
   }
   auto impl = std::make_unique<Impl>();

@@ -35,16 +35,34 @@ std::optional<double> number_of(const std::string& text) {
   return value;
 }
 
+/// "; did you mean `rest.obj`?" where the folder holds a file of nearly that name.
+std::string nearest_file(const fs::path& missing) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(missing.parent_path(), error), end; !error && it != end;
+       it.increment(error)) {
+    names.push_back(it->path().filename().string());
+    if (names.size() > 1000) break;
+  }
+  std::sort(names.begin(), names.end());
+  const std::string near = nearest_name(missing.filename().string(), names);
+  return near.empty() ? "" : fmt::format("; did you mean `{}`?", near);
+}
+
 }  // namespace
 
 std::string describe(const YamlNode& node) {
   switch (node.kind) {
-    case YamlNode::Kind::null: return "nothing";
-    case YamlNode::Kind::sequence: return fmt::format("a list of {}", node.items.size());
-    case YamlNode::Kind::map: return "a map";
-    case YamlNode::Kind::scalar: break;
+    case YamlNode::Kind::null:
+      return "empty";
+    case YamlNode::Kind::sequence:
+      return fmt::format("a list of {}", node.items.size());
+    case YamlNode::Kind::map:
+      return "a map";
+    case YamlNode::Kind::scalar:
+      break;
   }
-  return "`" + shortened(node.text) + "`";
+  return fmt::format("`{}`", shortened(node.text));
 }
 
 std::string suggest(const std::string& word, const std::vector<std::string>& known) {
@@ -64,8 +82,7 @@ YamlSection::YamlSection(const YamlNode& node, std::string what, std::vector<std
     unexpected(node, what_, fmt::format("write a map with the keys {}", fmt::join(known_, ", ")));
   for (const YamlNode::Entry& entry : node.entries)
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end())
-      throw InputError(entry.place,
-                       fmt::format("{} has no key `{}`", what_, shortened(entry.key)),
+      throw InputError(entry.place, fmt::format("{} has no key `{}`", what_, shortened(entry.key)),
                        suggest(entry.key, known_));
 }
 
@@ -88,7 +105,7 @@ const YamlNode& YamlSection::need(const std::string& key, const std::string& rig
   return *value;
 }
 
-const std::string& YamlSection::one_of(const std::vector<std::string>& keys) const {
+std::string YamlSection::one_of(const std::vector<std::string>& keys) const {
   const std::string* chosen = nullptr;
   for (const std::string& key : keys) {
     if (!has(key)) continue;
@@ -141,11 +158,14 @@ std::string read_string(const YamlNode& node, const std::string& what) {
 
 std::string read_choice(const YamlNode& node, const std::string& what,
                         const std::vector<std::string>& choices) {
-  if (node.kind != YamlNode::Kind::scalar)
-    unexpected(node, what, fmt::format("one of {} is expected", fmt::join(choices, ", ")));
-  if (std::find(choices.begin(), choices.end(), node.text) == choices.end())
-    unexpected(node, what, fmt::format("one of {} is expected", fmt::join(choices, ", ")));
-  return node.text;
+  if (node.kind == YamlNode::Kind::scalar &&
+      std::find(choices.begin(), choices.end(), node.text) != choices.end())
+    return node.text;
+  const std::string near = nearest_name(node.text, choices);
+  unexpected(node, what,
+             fmt::format("{}one of {} is expected",
+                         near.empty() ? "" : fmt::format("did you mean `{}`? ", near),
+                         fmt::join(choices, ", ")));
 }
 
 std::vector<double> read_numbers(const YamlNode& node, const std::string& what) {
@@ -180,7 +200,8 @@ const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& 
 }
 
 const std::vector<YamlNode::Entry>& read_named(const YamlNode& node, const std::string& what) {
-  if (node.kind != YamlNode::Kind::map) unexpected(node, what, "a map from name to value is expected");
+  if (node.kind != YamlNode::Kind::map)
+    unexpected(node, what, "a map from name to value is expected");
   for (const YamlNode::Entry& entry : node.entries) {
     const std::string& name = entry.key;
     const bool bad = name.empty() || name.size() > 100 || name[0] == '.' ||
@@ -188,7 +209,8 @@ const std::vector<YamlNode::Entry>& read_named(const YamlNode& node, const std::
                        return c < 32 || c == 127 || c == '/' || c == '\\';
                      });
     if (bad)
-      throw InputError(entry.place, fmt::format("`{}` cannot be a name in {}", shortened(name), what),
+      throw InputError(entry.place,
+                       fmt::format("`{}` cannot be a name in {}", shortened(name), what),
                        "names become file names: up to 100 characters, no slash, no leading dot");
   }
   return node.entries;
@@ -200,21 +222,22 @@ fs::path read_file_path(const YamlNode& node, const std::string& what, const Cap
   const fs::path relative(text);
   if (text.find('\0') != std::string::npos || text.size() > 1000)
     unexpected(node, what, "a path relative to the capture's folder is expected");
-  if (relative.is_absolute())
-    unexpected(node, what, "paths are relative to the capture's folder");
+  if (relative.is_absolute()) unexpected(node, what, "paths are relative to the capture's folder");
   std::error_code error;
   const fs::path file = fs::weakly_canonical(folder.canonical / relative, error);
-  const auto [inside, rest] = std::mismatch(folder.canonical.begin(), folder.canonical.end(),
-                                            file.begin(), file.end());
+  const auto [inside, rest] =
+      std::mismatch(folder.canonical.begin(), folder.canonical.end(), file.begin(), file.end());
   if (error || inside != folder.canonical.end())
     unexpected(node, what, "the path leads out of the capture's folder: put the file inside");
-  if (!fs::exists(file, error)) unexpected(node, what, "there is no such file");
+  if (!fs::exists(file, error))
+    unexpected(node, what, "there is no such file" + nearest_file(file));
   if (!fs::is_regular_file(file, error)) unexpected(node, what, "this is not a file");
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (!extensions.empty() &&
       std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
-    unexpected(node, what, fmt::format("a file of type {} is expected", fmt::join(extensions, ", ")));
+    unexpected(node, what,
+               fmt::format("a file of type {} is expected", fmt::join(extensions, ", ")));
   return file;
 }
 

@@ -29,7 +29,7 @@ class YamlSection {
   const YamlNode& need(const std::string& key, const std::string& right) const;
   bool has(const std::string& key) const { return find(key) != nullptr; }
   /// The one key given among `keys`; throws for none and for two.
-  const std::string& one_of(const std::vector<std::string>& keys) const;
+  std::string one_of(const std::vector<std::string>& keys) const;
   const std::string& what() const { return what_; }
   const Place& place() const { return node_.place; }
   const YamlNode::Entry* entry(const std::string& key) const;
@@ -40,7 +40,7 @@ class YamlSection {
   std::vector<std::string> known_;
 };
 
-/// What stands there, for messages: "`abc`", "a list", "a map", "nothing".
+/// What stands there, for messages: "`abc`", "a list of 2", "a map", "empty".
 std::string describe(const YamlNode& node);
 /// "did you mean `x`?" where a known name is near, else "known here: a, b, c".
 std::string suggest(const std::string& word, const std::vector<std::string>& known);

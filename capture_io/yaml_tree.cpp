@@ -92,10 +92,10 @@ void TreeBuilder::OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) {
                      "write the value out");
   alias_nodes_ += count_nodes(found->second);
   if (alias_nodes_ > limits_.alias_nodes)
-    throw InputError(place(mark),
-                     fmt::format("aliases blow this file up to more than {} values",
-                                 limits_.alias_nodes),
-                     "write the values out instead of nesting aliases");
+    throw InputError(
+        place(mark),
+        fmt::format("aliases blow this file up to more than {} values", limits_.alias_nodes),
+        "write the values out instead of nesting aliases");
   if (static_cast<int>(levels_.size()) + depth_of(found->second) > limits_.depth)
     throw InputError(place(mark), fmt::format("values are nested deeper than {}", limits_.depth),
                      "a capture needs fewer than ten levels");
@@ -128,9 +128,9 @@ void TreeBuilder::add_key(Level& level, const YamlNode& node) {
     throw InputError(node.place, "a key is missing before the colon", "write `key: value`");
   const auto [first, is_new] = level.key_places.emplace(node.text, node.place);
   if (!is_new)
-    throw InputError(node.place, fmt::format("`{}` is given twice", node.text),
-                     fmt::format("it already stands in line {}; keep one of the two",
-                                 first->second.line));
+    throw InputError(
+        node.place, fmt::format("`{}` is given twice", node.text),
+        fmt::format("it already stands in line {}; keep one of the two", first->second.line));
   level.entry = {node.text, node.place, {}};
   level.has_key = true;
 }
@@ -153,6 +153,29 @@ void TreeBuilder::add(YamlNode node, YAML::anchor_t anchor) {
   }
 }
 
+/// A tab in the indentation is the commonest fault that the parser explains least: the first such
+/// line up to the one after the fault, 0 for none.
+int line_with_tab(const std::string& text, int last_line) {
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; number <= last_line && std::getline(lines, line); ++number) {
+    const size_t tab = line.find('\t');
+    if (tab != std::string::npos && line.find_first_not_of(" \t") > tab) return number;
+  }
+  return 0;
+}
+
+[[noreturn]] void syntax_error(const YAML::Exception& error, const std::string& text,
+                               const std::string& file) {
+  if (error.mark.is_null()) throw InputError({file}, "not yaml: " + error.msg, "");
+  const int line = error.mark.line + 1;
+  if (const int tab = line_with_tab(text, line + 1))
+    throw InputError({file, tab, 1}, "not yaml: a tab stands in the indentation",
+                     "indent with blanks only");
+  throw InputError({file, line, error.mark.column + 1}, "not yaml: " + error.msg,
+                   "look at the indentation, brackets and quotes here and just before");
+}
+
 }  // namespace
 
 YamlNode parse_yaml(const std::string& text, const std::string& file, const YamlLimits& limits) {
@@ -172,10 +195,7 @@ YamlNode parse_yaml(const std::string& text, const std::string& file, const Yaml
                        "one file holds one capture: remove the line `---` and what follows");
     return root;
   } catch (const YAML::Exception& error) {
-    if (error.mark.is_null()) throw InputError({file}, "not yaml: " + error.msg, "");
-    throw InputError({file, error.mark.line + 1, error.mark.column + 1},
-                     "not yaml: " + error.msg,
-                     "look at the indentation, brackets and quotes here and just before");
+    syntax_error(error, text, file);
   }
 }
 

@@ -36,6 +36,7 @@ struct YamlLimits {
 
 /// Parses one yaml document; `file` is the name used in places. Throws InputError: broken syntax,
 /// no document or several, a key given twice, a key that is not a plain word, a limit exceeded.
-YamlNode parse_yaml(const std::string& text, const std::string& file, const YamlLimits& limits = {});
+YamlNode parse_yaml(const std::string& text, const std::string& file,
+                    const YamlLimits& limits = {});
 
 }  // namespace hookeye

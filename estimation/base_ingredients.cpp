@@ -203,6 +203,7 @@ class SelfWeight final : public Ingredient {
     const auto weight = self_weight(model.scene->body->mesh,
                                     density_or_one(model.scene->capture), in_body);
     for (auto& example : model.examples) example.loading.forces.push_back(weight);
+    model.gravity += gravity_;
   }
 
  private:
@@ -284,13 +285,20 @@ std::shared_ptr<const Ingredient> self_weight_ingredient(const Vector3d& gravity
 }
 
 void place(Model& model, const Eigen::Isometry3d& motion) {
+  const Vector3d gravity_before = model.placement.linear().transpose() * model.gravity;
   model.placement = model.placement * motion;
-  for (auto& example : model.examples)
+  std::shared_ptr<const ForceTerm> turned;
+  if (!model.gravity.isZero(0.0))
+    turned = self_weight(model.scene->body->mesh, density_or_one(model.scene->capture),
+                         model.placement.linear().transpose() * model.gravity - gravity_before);
+  for (auto& example : model.examples) {
+    if (turned) example.loading.forces.push_back(turned);
     for (auto& photo : example.photos) {
       photo.camera.t += photo.camera.R * motion.translation();
       photo.camera.R = photo.camera.R * motion.linear();
       photo.sun = motion.linear().transpose() * photo.sun;
     }
+  }
 }
 
 Eigen::Isometry3d pose_about(const Vector3d& centre, const Vector3d& rotation,

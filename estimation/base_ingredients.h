@@ -25,7 +25,7 @@ std::shared_ptr<const Ingredient> placement_ingredient(const Scene& scene);
 std::shared_ptr<const Ingredient> self_weight_ingredient(const Vector3d& gravity_in_world);
 
 /// Moves the set-up by a motion told in the body's frame (cameras and light see the body moved):
-/// placement' = placement * motion.
+/// placement' = placement * motion. Self-weight already in the model turns against the body.
 void place(Model& model, const Eigen::Isometry3d& motion);
 /// Pose from a rotation vector [rad] about `centre` and a translation.
 Eigen::Isometry3d pose_about(const Vector3d& centre, const Vector3d& rotation,

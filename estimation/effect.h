@@ -29,8 +29,12 @@ class Effect {
   /// `value` are the nulls. Empty: not applicable to this capture (reason in `why_not`).
   virtual std::vector<std::shared_ptr<const Ingredient>> candidates(const Model& model,
                                                                     std::string* why_not) const = 0;
-  /// Candidate for write/read: by variant().
+  /// Candidate for write/read: by variant(). Null when the variant is not one of this effect's.
   std::shared_ptr<const Ingredient> candidate(const Model& model, const std::string& variant) const;
+  /// Builds what candidates() does not list (refit forms) or lists only for the very same mesh;
+  /// asked first by candidate(). Null: look among the candidates.
+  virtual std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                                    const std::string& variant) const;
   /// Larger form to refit with after the score named the effect (blob to field, compliance to log
   /// stiffness); default: the scored ingredient itself. `values` are moved to the new form's.
   virtual std::shared_ptr<const Ingredient> refit_form(const Model& model,
@@ -43,6 +47,16 @@ class Effect {
 
 /// All effects in catalogue order. Never null.
 const std::vector<const Effect*>& catalogue();
+/// Null: no effect of this name.
 const Effect* find_effect(const std::string& name);
 
 }  // namespace hookeye
+
+/// Ends an effect's file: the one function that catalogue.cpp calls.
+#define HOOKEYE_DEFINE_EFFECT(NAME, CLASS) \
+  namespace hookeye {                      \
+  const Effect& effect_##NAME() {          \
+    static const CLASS effect;             \
+    return effect;                         \
+  }                                        \
+  }

@@ -43,6 +43,9 @@ struct Model {
   /// Pose of the whole set-up: x_in_world = placement x_in_body (gravity, cameras and light are
   /// told in the world; mechanics happen in the body's frame).
   Eigen::Isometry3d placement = Eigen::Isometry3d::Identity();
+  /// Acceleration of the self-weight already among the forces, in the world [length/s^2]: what
+  /// turns the set-up afterwards (place) turns the body against it.
+  Vector3d gravity = Vector3d::Zero();
   /// Energy of example e: energy with all weights times examples[e].stiffness.
   EnergyModel energy_of(int example) const;
 };

@@ -1,121 +1,95 @@
 // model.yaml: what a step of a run believes; usable as -m. The file holds every ingredient with its
 // variant and values; the capture gives the rest.
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "capture_io/run.h"
+#include "capture_io/yaml_section.h"
+#include "capture_io/yaml_tree.h"
 #include "estimation/effect.h"
 #include "estimation/model.h"
-#include "capture_io/run.h"
 
 namespace hookeye {
 
 std::string write_model(const ModelForm& form, const VectorXd& p) {
-  YAML::Emitter out;
-  out.SetDoublePrecision(17);
-  out << YAML::BeginMap << YAML::Key << "hookeye_model" << YAML::Value << 1;
-  out << YAML::Key << "ingredients" << YAML::Value << YAML::BeginSeq;
+  std::string out = "hookeye_model: 1\ningredients:";
+  out += form.ingredients.empty() ? " []\n" : "\n";
   int offset = 0;
   for (const auto& ingredient : form.ingredients) {
-    out << YAML::BeginMap << YAML::Key << "name" << YAML::Value << ingredient->name();
+    out += fmt::format("  - name: {}\n", ingredient->name());
+    // a JSON string is a yaml string
     if (!ingredient->variant().empty())
-      out << YAML::Key << "variant" << YAML::Value << YAML::DoubleQuoted << ingredient->variant();
-    out << YAML::Key << "values" << YAML::Value << YAML::BeginMap;
-    for (const auto& parameter : ingredient->parameters()) {
-      out << YAML::Key << parameter.name << YAML::Value << p[offset++];
-      if (!parameter.unit.empty()) out << YAML::Comment(parameter.unit);
-    }
-    out << YAML::EndMap << YAML::EndMap;
+      out += fmt::format("    variant: {}\n", nlohmann::json(ingredient->variant()).dump());
+    const auto parameters = ingredient->parameters();
+    out += parameters.empty() ? "    values: {}\n" : "    values:\n";
+    for (const auto& parameter : parameters)
+      out += fmt::format("      {}: {:.17g}{}\n", parameter.name, p[offset++],
+                         parameter.unit.empty() ? "" : "  # " + parameter.unit);
   }
-  out << YAML::EndSeq << YAML::EndMap;
-  return std::string(out.c_str()) + "\n";
+  return out;
 }
 
 namespace {
 
-Place place_of(const std::filesystem::path& file, const YAML::Node& node) {
-  return {file.string(), node.Mark().line + 1, node.Mark().column + 1};
-}
-
 /// Values of one ingredient by name; every parameter must be there and no other.
-void read_values(const std::filesystem::path& file, const YAML::Node& node,
-                 const Ingredient& ingredient, std::vector<double>& values) {
-  const YAML::Node map = node["values"];
-  const auto parameters = ingredient.parameters();
-  for (const auto& parameter : parameters) {
-    if (!map || !map.IsMap() || !map[parameter.name])
-      throw InputError(place_of(file, node),
-                       fmt::format("'{}' has no value for '{}'", ingredient.name(), parameter.name),
-                       "write every parameter under 'values'");
-    double value = 0.0;
-    try {
-      value = map[parameter.name].as<double>();
-    } catch (const YAML::Exception&) {
-      throw InputError(place_of(file, map[parameter.name]),
-                       fmt::format("'{}' is not a number", parameter.name), "write a number");
-    }
+void read_values(const YamlNode& node, const Ingredient& ingredient, std::vector<double>& values) {
+  std::vector<std::string> known;
+  for (const auto& parameter : ingredient.parameters()) known.push_back(parameter.name);
+  const YamlSection map(node, fmt::format("values of {}", ingredient.name()), known);
+  for (const auto& parameter : ingredient.parameters()) {
+    const YamlNode& given = map.need(parameter.name, "write every parameter under `values`");
+    const double value = read_number(given, parameter.name);
     if (!(value >= parameter.low && value <= parameter.high))
-      throw InputError(place_of(file, map[parameter.name]),
-                       fmt::format("{} = {} is out of range", parameter.name, value),
+      throw InputError(given.place, fmt::format("{} = {} is out of range", parameter.name, value),
                        fmt::format("between {} and {}", parameter.low, parameter.high));
     values.push_back(value);
   }
-  for (const auto& entry : map) {
-    const auto name = entry.first.as<std::string>();
-    std::vector<std::string> known;
-    for (const auto& parameter : parameters) known.push_back(parameter.name);
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string near = nearest_name(name, known);
-    throw InputError(place_of(file, entry.first), fmt::format("unknown parameter '{}'", name),
-                     near.empty() ? fmt::format("one of: {}", fmt::join(known, ", "))
-                                  : fmt::format("did you mean '{}'?", near));
-  }
 }
 
-std::shared_ptr<const Ingredient> find_ingredient(const std::filesystem::path& file,
-                                                  const YAML::Node& node, const ModelForm& base,
+std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, const ModelForm& base,
                                                   const Model& model) {
-  const auto name = node["name"] ? node["name"].as<std::string>() : std::string();
-  for (const auto& ingredient : base.ingredients)
-    if (ingredient->name() == name) return ingredient;
+  const YamlNode& named = section.need("name", "name: material, or an effect's name");
+  const std::string name = read_string(named, "name");
   std::vector<std::string> known;
-  for (const auto& ingredient : base.ingredients) known.push_back(ingredient->name());
-  for (const Effect* effect : catalogue()) known.push_back(effect->name());
+  for (const auto& ingredient : base.ingredients) {
+    if (ingredient->name() == name) return ingredient;
+    known.push_back(ingredient->name());
+  }
   if (const Effect* effect = find_effect(name)) {
-    const auto variant = node["variant"] ? node["variant"].as<std::string>() : std::string();
+    const YamlNode* given = section.find("variant");
+    const std::string variant = given ? read_string(*given, "variant") : std::string();
     if (auto ingredient = effect->candidate(model, variant)) return ingredient;
-    throw InputError(place_of(file, node),
-                     fmt::format("'{}' has no variant '{}' in this capture", name, variant),
+    throw InputError(given ? given->place : named.place,
+                     fmt::format("`{}` has no variant `{}` in this capture", name, variant),
                      "take the variant from a model.yaml of the same capture");
   }
-  const std::string near = nearest_name(name, known);
-  throw InputError(place_of(file, node), fmt::format("unknown ingredient '{}'", name),
-                   near.empty() ? "see the list of effects" : "did you mean '" + near + "'?");
+  for (const Effect* effect : catalogue()) known.push_back(effect->name());
+  throw InputError(named.place, fmt::format("unknown ingredient `{}`", name), suggest(name, known));
 }
 
 }  // namespace
 
 std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
                                           std::shared_ptr<const Scene> scene) {
-  YAML::Node root;
-  try {
-    root = YAML::Load(read_text(file));
-  } catch (const YAML::Exception& error) {
-    throw InputError({file.string(), error.mark.line + 1, error.mark.column + 1},
-                     "not a yaml file: " + error.msg, "a model.yaml as a run's step holds it");
-  }
-  if (!root.IsMap() || !root["hookeye_model"] || !root["ingredients"] ||
-      !root["ingredients"].IsSequence())
-    throw InputError({file.string(), 1, 1}, "not a model",
-                     "a model.yaml as a run's step holds it (hookeye_model: 1)");
+  const YamlNode root = parse_yaml(read_text(file), file.string());
+  const YamlSection top(root, "a model", {"hookeye_model", "ingredients"});
+  const char* right = "a model.yaml as a run's step holds it (hookeye_model: 1)";
+  const YamlNode& version = top.need("hookeye_model", right);
+  if (read_integer(version, "hookeye_model") != 1)
+    throw InputError(version.place, "a model of another version", right);
   const ModelForm base = base_form(scene);
   ModelForm form = base;
   form.ingredients.clear();
   std::vector<double> values;
-  for (const auto& node : root["ingredients"]) {
+  for (const YamlNode& node : read_list(top.need("ingredients", right), "ingredients", right)) {
+    const YamlSection section(node, "an ingredient", {"name", "variant", "values"});
     // variants are chosen on the model so far, as they were when the effect was added
     const Model so_far = form.realise(Eigen::Map<const VectorXd>(values.data(), values.size()));
-    auto ingredient = find_ingredient(file, node, base, so_far);
-    read_values(file, node, *ingredient, values);
+    auto ingredient = find_ingredient(section, base, so_far);
+    read_values(section.need("values", "the ingredient's parameters"), *ingredient, values);
     form.ingredients.push_back(std::move(ingredient));
   }
   return {form, Eigen::Map<const VectorXd>(values.data(), values.size())};

@@ -192,7 +192,7 @@ TetMesh make_mesh(const BodySpec& spec, const MendedSurface* surface, double edg
   if (!spec.volume.empty()) {
     const TetMesh mesh = read_volume(spec.volume, spec.volume_place, &said);
     if (edge_factor != 1.0 && surface == nullptr) {
-      said.push_back("the volume of the file was kept: only a surface can be meshed anew");
+      said.emplace_back("the volume of the file was kept: only a surface can be meshed anew");
     }
     if (edge_factor == 1.0 || surface == nullptr)
       return with_order(mesh, order ? order : mesh.order);

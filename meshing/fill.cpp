@@ -1,14 +1,21 @@
 // The only file that touches TetGen.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #define TETLIBRARY  // as the library was built: faults are thrown, not exits
 #include <tetgen.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
+#include <cstdint>
 #include <map>
-#include <mutex>
 
 #include "meshing/detail.h"
+#include "meshing/subdivide.h"
 #include "meshing/tet_mesh.h"
 
 namespace hookeye {
@@ -29,7 +36,8 @@ int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const V
 
 namespace {
 
-void hand_over(const SurfaceMesh& surface, tetgenio& in) {
+void hand_over(const detail::Subdivided& skin, tetgenio& in) {
+  const SurfaceMesh& surface = skin.mesh;
   in.firstnumber = 0;
   in.numberofpoints = static_cast<int>(surface.X.cols());
   in.pointlist = new REAL[3 * surface.X.cols()];
@@ -46,22 +54,7 @@ void hand_over(const SurfaceMesh& surface, tetgenio& in) {
     f.polygonlist[0].numberofvertices = 3;
     f.polygonlist[0].vertexlist = new int[3];
     for (int k = 0; k < 3; ++k) f.polygonlist[0].vertexlist[k] = surface.triangles[t][k];
-    in.facetmarkerlist[t] = t + 1;  // 0 would mean "none"
-  }
-}
-
-std::string reason_of(int code) {
-  switch (code) {
-    case 1:
-      return "it ran out of memory";
-    case 3:
-      return "the surface intersects itself";
-    case 4:
-      return "the surface has a feature too small to mesh";
-    case 5:
-      return "two parts of the surface nearly touch";
-    default:
-      return "it could not recover the surface";
+    in.facetmarkerlist[t] = skin.parent[t] + 1;  // 0 would mean "none"
   }
 }
 
@@ -75,29 +68,99 @@ std::string reason_of(int code) {
       "a closed surface that does not intersect itself, without slivers");
 }
 
-/// One run of TetGen on `in`; returns its code (0: done).
-int run_tetgen(const std::string& switches, tetgenio& in, tetgenio& out) {
-  static std::mutex one_at_a_time;  // its predicates keep global state
-  const std::lock_guard lock(one_at_a_time);
-  std::string text = switches;
-  try {
-    tetrahedralize(text.data(), &in, &out);
-  } catch (int code) {
-    return code == 0 ? 2 : code;
-  } catch (const std::exception&) {
-    return 2;
-  }
-  return out.numberoftetrahedra > 0 ? 0 : 2;
+/// What is used of TetGen's output.
+struct Filled {
+  std::vector<double> points;           ///< 3 each
+  std::vector<int> corners;             ///< 4 a tetrahedron
+  std::vector<int> triangles, markers;  ///< 3 and 1 a face
+};
+
+template <class T>
+void send(int pipe, const T* data, size_t n) {
+  const uint64_t count = n;
+  const auto write_all = [pipe](const void* from, size_t bytes) {
+    const char* at = static_cast<const char*>(from);
+    while (bytes > 0) {
+      const ssize_t done = write(pipe, at, bytes);
+      if (done <= 0) _exit(1);
+      at += done;
+      bytes -= static_cast<size_t>(done);
+    }
+  };
+  write_all(&count, sizeof count);
+  write_all(data, n * sizeof(T));
 }
 
-TetMesh taken_back(const tetgenio& out) {
+template <class T>
+bool receive(int pipe, std::vector<T>& data) {
+  const auto read_all = [pipe](void* to, size_t bytes) {
+    char* at = static_cast<char*>(to);
+    while (bytes > 0) {
+      const ssize_t done = read(pipe, at, bytes);
+      if (done < 0 && errno == EINTR) continue;
+      if (done <= 0) return false;
+      at += done;
+      bytes -= static_cast<size_t>(done);
+    }
+    return true;
+  };
+  uint64_t count = 0;
+  if (!read_all(&count, sizeof count)) return false;
+  data.resize(count);
+  return read_all(data.data(), count * sizeof(T));
+}
+
+/// In the child: mesh, send, end.
+[[noreturn]] void child(int pipe, std::string switches, tetgenio& in) {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  for (const int fault : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(fault, SIG_DFL);
+  const int nowhere = open("/dev/null", O_WRONLY);
+  dup2(nowhere, 1);
+  dup2(nowhere, 2);
+  tetgenio out;
+  try {
+    tetrahedralize(switches.data(), &in, &out);
+  } catch (...) {
+    _exit(1);
+  }
+  if (out.numberoftetrahedra == 0 || out.numberofcorners != 4) _exit(1);
+  send(pipe, out.pointlist, 3 * static_cast<size_t>(out.numberofpoints));
+  send(pipe, out.tetrahedronlist, 4 * static_cast<size_t>(out.numberoftetrahedra));
+  const size_t faces = out.trifacemarkerlist == nullptr ? 0 : out.numberoftrifaces;
+  send(pipe, out.trifacelist, 3 * faces);
+  send(pipe, out.trifacemarkerlist, faces);
+  _exit(0);
+}
+
+/// One run of TetGen, in a process of its own: when it gives up it frees its memory, throws, and
+/// frees it again while the exception passes, which ends the process. False: it gave up.
+bool run_tetgen(const std::string& switches, tetgenio& in, Filled& out) {
+  int ends[2];
+  if (pipe(ends) != 0) return false;
+  const pid_t process = fork();
+  if (process == 0) {
+    close(ends[0]);
+    child(ends[1], switches, in);
+  }
+  close(ends[1]);
+  const bool whole = process > 0 && receive(ends[0], out.points) && receive(ends[0], out.corners) &&
+                     receive(ends[0], out.triangles) && receive(ends[0], out.markers);
+  close(ends[0]);
+  int status = -1;
+  while (process > 0 && waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return whole && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TetMesh taken_back(const Filled& out) {
   TetMesh mesh;
   mesh.order = 1;
-  mesh.X = Eigen::Map<const Matrix3Xd>(out.pointlist, 3, out.numberofpoints);
-  mesh.elements.resize(4, out.numberoftetrahedra);
-  for (int e = 0; e < out.numberoftetrahedra; ++e) {
-    const int* corner = out.tetrahedronlist + static_cast<ptrdiff_t>(e) * out.numberofcorners;
-    for (int k = 0; k < 4; ++k) mesh.elements(k, e) = corner[k];
+  mesh.X = Eigen::Map<const Matrix3Xd>(out.points.data(), 3,
+                                       static_cast<Eigen::Index>(out.points.size() / 3));
+  mesh.elements = Eigen::Map<const Eigen::MatrixXi>(
+      out.corners.data(), 4, static_cast<Eigen::Index>(out.corners.size() / 4));
+  for (int e = 0; e < mesh.size(); ++e) {
     const auto x = [&](int k) { return Vector3d(mesh.X.col(mesh.elements(k, e))); };
     if ((x(1) - x(0)).cross(x(2) - x(0)).dot(x(3) - x(0)) < 0) {
       std::swap(mesh.elements(2, e), mesh.elements(3, e));  // TetGen counts the other way round
@@ -125,13 +188,12 @@ void drop_unused(TetMesh& mesh) {
   }
 }
 
-std::map<std::array<int, 3>, int> markers(const tetgenio& out) {
+std::map<std::array<int, 3>, int> markers(const Filled& out) {
   std::map<std::array<int, 3>, int> marker_of;
-  for (int f = 0; f < out.numberoftrifaces; ++f) {
-    std::array<int, 3> c{out.trifacelist[3 * f], out.trifacelist[3 * f + 1],
-                         out.trifacelist[3 * f + 2]};
+  for (size_t f = 0; f < out.markers.size(); ++f) {
+    std::array<int, 3> c{out.triangles[3 * f], out.triangles[3 * f + 1], out.triangles[3 * f + 2]};
     std::sort(c.begin(), c.end());
-    if (out.trifacemarkerlist != nullptr) marker_of[c] = out.trifacemarkerlist[f];
+    marker_of[c] = out.markers[f];
   }
   return marker_of;
 }
@@ -139,21 +201,32 @@ std::map<std::array<int, 3>, int> markers(const tetgenio& out) {
 }  // namespace
 
 TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place) {
+  if (surface.triangles.empty()) {
+    throw InputError(place, "the surface has no triangles", "a closed surface");
+  }
   const SurfaceFaults faults = inspect(surface);
   if (!faults.clean()) {
-    throw InputError(place, "the surface does not bound a body: " + faults.describe(surface),
+    throw InputError(place,
+                     fmt::format("the surface does not bound a body: {}", faults.describe(surface)),
                      "a closed surface without self-intersections, triangles turned outwards");
   }
   const double edge = options.edge > 0 ? options.edge : detail::diagonal(surface.X) / 12.0;
-  // A regular tetrahedron of this edge; meshes bounded by -a come out at about two thirds of the
-  // bound in the mean, hence their mean edge near the target.
-  const double volume = edge * edge * edge / (6.0 * std::sqrt(2.0)) * 1.5;
-  tetgenio in, out;
-  hand_over(surface, in);
-  const std::string switches = fmt::format("pq{:.3f}/{:.3f}a{:.17g}Q", options.radius_edge_ratio,
-                                           options.min_dihedral_deg, volume);
-  const int code = run_tetgen(switches, in, out);
-  if (code != 0) refuse(surface, reason_of(code), place);
+  // TetGen refines a boundary by bisecting every segment of it until quality is met, which makes
+  // five to ten times more elements than asked for. So the surface is cut to the target edge here
+  // and kept (-Y). Edges come out at 0.7 to 1.4 of the target, their mean near it.
+  const detail::Subdivided skin = detail::subdivide(surface, 1.4 * edge);
+  // Bounded by -a, volumes come out at about two thirds of the bound: hence 1.5 times the volume of
+  // the regular tetrahedron.
+  const double volume = 1.5 * edge * edge * edge / (6.0 * std::sqrt(2.0));
+  const std::string quality_bounds = fmt::format(
+      "q{:.3f}/{:.3f}a{:.17g}Q", options.radius_edge_ratio, options.min_dihedral_deg, volume);
+  tetgenio in;
+  hand_over(skin, in);
+  Filled out;
+  if (!run_tetgen("pY" + quality_bounds, in, out)) {
+    out = Filled();  // then with points on the boundary
+    if (!run_tetgen("p" + quality_bounds, in, out)) refuse(surface, "TetGen gave up", place);
+  }
 
   TetMesh mesh = taken_back(out);
   find_boundary(mesh);

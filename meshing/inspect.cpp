@@ -253,7 +253,7 @@ MendedSurface mend(const SurfaceMesh& surface, const Place& place) {
   if (faults.inside_out) {
     for (Triangle& t : out.surface.triangles) std::swap(t[1], t[2]);
     for (auto& uv : out.surface.uv) std::swap(uv[1], uv[2]);
-    out.said.push_back("turned the surface, whose triangles all faced inwards");
+    out.said.emplace_back("turned the surface, whose triangles all faced inwards");
   }
   faults.degenerate.clear();
   faults.duplicated.clear();
@@ -262,7 +262,8 @@ MendedSurface mend(const SurfaceMesh& surface, const Place& place) {
     throw InputError(place, "the surface has no triangle with an area", "a closed surface");
   }
   if (!faults.clean()) {
-    throw InputError(place, "the surface does not bound a body: " + faults.describe(surface),
+    throw InputError(place,
+                     fmt::format("the surface does not bound a body: {}", faults.describe(surface)),
                      "a closed surface without self-intersections, triangles turned outwards");
   }
   return out;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <functional>
 #include <set>
@@ -40,6 +41,13 @@ class Face {
     }
   }
   const Eigen::VectorXi& nodes() const { return nodes_; }
+  /// Holds the face, with room for rounding and for what a curved face bulges past its nodes.
+  Eigen::AlignedBox3d box() const {
+    Eigen::AlignedBox3d box;
+    for (Eigen::Index k = 0; k < x_.cols(); ++k) box.extend(Vector3d(x_.col(k)));
+    const double room = (straight_ ? 1e-6 : 0.5) * box.diagonal().norm();
+    return {box.min().array() - room, box.max().array() + room};
+  }
   bool straight() const { return straight_; }
   Vector3d at(const Vector3d& L) const { return x_ * face_shape(order_, L); }
   VectorXd shape(const Vector3d& L) const { return face_shape(order_, L); }
@@ -68,20 +76,19 @@ class Face {
 struct Sample {
   Vector3d L;
   double weight;  ///< all sum to 1
-  bool rim;       ///< touches the face's edge (grid only)
 };
 
 /// Seven-point rule of degree 5 (Radon 1948), for whole faces.
 const std::vector<Sample>& whole_rule() {
   static const std::vector<Sample> rule = [] {
     const double root = std::sqrt(15.0);
-    std::vector<Sample> r{{Vector3d::Constant(1.0 / 3.0), 0.225, false}};
+    std::vector<Sample> r{{Vector3d::Constant(1.0 / 3.0), 0.225}};
     for (const double sign : {-1.0, 1.0}) {
       const double a = (6.0 + sign * root) / 21.0, w = (155.0 + sign * root) / 1200.0;
       for (int k = 0; k < 3; ++k) {
         Vector3d L = Vector3d::Constant(a);
         L[k] = 1.0 - 2.0 * a;
-        r.push_back({L, w, false});
+        r.push_back({L, w});
       }
     }
     return r;
@@ -99,7 +106,7 @@ const std::vector<Sample>& cut_rule() {
           if (up == 2 && i + j + 2 > kCuts) continue;
           const Vector3d L((i + up / 3.0) / kCuts, (j + up / 3.0) / kCuts,
                            (kCuts - i - j - 2.0 * up / 3.0) / kCuts);
-          r.push_back({L, 1.0 / (kCuts * kCuts), L.minCoeff() < 1.0 / kCuts});
+          r.push_back({L, 1.0 / (kCuts * kCuts)});
         }
       }
     }
@@ -131,18 +138,13 @@ class Collector {
       region_.faces.emplace_back(index, 1.0);
       return;
     }
-    std::vector<const Sample*> in;
-    bool only_rim = true;
+    int in = 0;
     for (const Sample& s : cut_rule()) {
       if (!patch.has(face.at(s.L))) continue;
-      in.push_back(&s);
-      only_rim = only_rim && s.rim;
+      add(face, s);
+      ++in;
     }
-    // A patch that only grazes a face's edge (a thin box around the neighbouring plane) does not
-    // mean the face; what is lost is below a sixteenth of the face's height.
-    if (in.empty() || only_rim) return;
-    for (const Sample* s : in) add(face, *s);
-    region_.faces.emplace_back(index, static_cast<double>(in.size()) / (kCuts * kCuts));
+    if (in > 0) region_.faces.emplace_back(index, static_cast<double>(in) / (kCuts * kCuts));
   }
 
   void finish() {
@@ -186,15 +188,77 @@ std::function<bool(const Vector3d&)> geometric(const RegionSpec& spec, double to
           tolerance](const Vector3d& x) { return (x - point).dot(normal) >= -tolerance; };
 }
 
+/// Whether the shape may reach into the box: quick, never wrongly no.
+std::function<bool(const Eigen::AlignedBox3d&)> may_reach(const RegionSpec& spec) {
+  if (const auto* box = std::get_if<RegionSpec::Box>(&spec.shape)) {
+    return [own = Eigen::AlignedBox3d(box->low, box->high)](const Eigen::AlignedBox3d& other) {
+      return own.intersects(other);
+    };
+  }
+  if (const auto* sphere = std::get_if<RegionSpec::Sphere>(&spec.shape)) {
+    return [center = sphere->center, r = sphere->radius](const Eigen::AlignedBox3d& other) {
+      return other.squaredExteriorDistance(center) <= r * r;
+    };
+  }
+  const auto& half = std::get<RegionSpec::Halfspace>(spec.shape);
+  return [point = half.point, normal = half.normal](const Eigen::AlignedBox3d& other) {
+    const Vector3d farthest = (normal.array() > 0).select(other.max(), other.min());
+    return (farthest - point).dot(normal) >= 0;
+  };
+}
+
+/// One plane side of a shape.
+struct Slab {
+  Vector3d normal;
+  double from;  ///< x.normal >= from
+};
+
+/// Directions along which the shape holds only a skin of the body, below a hundredth of its
+/// diagonal. Such a shape means the faces that lie flat in the skin, not the thin strips of the
+/// neighbouring sides that it also catches.
+std::vector<Slab> skins(const RegionSpec& spec, const TetMesh& mesh, double tolerance) {
+  std::vector<Slab> sides;
+  if (const auto* box = std::get_if<RegionSpec::Box>(&spec.shape)) {
+    for (int k = 0; k < 3; ++k) {
+      sides.push_back({Vector3d::Unit(k), box->low[k]});
+      sides.push_back({-Vector3d::Unit(k), -box->high[k]});
+    }
+  } else if (const auto* half = std::get_if<RegionSpec::Halfspace>(&spec.shape)) {
+    const Vector3d normal = half->normal.normalized();
+    sides.push_back({normal, half->point.dot(normal)});
+  }
+  std::vector<Slab> thin;
+  for (Slab side : sides) {
+    // Depth from this side of the shape to its far side or the body's, whichever comes first.
+    double far = (mesh.X.transpose() * side.normal).maxCoeff();
+    for (const Slab& other : sides) {
+      if (other.normal == -side.normal) far = std::min(far, -other.from);
+    }
+    side.from -= tolerance;
+    if (far - side.from < 0.01 * detail::diagonal(mesh.X)) thin.push_back(side);
+  }
+  return thin;
+}
+
 Patch geometric_patch(const RegionSpec& spec, const TetMesh& mesh) {
-  const auto has = geometric(spec, 1e-9 * detail::diagonal(mesh.X));
+  const double tolerance = 1e-9 * detail::diagonal(mesh.X);
+  const auto has = geometric(spec, tolerance);
   Patch patch;
   patch.has = has;
   patch.has_node = [has](int, const Vector3d& x) { return has(x); };
   // The shapes are convex: a straight face with all its corners inside is inside.
-  patch.share = [has, &mesh](int f) {
-    bool all = Face(mesh, f).straight();
-    for (int k = 0; k < 3; ++k) all = all && has(mesh.X.col(mesh.boundary(k, f)));
+  patch.share = [has, reaches = may_reach(spec), thin = skins(spec, mesh, tolerance),
+                 &mesh](int f) {
+    const Face face(mesh, f);
+    if (!reaches(face.box())) return Patch::Share::none;
+    bool all = face.straight();
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d x = mesh.X.col(mesh.boundary(k, f));
+      all = all && has(x);
+      for (const Slab& slab : thin) {
+        if (x.dot(slab.normal) < slab.from) return Patch::Share::none;
+      }
+    }
     return all ? Patch::Share::whole : Patch::Share::cut;
   };
   return patch;

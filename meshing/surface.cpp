@@ -4,8 +4,11 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 #include "meshing/detail.h"
 #include "meshing/surface_mesh.h"
@@ -30,21 +33,46 @@ int line_of(const std::filesystem::path& file, const std::string& word, int n) {
   return 0;
 }
 
+/// The library's own number parser is an ulp off and reads what it cannot parse as 0; so numbers
+/// are read here, strictly and exactly, and the faces by the library.
+void read_numbers(const std::filesystem::path& file, std::vector<Vector3d>& points,
+                  std::vector<Vector2d>& uv) {
+  std::ifstream in(file);
+  std::string line, field;
+  for (int number = 1; std::getline(in, line); ++number) {
+    std::istringstream fields(line);
+    if (!(fields >> field) || (field != "v" && field != "vt")) continue;
+    const int needed = field == "v" ? 3 : 2;
+    Vector3d values = Vector3d::Zero();
+    for (int k = 0; k < needed; ++k) {
+      char* end = nullptr;
+      const bool there = static_cast<bool>(fields >> field);
+      if (there) values[k] = std::strtod(field.c_str(), &end);
+      if (!there || *end != '\0' || !std::isfinite(values[k])) {
+        throw InputError({file.string(), number},
+                         there ? fmt::format("'{}' is no finite number", field)
+                               : fmt::format("fewer than {} numbers", needed),
+                         fmt::format("{} finite numbers", needed));
+      }
+    }
+    if (needed == 3) {
+      points.push_back(values);
+    } else {
+      uv.push_back(values.head<2>());
+    }
+  }
+}
+
 /// Faces arrive through callbacks in file order; groups and objects do not matter here.
 class ObjParser {
  public:
   explicit ObjParser(std::filesystem::path file) : file_(std::move(file)) {}
 
   TriangleSoup parse() {
+    read_numbers(file_, points_, uv_);
     std::ifstream in(file_);
     if (!in) throw InputError({file_.string()}, "cannot be read", "a readable obj file");
     tinyobj::callback_t callback;
-    callback.vertex_cb = [](void* self, double x, double y, double z, double) {
-      static_cast<ObjParser*>(self)->points_.emplace_back(x, y, z);
-    };
-    callback.texcoord_cb = [](void* self, double u, double v, double) {
-      static_cast<ObjParser*>(self)->uv_.emplace_back(u, v);
-    };
     callback.index_cb = [](void* self, tinyobj::index_t* corners, int n) {
       static_cast<ObjParser*>(self)->add_face(corners, n);
     };
@@ -72,7 +100,7 @@ class ObjParser {
     const int size = static_cast<int>(list.size());
     const int i = index > 0 ? index - 1 : size + index;
     if (index == 0 || i < 0 || i >= size) {
-      fault(face_, fmt::format("names {} {}, but {} stand before it", what, index, size),
+      fault(face_, fmt::format("names {} {}, but there are {}", what, index, size),
             fmt::format("an index from 1 to {}", size));
     }
     return i;

@@ -7,6 +7,7 @@
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
+#include <vtkExecutive.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPLYReader.h>
@@ -36,7 +37,11 @@ class Listener {
       if (all.empty() && text != nullptr) all = static_cast<const char*>(text);
       if (all.empty()) all = "unknown fault";
     });
+    listen_to(object);
+  }
+  void listen_to(vtkObject* object) {
     object->AddObserver(vtkCommand::ErrorEvent, command_);
+    object->AddObserver(vtkCommand::WarningEvent, command_);
   }
   /// Last sentence of VTK's message, on one line.
   std::string message() const {
@@ -87,6 +92,7 @@ detail::TriangleSoup soup_of(vtkPolyData* data, const std::filesystem::path& fil
 template <class Reader>
 detail::TriangleSoup read_with(Reader* reader, const std::filesystem::path& file) {
   Listener listener(reader);
+  listener.listen_to(reader->GetExecutive());
   reader->SetFileName(file.c_str());
   reader->Update();
   if (listener.heard()) {
@@ -121,6 +127,7 @@ vtkUnstructuredGrid* load(vtkXMLUnstructuredGridReader* reader, const std::files
     throw InputError(place, fmt::format("{}: there is no such file", file.string()), "a vtu file");
   }
   Listener listener(reader);
+  listener.listen_to(reader->GetExecutive());
   reader->SetReaderErrorObserver(listener.command());
   reader->SetParserErrorObserver(listener.command());
   reader->SetFileName(file.c_str());
@@ -215,6 +222,7 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh,
   partial += ".part";
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   Listener listener(writer);
+  listener.listen_to(writer->GetExecutive());
   writer->SetFileName(partial.c_str());
   writer->SetInputData(grid);
   writer->SetDataModeToAppended();

@@ -16,6 +16,7 @@ struct Frame {
   const View& view;
   const RayScene& scene;
   const Matrix3Xd& normals;               ///< unit vertex normals
+  const std::vector<Vector3d>& facets;    ///< unit normals of the triangles
   const std::vector<double>& visibility;  ///< of the sky, per vertex
   const Texture& texture;
   const PhotoState& photo;
@@ -43,7 +44,8 @@ void trace(const Frame& frame, const Vector2d* h, int count, Sample* out);
 struct Shade {
   double I = 0;
   Vector3d by_motion;     ///< by the material point's displacement
-  Vector3d by_normal;     ///< by the interpolated (not normalised) vertex normals; flat: unit normal
+  Vector3d by_normal;     ///< by the interpolated (not normalised) vertex normals
+  Vector3d by_facet;      ///< by the triangle's own unit normal
   Vector3d by_reference;  ///< by the point's reference position
   Eigen::Matrix<double, kPhotoColumns, 1> photo;
 };

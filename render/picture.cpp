@@ -7,11 +7,23 @@ namespace hookeye {
 
 namespace {
 
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+using PhotoRow = Eigen::Matrix<float, kPhotoColumns, 1>;
+
 /// Sums over the rays of one pixel that hit one triangle.
 struct Group {
   int triangle;
-  Matrix3d d_position, d_normal, d_reference;
-  Vector3d by_flat_normal;
+  Matrix3f d_position, d_normal, d_reference;
+  Vector3f by_facet;
+};
+
+/// A ray's intensity and derivatives, kept until all pixels that it reaches have been summed.
+struct RayShade {
+  int triangle;
+  float I;
+  Vector3f bary, by_motion, by_normal, by_facet, by_reference;
+  PhotoRow photo;
 };
 
 /// The rays of a band of pixel rows.
@@ -22,16 +34,16 @@ class Band {
     const View& view = task.frame.view;
     column0_ = view.x0 * n - m, row0_ = row * n - m;
     columns_ = (view.x1 - view.x0) * n + 2 * m, rows_ = (last_row - row) * n + 2 * m;
-    samples_.resize(static_cast<size_t>(columns_) * rows_);
+    rays_.resize(static_cast<size_t>(columns_) * rows_);
     // Blocks of 4 x 4 rays stay together in the tree.
     for (int y = 0; y < rows_; y += 4)
       for (int x = 0; x < columns_; x += 4) follow_block(x, y);
   }
-  /// Sample of tap (i, j) of a pixel.
-  const Sample& at(int x, int y, int i, int j) const {
+  /// Ray of tap (i, j) of a pixel; the next taps of the row follow it.
+  const RayShade* at(int x, int y, int i, int j) const {
     const int n = task_.filter.n;
-    return samples_[static_cast<size_t>((y - row_) * n + j) * columns_ +
-                    (x - task_.frame.view.x0) * n + i];
+    return &rays_[static_cast<size_t>((y - row_) * n + j) * columns_ +
+                  (x - task_.frame.view.x0) * n + i];
   }
 
  private:
@@ -43,24 +55,39 @@ class Band {
       h[i] = task_.grid.h(column0_ + x + i % w, row0_ + y + i / w);
     trace(task_.frame, h, w * rows, sample);
     for (int i = 0; i < w * rows; ++i)
-      samples_[static_cast<size_t>(y + i / w) * columns_ + x + i % w] = sample[i];
+      look(sample[i], &rays_[static_cast<size_t>(y + i / w) * columns_ + x + i % w]);
+  }
+
+  void look(const Sample& s, RayShade* out) const {
+    out->triangle = s.triangle;
+    out->I = static_cast<float>(task_.frame.photo.background);
+    if (s.triangle < 0) return;
+    const bool derivatives = task_.frame.options.derivatives;
+    const Shade shaded = shade(task_.frame, s, derivatives);
+    out->I = static_cast<float>(shaded.I);
+    out->bary = s.bary.cast<float>();
+    if (!derivatives) return;
+    out->by_motion = shaded.by_motion.cast<float>();
+    out->by_normal = shaded.by_normal.cast<float>();
+    out->by_facet = shaded.by_facet.cast<float>();
+    out->by_reference = shaded.by_reference.cast<float>();
+    out->photo = shaded.photo.cast<float>();
   }
 
   const BandTask& task_;
   int row_, column0_, row0_, columns_, rows_;
-  std::vector<Sample> samples_;
+  std::vector<RayShade> rays_;
 };
 
-/// Flat shading: the unit normal n = c/|c|, c = e1 x e2, moves with the corners.
-void add_flat_normal(const Frame& f, Group* g) {
+/// The triangle's own unit normal n = c/|c|, c = e1 x e2, moves with its corners.
+void add_facet_normal(const Frame& f, Group* g) {
   const auto& t = f.surface.triangles[g->triangle];
   const Vector3d e1 = f.x.col(t[1]) - f.x.col(t[0]), e2 = f.x.col(t[2]) - f.x.col(t[0]);
-  const Vector3d c = e1.cross(e2);
-  const double length = c.norm();
+  const double length = e1.cross(e2).norm();
   if (length <= 0) return;
-  const Vector3d n = c / length;
-  const Vector3d m = (g->by_flat_normal - n * n.dot(g->by_flat_normal)) / length;
-  const Vector3d by1 = e2.cross(m), by2 = m.cross(e1);
+  const Vector3d n = f.facets[g->triangle], by_n = g->by_facet.cast<double>();
+  const Vector3d m = (by_n - n * n.dot(by_n)) / length;
+  const Vector3f by1 = e2.cross(m).cast<float>(), by2 = m.cross(e1).cast<float>();
   g->d_position.col(1) += by1;
   g->d_position.col(2) += by2;
   g->d_position.col(0) -= by1 + by2;
@@ -73,85 +100,94 @@ class PixelSum {
   /// Filtered intensity, coverage and, where wanted, the derivative of pixel (x, y).
   void add(int x, int y, Rendering* out, BandDerivative* derivative) {
     const PixelFilter& filter = task_.filter;
-    double coverage = 0, missing = 0;
-    for (int j = 0; j < filter.taps(); ++j)
-      for (int i = 0; i < filter.taps(); ++i)
-        (band_.at(x, y, i, j).triangle >= 0 ? coverage : missing) +=
-            filter.axis[i] * filter.axis[j];
+    const int taps = filter.taps();
+    double I = 0, coverage = 0, missing = 0;
+    for (int j = 0; j < taps; ++j) {
+      const RayShade* ray = band_.at(x, y, 0, j);
+      double row_I = 0, row_coverage = 0, row_missing = 0;
+      for (int i = 0; i < taps; ++i) {
+        row_I += filter.axis[i] * ray[i].I;
+        (ray[i].triangle >= 0 ? row_coverage : row_missing) += filter.axis[i];
+      }
+      I += filter.axis[j] * row_I;
+      coverage += filter.axis[j] * row_coverage;
+      missing += filter.axis[j] * row_missing;
+    }
     if (coverage == 0) return;
     const int pixel = y * out->I.width + x;
-    const bool wanted = task_.frame.options.derivatives && (task_.silhouette || missing < 1e-6) &&
-                        (!task_.count || (*task_.count)[pixel]);
-    groups_.clear();
-    photo_.setZero();
-    double I = missing * task_.frame.photo.background;
-    for (int j = 0; j < filter.taps(); ++j)
-      for (int i = 0; i < filter.taps(); ++i) {
-        const Sample& s = band_.at(x, y, i, j);
-        if (s.triangle >= 0) I += add_ray(s, filter.axis[i] * filter.axis[j], wanted);
-      }
     out->I.at(x, y) = static_cast<float>(I);
     out->coverage.at(x, y) = missing == 0 ? 1.0f : static_cast<float>(coverage);
-    if (!wanted) return;
-    photo_[kBackground] = missing;
+    if (!task_.frame.options.derivatives || (!task_.silhouette && missing > 1e-6) ||
+        (task_.count && !(*task_.count)[pixel]))
+      return;
+    groups_.clear();
+    photo_.setZero();
+    for (int j = 0; j < taps; ++j) {
+      const RayShade* ray = band_.at(x, y, 0, j);
+      for (int i = 0; i < taps; ++i)
+        if (ray[i].triangle >= 0)
+          add_ray(ray[i], static_cast<float>(filter.axis[i] * filter.axis[j]));
+    }
+    photo_[kBackground] = static_cast<float>(missing);
     store(pixel, derivative);
   }
 
  private:
-  double add_ray(const Sample& s, double weight, bool derivatives) {
-    const Shade shaded = shade(task_.frame, s, derivatives);
-    if (!derivatives) return weight * shaded.I;
-    Group* group = nullptr;
+  Group& group_of(int triangle) {
     for (Group& g : groups_)
-      if (g.triangle == s.triangle) group = &g;
-    if (!group) {
-      group = &groups_.emplace_back();
-      group->triangle = s.triangle;
-      group->d_position.setZero();
-      group->d_normal.setZero();
-      group->d_reference.setZero();
-      group->by_flat_normal.setZero();
+      if (g.triangle == triangle) return g;
+    Group& g = groups_.emplace_back();
+    g.triangle = triangle;
+    g.d_position.setZero();
+    g.d_normal.setZero();
+    g.d_reference.setZero();
+    g.by_facet.setZero();
+    return g;
+  }
+
+  void add_ray(const RayShade& ray, float weight) {
+    Group& group = group_of(ray.triangle);
+    const Vector3f b = weight * ray.bary;
+    group.d_position.noalias() += ray.by_motion * b.transpose();
+    if (task_.frame.photo.shaded) {
+      group.d_normal.noalias() += ray.by_normal * b.transpose();
+      group.by_facet += weight * ray.by_facet;
     }
-    const Vector3d b = weight * s.bary;
-    group->d_position += shaded.by_motion * b.transpose();
-    if (task_.frame.options.smooth_normals)
-      group->d_normal += shaded.by_normal * b.transpose();
-    else
-      group->by_flat_normal += weight * shaded.by_normal;
-    if (task_.frame.spline) group->d_reference += shaded.by_reference * b.transpose();
-    photo_ += weight * shaded.photo;
-    return weight * shaded.I;
+    if (task_.frame.spline) group.d_reference.noalias() += ray.by_reference * b.transpose();
+    photo_ += weight * ray.photo;
   }
 
   void store(int pixel, BandDerivative* out) {
     for (Group& g : groups_) {
-      if (!task_.frame.options.smooth_normals) add_flat_normal(task_.frame, &g);
-      out->segments.push_back({g.triangle, g.d_position.cast<float>(), g.d_normal.cast<float>(),
-                               g.d_reference.cast<float>()});
+      if (task_.frame.photo.shaded) add_facet_normal(task_.frame, &g);
+      out->segments.push_back({g.triangle, g.d_position, g.d_normal, g.d_reference});
     }
     out->pixel.push_back(pixel);
     out->first.push_back(static_cast<int>(out->segments.size()));
-    out->photo.push_back(photo_.cast<float>());
+    out->photo.push_back(photo_);
   }
 
   const BandTask& task_;
   const Band& band_;
   std::vector<Group> groups_;
-  Eigen::Matrix<double, kPhotoColumns, 1> photo_;
+  PhotoRow photo_;
 };
 
 /// Triangle and barycentric coordinates under the centres of a row's pixels.
 void mark_centres(const BandTask& task, const Band& band, int y, Rendering* out) {
   const View& view = task.frame.view;
   const PixelFilter& filter = task.filter;
-  const auto mark = [&](int x, const Sample& s) {
+  const auto mark = [&](int x, int triangle, float b1, float b2) {
     const size_t pixel = static_cast<size_t>(y) * out->I.width + x;
-    out->triangle[pixel] = s.triangle;
-    if (s.triangle >= 0) out->uv[pixel] = {float(s.bary[1]), float(s.bary[2])};
+    out->triangle[pixel] = triangle;
+    if (triangle >= 0) out->uv[pixel] = {b1, b2};
   };
   if (filter.n % 2 == 1) {
     const int middle = filter.margin + filter.n / 2;
-    for (int x = view.x0; x < view.x1; ++x) mark(x, band.at(x, y, middle, middle));
+    for (int x = view.x0; x < view.x1; ++x) {
+      const RayShade& ray = *band.at(x, y, middle, middle);
+      mark(x, ray.triangle, ray.bary[1], ray.bary[2]);
+    }
     return;
   }
   for (int x = view.x0; x < view.x1; x += 16) {
@@ -163,7 +199,8 @@ void mark_centres(const BandTask& task, const Band& band, int y, Rendering* out)
       h[i] = (task.grid.h((x + i) * filter.n + half - 1, y * filter.n + half - 1) +
               task.grid.h((x + i) * filter.n + half, y * filter.n + half)) / 2;
     trace(task.frame, h, count, sample);
-    for (int i = 0; i < count; ++i) mark(x + i, sample[i]);
+    for (int i = 0; i < count; ++i)
+      mark(x + i, sample[i].triangle, float(sample[i].bary[1]), float(sample[i].bary[2]));
   }
 }
 
@@ -201,7 +238,7 @@ ImageDerivative join(const std::vector<BandDerivative>& bands, std::vector<EdgeS
   std::stable_sort(edges.begin(), edges.end(),
                    [](const EdgeSegment& a, const EdgeSegment& b) { return a.pixel < b.pixel; });
   ImageDerivative out;
-  std::vector<Eigen::Matrix<float, kPhotoColumns, 1>> photo;
+  std::vector<PhotoRow> photo;
   size_t pixels = 0, segments = 0;
   for (const BandDerivative& b : bands) pixels += b.pixel.size(), segments += b.segments.size();
   out.pixel.reserve(pixels), out.first.reserve(pixels + 1), photo.reserve(pixels);

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/Geometry>
 #include <deque>
 #include <stdexcept>
 
@@ -29,6 +30,14 @@ void for_each_task(int tasks, int threads, const Body& body) {
   arena.execute([&] { tbb::parallel_for(0, tasks, [&](int i) { body(i); }); });
 }
 
+std::vector<Vector3d> facet_normals(const std::vector<std::array<int, 3>>& triangles,
+                                    const Matrix3Xd& x) {
+  std::vector<Vector3d> out;
+  for (const auto& t : triangles)
+    out.push_back((x.col(t[1]) - x.col(t[0])).cross(x.col(t[2]) - x.col(t[0])).stableNormalized());
+  return out;
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -46,6 +55,7 @@ struct Renderer::Impl {
   Matrix3Xd reference_x;
   // Of the last positions; several cameras look at the same state.
   Matrix3Xd seen_x, seen_normals;
+  std::vector<Vector3d> seen_facets;
   std::vector<double> seen_visibility;
   int seen_rays = -1;
   std::deque<RayGrid> grids;
@@ -62,6 +72,7 @@ void Renderer::Impl::set_state(const Matrix3Xd& x, int rays) {
   if (!same) {
     scene.set_positions(x);
     seen_normals = vertex_normals.at(x);
+    seen_facets = facet_normals(surface.triangles, x);
     seen_x = x;
   }
   if (same && rays == seen_rays) return;
@@ -154,7 +165,7 @@ Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference,
   m.set_state(x, photo.shaded ? options.visibility_rays : 0);
   const View view(photo.camera, x, m.surface.triangles);
   const PixelFilter filter(options.rays_per_axis, options.filter_width_px);
-  Frame frame{m.surface, x, view, m.scene, m.seen_normals, m.seen_visibility, texture, photo,
+  Frame frame{m.surface, x, view, m.scene, m.seen_normals, m.seen_facets, m.seen_visibility, texture, photo,
               options};
   std::optional<View> reference_view;
   if (from_photo) {

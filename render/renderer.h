@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <memory>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace hookeye {
 
 struct RenderOptions {
   int rays_per_axis = 3;        ///< fixed pattern of rays_per_axis^2 rays per pixel
-  double filter_width_px = 1.5; ///< Blackman-Harris window over which the rays are weighted
-  bool smooth_normals = true;   ///< vertex normals: area-weighted mean of the face normals
+  double filter_width_px = 3.0; ///< whole Blackman-Harris window over which the rays are weighted;
+                                ///< renderers that state half of it (Cycles) call this 1.5
+  bool smooth_normals = true;   ///< vertex normals: face normals weighted by the corner's angle
   bool cast_shadows = true;
   int visibility_rays = 64;     ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
   bool derivatives = true;

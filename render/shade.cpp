@@ -95,9 +95,10 @@ Shade shade(const Frame& f, const Sample& s, bool derivatives) {
   const double gain = f.photo.gain;
   const Albedo a = albedo(f, s, derivatives);
   Shade out;
+  out.by_facet.setZero();
   Light light;
   Vector3d n = Vector3d::Zero();
-  double length = 1, visibility = 1;
+  double length = 1, visibility = 1, facet_share = 1;
   const bool smooth = f.options.smooth_normals;
   if (f.photo.shaded) {
     if (smooth)
@@ -108,7 +109,10 @@ Shade shade(const Frame& f, const Sample& s, bool derivatives) {
     if (length > 0) n /= length;
     visibility = 0;
     for (int k = 0; k < 3; ++k) visibility += s.bary[k] * f.visibility[t[k]];
-    light = light_of(f, s, n, visibility);
+    // Of the hemisphere about the interpolated normal the part below the facet sends nothing:
+    // cosine-weighted, (1 + n.facet)/2 remains.
+    facet_share = (1 + n.dot(f.facets[s.triangle])) / 2;
+    light = light_of(f, s, n, visibility * facet_share);
   }
   out.I = gain * (a.value * light.diffuse + light.gloss);
   if (!derivatives) return out;
@@ -116,14 +120,20 @@ Shade shade(const Frame& f, const Sample& s, bool derivatives) {
   Vector3d by_bary = gain * light.diffuse * a.by_bary;
   Vector3d by_n = gain * (a.value * light.diffuse_by_n + light.gloss_by_n);
   if (f.photo.shaded) {
-    for (int k = 0; k < 3; ++k)
-      by_bary[k] += gain * a.value * f.photo.ambient * f.visibility[t[k]];
+    const double by_visibility = gain * a.value * f.photo.ambient;
+    for (int k = 0; k < 3; ++k) by_bary[k] += by_visibility * facet_share * f.visibility[t[k]];
     if (smooth) {
+      const double by_share = by_visibility * visibility / 2;
+      out.by_facet = by_share * n;
+      by_n += by_share * f.facets[s.triangle];
       by_n = length > 0 ? Vector3d((by_n - n * n.dot(by_n)) / length) : Vector3d(Vector3d::Zero());
       for (int k = 0; k < 3; ++k) by_bary[k] += by_n.dot(f.normals.col(t[k]));
     }
   }
-  out.by_normal = by_n;
+  if (smooth)
+    out.by_normal = by_n;
+  else
+    out.by_normal.setZero(), out.by_facet = by_n;
   out.by_reference = gain * light.diffuse * a.by_reference;
 
   // Under the fixed ray dbary = -(1 - bary 1^T) Q dP bary, with P the corners in camera axes.
@@ -142,7 +152,7 @@ Shade shade(const Frame& f, const Sample& s, bool derivatives) {
   d[kZoom] = (f.view.perspective ? p.z() : 1.0) * zoom.dot(g.head<2>());
   d[kLogGain] = out.I;
   if (!f.photo.shaded) return out;
-  d[kAmbient] = gain * a.value * visibility;
+  d[kAmbient] = gain * a.value * visibility * facet_share;
   d.segment<3>(kSun) = gain * (a.value * light.diffuse_by_sun + light.gloss_by_sun);
   d[kSpecular] = gain * light.gloss_by_specular;
   if (f.photo.specular != 0 && s.lit) {

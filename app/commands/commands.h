@@ -9,6 +9,7 @@ namespace hookeye {
 void add_check(CLI::App& app, CommandBody& chosen);
 void add_mesh(CLI::App& app, CommandBody& chosen);
 void add_simulate(CLI::App& app, CommandBody& chosen);
+void add_render(CLI::App& app, CommandBody& chosen);
 void add_fit(CLI::App& app, CommandBody& chosen);
 void add_compare(CLI::App& app, CommandBody& chosen);
 void add_diagnose(CLI::App& app, CommandBody& chosen);
@@ -16,8 +17,8 @@ void add_add(CLI::App& app, CommandBody& chosen);
 void add_discover(CLI::App& app, CommandBody& chosen);
 void add_report(CLI::App& app, CommandBody& chosen);
 
-inline constexpr AddCommand kCommands[] = {add_check, add_mesh,     add_simulate, add_fit,
-                                           add_compare, add_diagnose, add_add,      add_discover,
-                                           add_report};
+inline constexpr AddCommand kCommands[] = {
+    add_check,   add_mesh,     add_simulate, add_render,   add_fit,
+    add_compare, add_diagnose, add_add,      add_discover, add_report};
 
 }  // namespace hookeye

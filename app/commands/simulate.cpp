@@ -1,16 +1,9 @@
 // hookeye simulate: the equilibrium of every example.
-#include <tbb/parallel_for.h>
-
 #include <CLI/CLI.hpp>
-#include <optional>
 
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
-#include "app/interrupt.h"
-#include "app/progress.h"
-#include "capture_io/scope.h"
-#include "estimation/model.h"
-#include "simulation/equilibrium.h"
+#include "app/commands/solve.h"
 
 namespace hookeye {
 namespace {
@@ -65,28 +58,6 @@ Json describe_state(const Model& model, int e, const Equilibrium& state) {
           {"supports", supports}};
 }
 
-struct Outcome {
-  Json described;
-  std::optional<NumericalFailure> failure;
-};
-
-Outcome simulate_example(const std::filesystem::path& out, const Model& model, int e) {
-  const ExampleSpec& example = model.scene->capture.examples[e];
-  const Scope scope("example " + example.name);
-  EquilibriumOptions options;
-  options.cancelled = [] { return interrupted().load(); };
-  EquilibriumSolver solver(model.scene->mesh());
-  auto solved = solver.solve(model.energy_of(e), model.examples[e].loading, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
-    failure->example = example.name;
-    return {{}, *failure};
-  }
-  const Equilibrium& state = std::get<Equilibrium>(solved);
-  Outcome outcome{describe_state(model, e, state), {}};
-  outcome.described["file"] = write_state(out, model, e, state).string();
-  return outcome;
-}
-
 void say_states(Session& session, const Json& examples, const Units& units) {
   std::vector<std::vector<std::string>> rows{{"example", "max |u| [" + units.length + "]", "Newton",
                                               "support", "force [" + units.force + "]"}};
@@ -109,22 +80,14 @@ void run_simulate(const SimulateOptions& options, Session& session) {
   const Capture capture = read_capture(options.capture);
   const auto scene = load_scene(capture, 1.0, false);
   for (const auto& said : scene->body->said) session.warn(said);
-  auto [form, p] = options.model.empty() ? std::pair{base_form(scene), VectorXd()}
-                                         : read_model(options.model, scene);
-  if (options.model.empty()) p = form.initial();
-  const Model model = form.realise(p);
-
+  const Model model = realise_model(options.model, scene);
   const std::filesystem::path out = options.out;
   std::filesystem::create_directories(out / "deformed");
-  const int count = static_cast<int>(capture.examples.size());
-  std::vector<Outcome> outcomes(capture.examples.size());
-  {
-    Progress progress("simulating", count);
-    tbb::parallel_for(0, count, [&](int e) {
-      outcomes[e] = simulate_example(out, model, e);
-      progress.advance("example " + capture.examples[e].name);
-    });
-  }
+  std::vector<Json> described(capture.examples.size());
+  auto failures = solve_examples(model, "simulating", [&](int e, const Equilibrium& state) {
+    described[e] = describe_state(model, e, state);
+    described[e]["file"] = write_state(out, model, e, state).string();
+  });
   auto& document = session.document;
   document["hookeye"] = 1;
   document["command"] = "simulate";
@@ -132,16 +95,14 @@ void run_simulate(const SimulateOptions& options, Session& session) {
   document["units"] = {{"length", capture.units.length}, {"force", capture.units.force}};
   document["unknowns"] = 3 * scene->body->mesh.nodes();
   document["examples"] = Json::array();
-  for (auto& outcome : outcomes)
-    if (!outcome.failure) document["examples"].push_back(std::move(outcome.described));
+  for (auto& example : described)
+    if (!example.is_null()) document["examples"].push_back(std::move(example));
   for (const auto& example : document["examples"])
     if (!example["stable"].get<bool>())
-      session.warn(
-          fmt::format("example {}: the equilibrium found is unstable (a buckled branch exists)",
-                      example["name"].get<std::string>()));
+      session.warn(fmt::format("example {}: this equilibrium is unstable, the body would buckle",
+                               example["name"].get<std::string>()));
   say_states(session, document["examples"], capture.units);
-  for (auto& outcome : outcomes)
-    if (outcome.failure) fail(std::move(*outcome.failure));
+  fail_on_first(failures);
   session.say("written to {}\n", (out / "deformed").string());
 }
 

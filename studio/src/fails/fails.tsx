@@ -61,7 +61,9 @@ function Thumbnails(props: {scene: BodyScene | null; surfaces: Map<string, Surfa
       {[...surfaces.keys()].map((name) => (
         <button key={name} aria-pressed={chosenExample.value === name}
                 onClick={() => (chosenExample.value = name)}>
-          <canvas ref={(c) => c && refs.current.set(name, c)} aria-hidden="true" />
+          <canvas ref={(c) => {
+            if (c) refs.current.set(name, c);
+          }} aria-hidden="true" />
           <span>{name}</span>
         </button>
       ))}

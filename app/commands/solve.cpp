@@ -1,0 +1,50 @@
+#include "app/commands/solve.h"
+
+#include <tbb/parallel_for.h>
+
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/session.h"
+#include "capture_io/scope.h"
+
+namespace hookeye {
+
+Model realise_model(const std::string& file, const std::shared_ptr<const Scene>& scene) {
+  if (!file.empty()) {
+    const auto [form, p] = read_model(file, scene);
+    return form.realise(p);
+  }
+  const ModelForm form = base_form(scene);
+  return form.realise(form.initial());
+}
+
+std::vector<std::optional<NumericalFailure>> solve_examples(
+    const Model& model, const std::string& title,
+    const std::function<void(int, const Equilibrium&)>& done) {
+  const auto& examples = model.scene->capture.examples;
+  std::vector<std::optional<NumericalFailure>> failures(examples.size());
+  EquilibriumOptions options;
+  options.cancelled = [] { return interrupted().load(); };
+  Progress progress(title, static_cast<int>(examples.size()));
+  tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) {
+    const Scope scope("example " + examples[i].name);
+    const int e = static_cast<int>(i);
+    EquilibriumSolver solver(model.scene->mesh());
+    const auto solved = solver.solve(model.energy_of(e), model.examples[i].loading, options);
+    if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
+      failures[i] = *failure;
+      failures[i]->example = examples[i].name;
+    } else {
+      done(e, std::get<Equilibrium>(solved));
+    }
+    progress.advance("example " + examples[i].name);
+  });
+  return failures;
+}
+
+void fail_on_first(std::vector<std::optional<NumericalFailure>>& failures) {
+  for (auto& failure : failures)
+    if (failure) fail(std::move(*failure));
+}
+
+}  // namespace hookeye

@@ -1,0 +1,23 @@
+#include "estimation/effect.h"
+
+namespace hookeye {
+
+std::shared_ptr<const Ingredient> Effect::candidate(const Model& model,
+                                                    const std::string& variant) const {
+  if (auto built = rebuild(model, variant)) return built;
+  for (auto& one : candidates(model, nullptr))
+    if (one->variant() == variant) return one;
+  return nullptr;
+}
+
+std::shared_ptr<const Ingredient> Effect::rebuild(const Model&, const std::string&) const {
+  return nullptr;
+}
+
+std::shared_ptr<const Ingredient> Effect::refit_form(const Model&,
+                                                     std::shared_ptr<const Ingredient> scored,
+                                                     Eigen::VectorXd&) const {
+  return scored;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye {
+
+namespace {
+
+const int kDirections = 24;
+
+/// Directions spread over the upper half sphere by the golden angle; three digits, because they
+/// are written into variants.
+Vector3d hemisphere_direction(int i) {
+  const double z = (i + 0.5) / kDirections;
+  const double angle = i * EIGEN_PI * (3.0 - std::sqrt(5.0));
+  const double r = std::sqrt(1.0 - z * z);
+  Vector3d a(r * std::cos(angle), r * std::sin(angle), z);
+  for (double& x : a) x = std::round(1000.0 * x) / 1000.0;
+  return a;
+}
+
+Vector3d turned(const Vector3d& a, double t1, double t2) {
+  const auto [first, second] = normal_axes(a);
+  return rotation_of(t1 * first + t2 * second) * a.normalized();
+}
+
+/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike.
+class Anisotropy final : public Effect {
+ public:
+  std::string name() const override { return "anisotropy"; }
+  EffectGroup group() const override { return EffectGroup::material; }
+  std::string title() const override { return "anisotropy"; }
+  std::string manual() const override {
+    return "The material is stiffer (or softer) along one direction of the rest state: fibres, "
+           "print lines, rolling. Easily taken for a soft clamp or a misaligned load; pulls along "
+           "two directions tell.";
+  }
+
+  Ingredients candidates(const Model& model, std::string*) const override {
+    Ingredients all;
+    for (int i = 0; i < kDirections; ++i) all.push_back(along(model, hemisphere_direction(i)));
+    return all;
+  }
+
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                            const std::string& variant) const override {
+    const auto numbers = numbers_in(variant);
+    if (numbers.size() != 3) return nullptr;
+    const Vector3d a(numbers[0], numbers[1], numbers[2]);
+    if (starts_with(variant, "along")) return along(model, a);
+    return starts_with(variant, "free around") ? free_around(model, a) : nullptr;
+  }
+
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    const auto numbers = numbers_in(scored->variant());
+    if (!starts_with(scored->variant(), "along") || numbers.size() != 3) return scored;
+    const double k = values[0];
+    values = Vector3d(k, 0.0, 0.0);
+    return free_around(model, Vector3d(numbers[0], numbers[1], numbers[2]));
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    const auto n = numbers_in(ingredient.variant());
+    Vector3d a = Vector3d(n.at(0), n.at(1), n.at(2)).normalized();
+    if (values.size() == 3) a = turned(a, values[1], values[2]);
+    if (a.z() < 0.0) a = -a;
+    // Uniaxial modulus along a: 3 mu + d2W/de2 with I4bar - 1 = 2 e, hence 4 k.
+    const double mu = initial_shear_modulus(model.energy);
+    const double change = 4.0 * values[0] / (3.0 * mu);
+    return fmt::format("{} % {} along {} than across (fibre modulus {} {})",
+                       figure(100.0 * std::abs(change)), change >= 0 ? "stiffer" : "softer",
+                       vector_text(a), figure(values[0]), model.scene->capture.units.stress());
+  }
+
+ private:
+  static Parameter stiffness(const Model& model) {
+    const double mu = initial_shear_modulus(model.energy);
+    return {"anisotropy.k",
+            model.scene->capture.units.stress(),
+            "fibre modulus",
+            0.0,
+            -0.5 * mu,
+            1e3 * mu,
+            mu,
+            false};
+  }
+
+  std::shared_ptr<const Ingredient> along(const Model& model, const Vector3d& a) const {
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = fmt::format("along {}", vector_text(a, 3));
+    spec.parameters = {stiffness(model)};
+    spec.touches = {.energy = true};
+    spec.apply = [a](const VectorXd& values, Model& m) { add_part(m.energy, fibre(values[0], a)); };
+    spec.derivative = [a](const VectorXd& values, const Model& m, int example,
+                          const Equilibrium& equilibrium, int, MechanicsDerivative& out) {
+      if (values[0] != 0.0) return false;
+      out.dR_dt = part_force(m, example, equilibrium.q, fibre(1.0, a));
+      return true;
+    };
+    return make_ingredient(std::move(spec));
+  }
+
+  std::shared_ptr<const Ingredient> free_around(const Model& model, const Vector3d& a) const {
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = fmt::format("free around {}", vector_text(a, 3));
+    spec.parameters = {
+        stiffness(model),
+        {"anisotropy.angle1", "rad", "first angle of the fibre", 0.0, -3.2, 3.2, 0.2, false},
+        {"anisotropy.angle2", "rad", "second angle of the fibre", 0.0, -3.2, 3.2, 0.2, false}};
+    spec.touches = {.energy = true};
+    spec.apply = [a](const VectorXd& values, Model& m) {
+      if (values[0] == 0.0) return;
+      add_part(m.energy, fibre(values[0], turned(a, values[1], values[2])));
+    };
+    return make_ingredient(std::move(spec));
+  }
+};
+
+}  // namespace
+
+}  // namespace hookeye
+
+HOOKEYE_DEFINE_EFFECT(anisotropy, Anisotropy)

@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye {
+
+namespace {
+
+/// One camera stands elsewhere than told, from some example on: x_in_camera' = exp([w]x) x + v.
+class CameraPose final : public Effect {
+ public:
+  std::string name() const override { return "camera_pose"; }
+  EffectGroup group() const override { return EffectGroup::measurement; }
+  std::string title() const override { return "a camera that moved"; }
+  std::string manual() const override {
+    return "One camera was knocked between two examples, or its pose was wrong from the start. "
+           "Easily taken for a set-up placed elsewhere (with one camera it is the same), for a "
+           "wrong focal length or, in slender bodies, for a bending load; a second camera tells.";
+  }
+
+  Ingredients candidates(const Model& model, std::string* why_not) const override {
+    const Scene& scene = *model.scene;
+    Ingredients all;
+    for (const auto& camera : scene.capture.cameras)
+      for (const auto& first :
+           first_examples(scene, [&](int e) { return has_photo_of(scene, e, camera.name); }))
+        all.push_back(moved(model, camera, first));
+    if (all.empty() && why_not) *why_not = "no photo is fitted";
+    return all;
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    const Vector3d w = values.head<3>(), v = values.tail<3>();
+    return fmt::format("camera {}: turned by {} degrees and moved by {} {}", ingredient.variant(),
+                       figure(w.norm() * 180.0 / EIGEN_PI), figure(v.norm()),
+                       model.scene->capture.units.length);
+  }
+
+ private:
+  std::shared_ptr<const Ingredient> moved(const Model& model, const Camera& camera,
+                                          const FirstExample& first) const {
+    const double size = body_size(*model.scene).size;
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = camera.name + " " + first.text;
+    for (int i = 0; i < 6; ++i) {
+      const bool turn = i < 3;
+      spec.parameters.push_back(
+          {fmt::format("camera_pose.{}.{}{}", camera.name, turn ? "r" : "t", "xyz"[i % 3]),
+           turn ? "rad" : model.scene->capture.units.length,
+           fmt::format("{} of camera '{}' {} its {} axis", turn ? "rotation" : "motion",
+                       camera.name, turn ? "about" : "along", "xyz"[i % 3]),
+           0.0, turn ? -1.0 : -10.0 * size, turn ? 1.0 : 10.0 * size, turn ? 0.002 : 0.01 * size,
+           false});
+    }
+    spec.touches = {.photos = true};
+    const std::string camera_name = camera.name;
+    const int k = first.index;
+    spec.apply = [camera_name, k](const VectorXd& values, Model& m) {
+      for (size_t e = k; e < m.examples.size(); ++e)
+        for (auto& photo : m.examples[e].photos)
+          if (photo.camera.name == camera_name)
+            photo.camera = photo.camera.moved(values.head<3>(), values.tail<3>());
+    };
+    return make_ingredient(std::move(spec));
+  }
+};
+
+}  // namespace
+
+}  // namespace hookeye
+
+HOOKEYE_DEFINE_EFFECT(camera_pose, CameraPose)

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye {
+
+namespace {
+
+/// Gains exp(a) on photos.
+class Exposure final : public Effect {
+ public:
+  std::string name() const override { return "exposure"; }
+  EffectGroup group() const override { return EffectGroup::measurement; }
+  std::string title() const override { return "exposure changed"; }
+  std::string manual() const override {
+    return "Some photos are brighter or darker as a whole: exposure time, aperture, a flickering "
+           "lamp. Easily taken for a light that turned; it moves no edge, so it is hardly ever "
+           "taken for mechanics.";
+  }
+
+  Ingredients candidates(const Model& model, std::string* why_not) const override {
+    const Scene& scene = *model.scene;
+    const auto& examples = scene.capture.examples;
+    Ingredients all;
+    for (const auto& camera : scene.capture.cameras)
+      for (const auto& first :
+           first_examples(scene, [&](int e) { return has_photo_of(scene, e, camera.name); }))
+        all.push_back(one_gain(
+            camera.name + " " + first.text,
+            [&](size_t e, const auto& photo) {
+              return static_cast<int>(e) >= first.index && photo.camera == camera.name;
+            },
+            model));
+    for (size_t k = 0; k < examples.size(); ++k)
+      if (!examples[k].validate && examples[k].photos.size() > 1)
+        all.push_back(one_gain(
+            "all cameras in " + examples[k].name, [&](size_t e, const auto&) { return e == k; },
+            model));
+    if (!all.empty()) all.push_back(every_photo(model));
+    if (all.empty() && why_not) *why_not = "no photo is fitted";
+    return all;
+  }
+
+  std::string sentence(const Model&, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    if (values.size() != 1)
+      return fmt::format("each photo has its own exposure, between {} and {} % of the told one",
+                         figure(100.0 * std::exp(values.minCoeff())),
+                         figure(100.0 * std::exp(values.maxCoeff())));
+    return fmt::format("exposure of {} is {} % {}", ingredient.variant(),
+                       figure(100.0 * std::abs(std::expm1(values[0]))),
+                       values[0] >= 0 ? "brighter" : "darker");
+  }
+
+ private:
+  using Slots = std::vector<std::pair<int, int>>;  ///< example, photo
+
+  static Parameter gain(const std::string& label, const std::string& of) {
+    return {"exposure." + label, "", "log gain of " + of, 0.0, -3.0, 3.0, 0.05, false};
+  }
+
+  template <class Chosen>
+  std::shared_ptr<const Ingredient> one_gain(const std::string& variant, Chosen chosen,
+                                             const Model& model) const {
+    const auto& examples = model.scene->capture.examples;
+    Slots slots;
+    for (size_t e = 0; e < examples.size(); ++e)
+      for (size_t k = 0; k < examples[e].photos.size(); ++k)
+        if (chosen(e, examples[e].photos[k]))
+          slots.emplace_back(static_cast<int>(e), static_cast<int>(k));
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = variant;
+    spec.parameters = {gain(variant, variant)};
+    spec.touches = {.photos = true};
+    spec.apply = [slots](const VectorXd& values, Model& m) {
+      for (const auto& [e, k] : slots) m.examples[e].photos[k].gain *= std::exp(values[0]);
+    };
+    return make_ingredient(std::move(spec));
+  }
+
+  /// One gain a photo, held-out photos excepted: nothing would fit theirs.
+  std::shared_ptr<const Ingredient> every_photo(const Model& model) const {
+    const auto& examples = model.scene->capture.examples;
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = "each photo";
+    Slots slots;
+    for (size_t e = 0; e < examples.size(); ++e)
+      for (size_t k = 0; k < examples[e].photos.size() && !examples[e].validate; ++k) {
+        const std::string camera = examples[e].photos[k].camera;
+        spec.parameters.push_back(
+            gain(examples[e].name + "." + camera,
+                 fmt::format("the photo of '{}' by '{}'", examples[e].name, camera)));
+        slots.emplace_back(static_cast<int>(e), static_cast<int>(k));
+      }
+    spec.touches = {.photos = true};
+    spec.apply = [slots](const VectorXd& values, Model& m) {
+      for (size_t i = 0; i < slots.size(); ++i)
+        m.examples[slots[i].first].photos[slots[i].second].gain *= std::exp(values[i]);
+    };
+    return make_ingredient(std::move(spec));
+  }
+};
+
+}  // namespace
+
+}  // namespace hookeye
+
+HOOKEYE_DEFINE_EFFECT(exposure, Exposure)

@@ -1,0 +1,183 @@
+#include <fmt/format.h>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye {
+
+namespace {
+
+const int kFieldBumps = 16, kBlobs = 16;
+
+/// Forces of the parts that a field scales: once it is in, those are the parts with weights (an
+/// effect added after it appends its part without any).
+std::shared_ptr<ElementForces> forces_of_scaled_parts() {
+  return std::make_shared<ElementForces>([](const Model& model, int example, const VectorXd& q) {
+    EnergyModel scaled = model.energy_of(example);
+    bool any = false;
+    for (const auto& part : model.energy.parts) any |= part.weight.size() != 0;
+    if (any) {
+      std::vector<EnergyModel::Part> kept;
+      for (size_t i = 0; i < scaled.parts.size(); ++i)
+        if (model.energy.parts[i].weight.size() != 0) kept.push_back(scaled.parts[i]);
+      scaled.parts = std::move(kept);
+    }
+    return element_forces(model.scene->body->mesh, scaled, q);
+  });
+}
+
+void scale_energy(Model& model, const VectorXd& log_factor) {
+  const VectorXd factor = log_factor.array().exp();
+  for (auto& part : model.energy.parts)
+    part.weight = part.weight.size() == 0 ? factor : VectorXd(part.weight.cwiseProduct(factor));
+}
+
+/// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
+class StiffnessField final : public Effect {
+ public:
+  std::string name() const override { return "stiffness_field"; }
+  EffectGroup group() const override { return EffectGroup::material; }
+  std::string title() const override { return "stiffness varies over the body"; }
+  std::string manual() const override {
+    return "Some part of the body is stiffer or softer than the rest: an inclusion, a void, "
+           "uneven cure. A field can imitate much else (soft clamps, wrong loads), so it is "
+           "believed only where one blob, or held-out examples, say the same.";
+  }
+
+  Ingredients candidates(const Model& model, std::string*) const override {
+    const Scene& scene = *model.scene;
+    const double size = body_size(scene).size;
+    auto forces = forces_of_scaled_parts();
+    Ingredients all = {
+        field(model, spread_centres(scene, kFieldBumps), field_radius(scene), forces)};
+    for (const Vector3d& c : spread_centres(scene, kBlobs))
+      all.push_back(blob(model, c, 0.12 * size, forces));
+    return all;
+  }
+
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                            const std::string& variant) const override {
+    if (variant == "free blob") return free_blob(model);
+    const auto n = numbers_in(variant);
+    if (starts_with(variant, "blob") && n.size() == 4)
+      return blob(model, Vector3d(n[0], n[1], n[2]), n[3], forces_of_scaled_parts());
+    if (!starts_with(variant, "field") || n.size() < 4 || n.size() % 3 != 1) return nullptr;
+    std::vector<Vector3d> centres;
+    for (size_t i = 1; i + 2 < n.size(); i += 3) centres.emplace_back(n[i], n[i + 1], n[i + 2]);
+    return field(model, centres, n[0], forces_of_scaled_parts());
+  }
+
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    const auto n = numbers_in(scored->variant());
+    if (!starts_with(scored->variant(), "blob") || n.size() != 4) return scored;
+    VectorXd start(5);
+    start << values[0], n[0], n[1], n[2], n[3];
+    values = start;
+    return free_blob(model);
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    if (starts_with(ingredient.variant(), "field"))
+      return fmt::format("stiffness varies over the body by factors from {} to {}",
+                         figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
+    VectorXd v(5);
+    const auto n = numbers_in(ingredient.variant());
+    if (values.size() == 5)
+      v = values;
+    else
+      v << values[0], n.at(0), n.at(1), n.at(2), n.at(3);
+    return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
+                       v[0] >= 0 ? "stiff" : "soft", figure(std::exp(v[0])), figure(v[4]),
+                       model.scene->capture.units.length, vector_text(v.segment<3>(1), 1));
+  }
+
+ private:
+  /// Neighbouring bumps overlap: the radius is that of equal shares of the volume.
+  static double field_radius(const Scene& scene) {
+    const double volume = element_volumes(scene.body->mesh).sum();
+    return std::stod(fmt::format("{:.3g}", 0.75 * std::cbrt(volume / kFieldBumps)));
+  }
+
+  static std::string place_text(const Vector3d& c) {
+    return fmt::format("({:g}, {:g}, {:g})", c.x(), c.y(), c.z());
+  }
+
+  static Parameter amplitude(const std::string& label) {
+    return {label, "", "log of the stiffness factor", 0.0, -4.0, 4.0, 0.3, false};
+  }
+
+  std::shared_ptr<const Ingredient> linear(IngredientSpec spec, std::vector<VectorXd> bumps,
+                                           std::shared_ptr<ElementForces> forces) const {
+    spec.name = name();
+    spec.touches = {.energy = true};
+    const auto phi = std::make_shared<const std::vector<VectorXd>>(std::move(bumps));
+    spec.apply = [phi](const VectorXd& values, Model& m) {
+      VectorXd log_factor = VectorXd::Zero(m.scene->body->mesh.size());
+      for (size_t i = 0; i < phi->size(); ++i) log_factor += values[i] * (*phi)[i];
+      scale_energy(m, log_factor);
+    };
+    // d(weight)/da_i = phi_i weight: element by element the present force times phi_i.
+    spec.derivative = [phi, forces](const VectorXd&, const Model& m, int example,
+                                    const Equilibrium& equilibrium, int k,
+                                    MechanicsDerivative& out) {
+      const auto f = forces->at(m, example, equilibrium.q);
+      out.dR_dt = scatter(m.scene->body->mesh, *f, (*phi)[k]);
+      return true;
+    };
+    return make_ingredient(std::move(spec));
+  }
+
+  std::shared_ptr<const Ingredient> field(const Model& model, const std::vector<Vector3d>& centres,
+                                          double radius,
+                                          std::shared_ptr<ElementForces> forces) const {
+    IngredientSpec spec;
+    spec.variant = fmt::format("field of bumps, radius {:g}, around", radius);
+    std::vector<VectorXd> bumps;
+    for (size_t i = 0; i < centres.size(); ++i) {
+      spec.variant += " " + place_text(centres[i]);
+      spec.parameters.push_back(amplitude(fmt::format("stiffness_field.a{}", i + 1)));
+      bumps.push_back(gaussian_bump(model.scene->body->mesh, centres[i], radius));
+    }
+    return linear(std::move(spec), std::move(bumps), std::move(forces));
+  }
+
+  std::shared_ptr<const Ingredient> blob(const Model& model, const Vector3d& centre, double radius,
+                                         std::shared_ptr<ElementForces> forces) const {
+    radius = std::stod(fmt::format("{:.3g}", radius));
+    IngredientSpec spec;
+    spec.variant = fmt::format("blob around {}, radius {:g}", place_text(centre), radius);
+    spec.parameters = {amplitude("stiffness_field.a")};
+    return linear(std::move(spec), {gaussian_bump(model.scene->body->mesh, centre, radius)},
+                  std::move(forces));
+  }
+
+  std::shared_ptr<const Ingredient> free_blob(const Model& model) const {
+    const BodySize body = body_size(*model.scene);
+    const std::string length = model.scene->capture.units.length;
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = "free blob";
+    spec.parameters = {amplitude("stiffness_field.a")};
+    for (int i = 0; i < 3; ++i)
+      spec.parameters.push_back({fmt::format("stiffness_field.{}", "xyz"[i]), length,
+                                 fmt::format("centre of the blob, {}", "xyz"[i]), body.centre[i],
+                                 body.low[i], body.high[i], 0.1 * body.size, false});
+    spec.parameters.push_back({"stiffness_field.radius", length, "radius of the blob",
+                               0.12 * body.size, 0.02 * body.size, body.size, 0.1 * body.size,
+                               true});
+    spec.touches = {.energy = true};
+    spec.apply = [](const VectorXd& v, Model& m) {
+      if (v[0] == 0.0) return;
+      scale_energy(m, v[0] * gaussian_bump(m.scene->body->mesh, v.segment<3>(1), v[4]));
+    };
+    return make_ingredient(std::move(spec));
+  }
+};
+
+}  // namespace
+
+}  // namespace hookeye
+
+HOOKEYE_DEFINE_EFFECT(stiffness_field, StiffnessField)

@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye {
+
+namespace {
+
+/// W = -b y / sqrt(x/3 + e0^2), x = I1bar - 3, y = I2bar - I1bar. Incompressible uniaxial strain e:
+/// x = 3 e^2, y = -2 e^3 to leading order, so W = 2 b e^2 sign(e) beyond e0 and of third order
+/// below it: the modulus in tension is higher than in compression by a fixed share (bimodular,
+/// Ambartsumyan 1965), with a smooth switch of width e0 and an unchanged modulus at rest.
+/// In shear y = 0: nothing changes.
+class Bimodular final : public EnergyTerm {
+ public:
+  Bimodular(double b, double e0)
+      : b_(b), e0_(e0), first_(mooney_rivlin(1, 0, 0)), second_(mooney_rivlin(0, 1, 0)) {}
+  std::string name() const override { return "bimodular"; }
+  std::vector<Parameter> parameters(const Units& units) const override {
+    Parameter b;
+    b.name = "b";
+    b.unit = units.stress();
+    b.long_name = "tension-compression difference";
+    b.value = b_;
+    b.typical = std::max(std::abs(b_), 1e-300);
+    return {b};
+  }
+  std::shared_ptr<const EnergyTerm> with(const VectorXd& values) const override {
+    return std::make_shared<Bimodular>(values[0], e0_);
+  }
+  double psi(const Matrix3d& F) const override {
+    if (!(F.determinant() > 0.0)) return std::numeric_limits<double>::infinity();
+    const double x = first_->psi(F);
+    return -b_ * (second_->psi(F) - x) / root(x);
+  }
+  Matrix3d P(const Matrix3d& F) const override { return b_ * dP_dtheta(F, 0); }
+  Matrix3d dP_dtheta(const Matrix3d& F, int) const override {
+    const double x = first_->psi(F), y = second_->psi(F) - x, s = root(x);
+    const Matrix3d G1 = first_->P(F), Gy = second_->P(F) - G1;
+    return -Gy / s + (y / (6.0 * s * s * s)) * G1;
+  }
+  Matrix9d dP_dF(const Matrix3d& F) const override {
+    using Vector9d = Eigen::Matrix<double, 9, 1>;
+    const double x = first_->psi(F), y = second_->psi(F) - x, s = root(x);
+    const Matrix3d P1 = first_->P(F), Py = second_->P(F) - P1;
+    const Eigen::Map<const Vector9d> g1(P1.data()), gy(Py.data());
+    const Matrix9d H1 = first_->dP_dF(F), Hy = second_->dP_dF(F) - H1;
+    // With s' = 1/(6 s): d(1/s)/dx = -1/(6 s^3), d(1/s^3)/dx = -1/(2 s^5).
+    const double a = 1.0 / (6.0 * s * s * s);
+    Matrix9d D = -Hy / s + (y * a) * H1;
+    D += a * (gy * g1.transpose() + g1 * gy.transpose());
+    D -= (y / (12.0 * std::pow(s, 5))) * g1 * g1.transpose();
+    return b_ * D;
+  }
+
+ private:
+  double root(double x) const { return std::sqrt(std::max(x, 0.0) / 3.0 + e0_ * e0_); }
+  double b_, e0_;
+  std::shared_ptr<const EnergyTerm> first_, second_;  ///< I1bar - 3, I2bar - 3
+};
+
+const double kSwitchStrain = 0.02;
+
+/// W += c [(I2bar - 3) - (I1bar - 3)]: odd in the strain, of third order; shear modulus unchanged.
+std::shared_ptr<const EnergyTerm> odd_term(double c) { return mooney_rivlin(-c, c, 0.0); }
+std::shared_ptr<const EnergyTerm> bimodular_term(double b) {
+  return std::make_shared<Bimodular>(b, kSwitchStrain);
+}
+
+class TensionCompressionAsymmetry final : public Effect {
+ public:
+  std::string name() const override { return "tension_compression_asymmetry"; }
+  EffectGroup group() const override { return EffectGroup::material; }
+  std::string title() const override { return "tension-compression asymmetry"; }
+  std::string manual() const override {
+    return "The material answers differently to tension and compression at the same size of "
+           "strain: growing with strain (as in Mooney-Rivlin rubber) or by a fixed share "
+           "(bimodular: foams, cracked or fibrous material). Easily taken for gravity, swelling "
+           "or a wrong load in a single example; a pull and a push of the same size tell.";
+  }
+
+  Ingredients candidates(const Model& model, std::string*) const override {
+    return {make(model, "growing with strain", odd_term),
+            make(model, "by a fixed share", bimodular_term)};
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    const double mu = initial_shear_modulus(model.energy);
+    if (ingredient.variant() == "by a fixed share") {
+      const double share = 8.0 * values[0] / (3.0 * mu);
+      return fmt::format("{} % {} in tension than in compression", figure(100.0 * std::abs(share)),
+                         share >= 0 ? "stiffer" : "softer");
+    }
+    // dW = -2 c e^3 uniaxially: secant stress -6 c e^2 against 3 mu e, at e = +-0.1
+    const double share = -2.0 * 2.0 * values[0] * 0.1 / mu;
+    return fmt::format("at 10 % strain {} % {} in tension than in compression (c01 {} {})",
+                       figure(100.0 * std::abs(share)), share >= 0 ? "stiffer" : "softer",
+                       figure(values[0]), model.scene->capture.units.stress());
+  }
+
+ private:
+  using Term = std::shared_ptr<const EnergyTerm> (*)(double);
+  std::shared_ptr<const Ingredient> make(const Model& model, const std::string& variant,
+                                         Term term) const {
+    const double mu = initial_shear_modulus(model.energy);
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = variant;
+    const bool odd = term == odd_term;
+    spec.parameters = {
+        {odd ? "tension_compression_asymmetry.c01" : "tension_compression_asymmetry.b",
+         model.scene->capture.units.stress(),
+         odd ? "Mooney-Rivlin modulus c01 taken from c10" : "tension-compression difference", 0.0,
+         -0.6 * mu, 0.6 * mu, 0.25 * mu, false}};
+    spec.touches = {.energy = true};
+    spec.apply = [term](const VectorXd& values, Model& m) { add_part(m.energy, term(values[0])); };
+    spec.derivative = [term](const VectorXd& values, const Model& m, int example,
+                             const Equilibrium& equilibrium, int, MechanicsDerivative& out) {
+      if (values[0] != 0.0) return false;
+      out.dR_dt = part_force(m, example, equilibrium.q, term(1.0));
+      return true;
+    };
+    return make_ingredient(std::move(spec));
+  }
+};
+
+}  // namespace
+
+}  // namespace hookeye
+
+HOOKEYE_DEFINE_EFFECT(tension_compression_asymmetry, TensionCompressionAsymmetry)

@@ -1,0 +1,100 @@
+// What the effects share: ingredients from functions, sizes of the body, forces of single terms.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "estimation/effect.h"
+#include "simulation/equilibrium.h"
+
+namespace hookeye {
+
+/// An ingredient told by values and functions.
+struct IngredientSpec {
+  std::string name, variant;
+  std::vector<Parameter> parameters;
+  Touches touches;
+  std::function<void(const VectorXd& values, Model& model)> apply;
+  /// As Ingredient::mechanics_derivative; empty: central differences.
+  std::function<bool(const VectorXd& values, const Model& model, int example,
+                     const Equilibrium& equilibrium, int parameter, MechanicsDerivative& out)>
+      derivative;
+  /// The parameters' `value` are nulls: apply() is not called for them, so that the model stays
+  /// bit-equal. False for refit forms that have no null (log stiffness of a spring).
+  bool has_null = true;
+};
+std::shared_ptr<const Ingredient> make_ingredient(IngredientSpec spec);
+using Ingredients = std::vector<std::shared_ptr<const Ingredient>>;
+
+/// Bounding box of the body at rest.
+struct BodySize {
+  Vector3d low, high, centre;
+  double size = 0.0;  ///< diagonal [length]
+};
+BodySize body_size(const Scene& scene);
+/// Rest centroids of the elements, 3 x m.
+Matrix3Xd element_centres(const TetMesh& mesh);
+VectorXd element_volumes(const TetMesh& mesh);
+/// `count` centres spread over the body by farthest points, rounded to 4 digits (they are written
+/// into variants, and read back they must be the same).
+std::vector<Vector3d> spread_centres(const Scene& scene, int count);
+/// exp(-|X - centre|^2 / (2 radius^2)) at the element centroids.
+VectorXd gaussian_bump(const TetMesh& mesh, const Vector3d& centre, double radius);
+
+/// Initial shear modulus of the first material (mean over parts that act everywhere): P_xy by F_xy
+/// at F = I [stress].
+double initial_shear_modulus(const EnergyModel& energy);
+/// Two unit axes normal to `direction` and to each other.
+std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction);
+Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector);
+
+/// Appends a part that acts everywhere.
+void add_part(EnergyModel& energy, std::shared_ptr<const EnergyTerm> term);
+/// Internal force [3n] of one term alone, as a part added to example `example` of `model`.
+VectorXd part_force(const Model& model, int example, const VectorXd& q,
+                    std::shared_ptr<const EnergyTerm> term);
+/// Sums element by element columns (3 npe x m), each times its factor, into 3n.
+VectorXd scatter(const TetMesh& mesh, const Eigen::MatrixXd& element_columns,
+                 const VectorXd& factor);
+
+/// Element forces at an example's equilibrium, kept for the many columns that share them.
+/// Safe to use from several threads.
+class ElementForces {
+ public:
+  using Compute = std::function<Eigen::MatrixXd(const Model&, int example, const VectorXd& q)>;
+  explicit ElementForces(Compute compute) : compute_(std::move(compute)) {}
+  std::shared_ptr<const Eigen::MatrixXd> at(const Model& model, int example, const VectorXd& q);
+
+ private:
+  struct Entry {
+    EnergyModel energy;  ///< keeps the terms alive, so that equal pointers mean equal terms
+    VectorXd q;
+    std::shared_ptr<const Eigen::MatrixXd> forces;
+  };
+  Compute compute_;
+  std::mutex mutex_;
+  std::map<int, Entry> entries_;
+};
+
+/// All numbers in a text, in order.
+std::vector<double> numbers_in(const std::string& text);
+/// "(0.5, -0.2, -0.8)".
+std::string vector_text(const Vector3d& v, int digits = 2);
+/// 3 significant digits.
+std::string figure(double value);
+bool starts_with(const std::string& text, const std::string& start);
+
+/// First examples from which something may be wrong: fitted ones for which `concerned` holds, the
+/// first of them standing for "from the start".
+struct FirstExample {
+  int index;         ///< applies to examples index, index + 1, ...
+  std::string text;  ///< "from the start", "from twist on"
+};
+std::vector<FirstExample> first_examples(const Scene& scene,
+                                         const std::function<bool(int example)>& concerned);
+bool has_photo_of(const Scene& scene, int example, const std::string& camera);
+
+}  // namespace hookeye

@@ -1,0 +1,279 @@
+#include "simulation/assembly.h"
+
+#include <Eigen/Eigenvalues>
+#include <limits>
+
+#include "simulation/quadrature.h"
+
+namespace hookeye {
+namespace {
+
+double weight_of(const EnergyModel::Part& part, int e) {
+  return part.weight.size() ? part.weight[e] : 1.0;
+}
+double swelling_of(const EnergyModel& model, int e) {
+  return model.swelling.size() ? model.swelling[e] : 1.0;
+}
+
+// Sums over the parts: psi = w g^3 psi(F/g), P = w g^2 P(F/g), dP/dF = w g dP/dF(F/g).
+double energy_density(const EnergyModel& model, int e, const Matrix3d& F) {
+  const double g = swelling_of(model, e);
+  double sum = 0;
+  for (const auto& part : model.parts) sum += weight_of(part, e) * part.term->psi(F / g);
+  return g * g * g * sum;
+}
+
+Matrix3d stress(const EnergyModel& model, int e, const Matrix3d& F) {
+  const double g = swelling_of(model, e);
+  Matrix3d sum = Matrix3d::Zero();
+  for (const auto& part : model.parts) sum += weight_of(part, e) * part.term->P(F / g);
+  return g * g * sum;
+}
+
+Matrix9d stiffness(const EnergyModel& model, int e, const Matrix3d& F) {
+  const double g = swelling_of(model, e);
+  Matrix9d sum = Matrix9d::Zero();
+  for (const auto& part : model.parts) sum += weight_of(part, e) * part.term->dP_dF(F / g);
+  return g * sum;
+}
+
+/// Negative eigenvalues turned positive: a descent direction that keeps the curvature's size.
+void project(Matrix9d& D) {
+  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(D);
+  if (eigen.eigenvalues()[0] >= 0) return;
+  D = eigen.eigenvectors() * eigen.eigenvalues().cwiseAbs().asDiagonal() *
+      eigen.eigenvectors().transpose();
+}
+
+}  // namespace
+
+/// Loops with the number of nodes of an element known at compile time.
+template <int N>
+struct Assembly::Kernel {
+  using Gradient = Eigen::Map<const Eigen::Matrix<double, N, 3>>;
+  using Nodes = Eigen::Matrix<double, 3, N>;
+  const Assembly& a;
+
+  Gradient gradient(int e, int point) const {
+    const size_t index = static_cast<size_t>(e) * (a.points_ + a.corners_) + point;
+    return Gradient(a.gradients_.data() + index * 3 * N);
+  }
+  Nodes gather(const VectorXd& q, int e) const {
+    Nodes x;
+    for (int i = 0; i < N; ++i) x.col(i) = q.segment<3>(3 * a.nodes_(i, e));
+    return x;
+  }
+
+  double energy(const EnergyModel& model, const VectorXd& q) const {
+    double sum = 0;
+    for (int e = 0; e < a.elements(); ++e) {
+      const Nodes x = gather(q, e);
+      for (int p = 0; p < a.points_; ++p)
+        sum += a.volume(e, p) * energy_density(model, e, x * gradient(e, p));
+    }
+    return sum;
+  }
+
+  template <class Stress>
+  Nodes force(const VectorXd& q, int e, Stress&& stress_at) const {
+    const Nodes x = gather(q, e);
+    Nodes f = Nodes::Zero();
+    for (int p = 0; p < a.points_; ++p) {
+      const auto G = gradient(e, p);
+      const Matrix3d P = a.volume(e, p) * stress_at(x * G);
+      f.noalias() += P * G.transpose();
+    }
+    return f;
+  }
+  void scatter(const Nodes& f, int e, VectorXd& R) const {
+    for (int i = 0; i < N; ++i) R.segment<3>(3 * a.nodes_(i, e)) += f.col(i);
+  }
+
+  /// K_ab += sum_AB g_aA D_AB g_bB over the 3x3 blocks of D; blocks b <= a only.
+  void add_stiffness(const Matrix9d& D, const Gradient& G,
+                     Eigen::Matrix<double, 3 * N, 3 * N>& K) const {
+    Eigen::Matrix<double, 9, 3 * N> T;
+    for (int b = 0; b < N; ++b)
+      T.template middleCols<3>(3 * b).noalias() = G(b, 0) * D.template leftCols<3>() +
+                                                   G(b, 1) * D.template middleCols<3>(3) +
+                                                   G(b, 2) * D.template rightCols<3>();
+    for (int j = 0; j < 3 * N; ++j) {
+      const Matrix3d t = Eigen::Map<const Matrix3d>(T.data() + 9 * j);
+      for (int b = j / 3; b < N; ++b)
+        K.template block<3, 1>(3 * b, j) += t.col(0) * G(b, 0) + t.col(1) * G(b, 1) + t.col(2) * G(b, 2);
+    }
+  }
+
+  void tangent(const EnergyModel& model, const VectorXd& q, bool projected, double* values) const {
+    Eigen::Matrix<double, 3 * N, 3 * N> K;
+    for (int e = 0; e < a.elements(); ++e) {
+      const Nodes x = gather(q, e);
+      K.setZero();
+      for (int p = 0; p < a.points_; ++p) {
+        const auto G = gradient(e, p);
+        Matrix9d D = stiffness(model, e, x * G);
+        if (projected) project(D);
+        D *= a.volume(e, p);
+        add_stiffness(D, G, K);
+      }
+      scatter_tangent(K, e, values);
+    }
+  }
+  void scatter_tangent(const Eigen::Matrix<double, 3 * N, 3 * N>& K, int e, double* values) const {
+    const int* block = a.block_.data() + static_cast<size_t>(e) * N * N;
+    for (int b = 0; b < N; ++b)
+      for (int i = 0; i < N; ++i) {
+        double* v = values + block[i + N * b];
+        const int stride = a.stride_[a.nodes_(b, e)];
+        for (int c = 0; c < 3; ++c)
+          for (int r = 0; r < 3; ++r)  // lower triangle of blocks holds K, the upper its mirror
+            v[c * stride + r] += i >= b ? K(3 * i + r, 3 * b + c) : K(3 * b + c, 3 * i + r);
+      }
+  }
+
+  double smallest_J(const VectorXd& q, int* element) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (int e = 0; e < a.elements(); ++e) {
+      const Nodes x = gather(q, e);
+      for (int p = 0; p < a.points_ + a.corners_; ++p) {
+        const Matrix3d F = x * gradient(e, p);
+        const double J = F.determinant();
+        if (J < least || !std::isfinite(J)) {
+          least = std::isfinite(J) ? J : -std::numeric_limits<double>::infinity();
+          if (element) *element = e;
+          if (!std::isfinite(J)) return least;
+        }
+      }
+    }
+    return least;
+  }
+};
+
+template <class Function>
+auto Assembly::dispatch(Function&& f) const {
+  return npe_ == 4 ? f(Kernel<4>{*this}) : f(Kernel<10>{*this});
+}
+
+Assembly::Assembly(const TetMesh& mesh)
+    : npe_(mesh.nodes_per_element()), n_(mesh.nodes()), nodes_(mesh.elements) {
+  const TetRule& rule = stiffness_rule(mesh.order);
+  std::vector<MatrixXd> dN;
+  for (const auto& p : rule.points) dN.push_back(shape_derivatives(mesh.order, p));
+  points_ = static_cast<int>(dN.size());
+  corners_ = mesh.order == 1 ? 0 : 4;
+  for (int c = 0; c < corners_; ++c)
+    dN.push_back(shape_derivatives(mesh.order, Eigen::Vector4d::Unit(c)));
+  gradients_.resize(static_cast<size_t>(elements()) * dN.size() * npe_ * 3);
+  volume_.resize(static_cast<size_t>(elements()) * points_);
+  double* out = gradients_.data();
+  MatrixXd x(3, npe_);
+  for (int e = 0; e < elements(); ++e) {
+    for (int i = 0; i < npe_; ++i) x.col(i) = mesh.X.col(nodes_(i, e));
+    for (size_t p = 0; p < dN.size(); ++p, out += 3 * npe_) {
+      const Matrix3d jacobian = x * dN[p];
+      Eigen::Map<MatrixXd>(out, npe_, 3) = dN[p] * jacobian.inverse();
+      if (static_cast<int>(p) < points_)
+        volume_[e * points_ + p] = rule.weights[p] * jacobian.determinant() / 6.0;
+    }
+  }
+}
+
+double Assembly::energy(const EnergyModel& model, const VectorXd& q) const {
+  return dispatch([&](auto kernel) { return kernel.energy(model, q); });
+}
+
+void Assembly::add_forces(const EnergyModel& model, const VectorXd& q, VectorXd& R) const {
+  dispatch([&](auto kernel) {
+    for (int e = 0; e < elements(); ++e)
+      kernel.scatter(kernel.force(q, e, [&](const Matrix3d& F) { return stress(model, e, F); }), e,
+                     R);
+    return 0;
+  });
+}
+
+MatrixXd Assembly::element_forces(const EnergyModel& model, const VectorXd& q) const {
+  MatrixXd all(3 * npe_, elements());
+  dispatch([&](auto kernel) {
+    for (int e = 0; e < elements(); ++e)
+      all.col(e) =
+          kernel.force(q, e, [&](const Matrix3d& F) { return stress(model, e, F); }).reshaped();
+    return 0;
+  });
+  return all;
+}
+
+VectorXd Assembly::dR_dtheta(const EnergyModel& model, const VectorXd& q, int part, int k) const {
+  VectorXd R = VectorXd::Zero(3 * n_);
+  const auto& chosen = model.parts[part];
+  dispatch([&](auto kernel) {
+    for (int e = 0; e < elements(); ++e) {
+      const double g = swelling_of(model, e), w = weight_of(chosen, e) * g * g;
+      if (w == 0) continue;
+      kernel.scatter(
+          kernel.force(q, e,
+                       [&](const Matrix3d& F) -> Matrix3d {
+                         return w * chosen.term->dP_dtheta(F / g, k);
+                       }),
+          e, R);
+    }
+    return 0;
+  });
+  return R;
+}
+
+void Assembly::build_pattern() {
+  std::vector<std::vector<int>> near(n_);
+  for (int e = 0; e < elements(); ++e)
+    for (int b = 0; b < npe_; ++b)
+      for (int i = 0; i < npe_; ++i) near[nodes_(b, e)].push_back(nodes_(i, e));
+  size_t blocks = 0;
+  stride_.resize(n_);
+  for (int a = 0; a < n_; ++a) {
+    std::sort(near[a].begin(), near[a].end());
+    near[a].erase(std::unique(near[a].begin(), near[a].end()), near[a].end());
+    stride_[a] = 3 * static_cast<int>(near[a].size());
+    blocks += near[a].size();
+  }
+  pattern_.resize(3 * n_, 3 * n_);
+  pattern_.resizeNonZeros(static_cast<Eigen::Index>(9 * blocks));
+  int next = 0, column = 0;
+  for (int a = 0; a < n_; ++a)
+    for (int c = 0; c < 3; ++c) {
+      pattern_.outerIndexPtr()[column++] = next;
+      for (int b : near[a])
+        for (int r = 0; r < 3; ++r) pattern_.innerIndexPtr()[next++] = 3 * b + r;
+    }
+  pattern_.outerIndexPtr()[column] = next;
+  std::fill_n(pattern_.valuePtr(), next, 0.0);
+  block_.resize(static_cast<size_t>(elements()) * npe_ * npe_);
+  for (int e = 0; e < elements(); ++e)
+    for (int b = 0; b < npe_; ++b) {
+      const int node = nodes_(b, e);
+      for (int i = 0; i < npe_; ++i) {
+        const auto at = std::lower_bound(near[node].begin(), near[node].end(), nodes_(i, e));
+        block_[(static_cast<size_t>(e) * npe_ + b) * npe_ + i] =
+            pattern_.outerIndexPtr()[3 * node] + 3 * static_cast<int>(at - near[node].begin());
+      }
+    }
+}
+
+const SparseMatrix& Assembly::pattern() {
+  if (pattern_.cols() == 0) build_pattern();
+  return pattern_;
+}
+
+void Assembly::set_tangent(const EnergyModel& model, const VectorXd& q, bool projected,
+                           SparseMatrix& K) {
+  if (K.nonZeros() != pattern().nonZeros() || K.cols() != pattern_.cols()) K = pattern_;
+  std::fill_n(K.valuePtr(), K.nonZeros(), 0.0);
+  dispatch([&](auto kernel) {
+    kernel.tangent(model, q, projected, K.valuePtr());
+    return 0;
+  });
+}
+
+double Assembly::smallest_J(const VectorXd& q, int* element) const {
+  return dispatch([&](auto kernel) { return kernel.smallest_J(q, element); });
+}
+
+}  // namespace hookeye

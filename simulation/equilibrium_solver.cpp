@@ -1,0 +1,232 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+
+#include "simulation/newton.h"
+#include "simulation/rigid_modes.h"
+
+namespace hookeye {
+
+struct EquilibriumSolver::Impl {
+  std::shared_ptr<const TetMesh> mesh;
+  Assembly assembly;
+  NewtonState state;
+  VectorXd q;  ///< last solution; empty: none
+  VectorXd rest;
+
+  explicit Impl(std::shared_ptr<const TetMesh> m)
+      : mesh(std::move(m)), assembly(*mesh), rest(mesh->X.reshaped()) {}
+
+  bool warm(const Problem& problem, const EquilibriumOptions& options, VectorXd& x);
+  NewtonOutcome climb(const Problem& problem, const EquilibriumOptions& options, VectorXd& x,
+                      double& reached);
+  std::variant<Equilibrium, NumericalFailure> finish(const Problem& problem, VectorXd x);
+};
+
+namespace {
+
+/// Jump of the prescribed unknowns from q to their place at load fraction s, 3n, zero elsewhere.
+VectorXd prescribed_jump(const Problem& problem, const VectorXd& rest, const VectorXd& from,
+                         const VectorXd& q, double s) {
+  VectorXd jump = VectorXd::Zero(q.size());
+  const auto& loading = problem.loading;
+  for (size_t i = 0; i < loading.prescribed.size(); ++i) {
+    const int u = loading.prescribed[i];
+    const double target = rest[u] + loading.displacement[static_cast<Eigen::Index>(i)];
+    jump[u] = from[u] + s * (target - from[u]) - q[u];
+  }
+  return jump;
+}
+
+/// Motion of all unknowns when the prescribed ones jump and the load grows: the jump, and on the
+/// free ones -K_ff^-1 (R(s_new) + K_fc jump) with the factor at hand.
+VectorXd predict(const Problem& problem, const NewtonState& state, const SparseMatrix& K,
+                 const VectorXd& q, double s, const VectorXd& jump) {
+  const VectorXd R = problem.residual(q, s) + K * jump;
+  VectorXd x;
+  state.factor->solve(-select(R, state.free), x);
+  VectorXd d = jump;
+  for (size_t i = 0; i < state.free.size(); ++i) d[state.free[i]] = x[static_cast<Eigen::Index>(i)];
+  return d;
+}
+
+/// Largest of 1, 1/2 ... of the step that keeps every det F above a tenth of what it was.
+double feasible(const Assembly& assembly, const VectorXd& q, const VectorXd& d, double least) {
+  const double floor = 0.1 * std::min(1.0, assembly.smallest_J(q));
+  for (double t = 1.0; t >= least; t *= 0.5)
+    if (assembly.smallest_J(q + t * d) > floor) return t;
+  return 0.0;
+}
+
+NewtonGoal goal_of(const EquilibriumOptions& options, double s) {
+  NewtonGoal goal;
+  goal.s = s;
+  goal.tolerance = options.tolerance;
+  goal.max_iterations = options.max_iterations;
+  goal.cancelled = options.cancelled;
+  return goal;
+}
+
+/// Unknowns to hold besides the prescribed ones where supports leave rigid motions free and the
+/// loads do not drive them (any placement is an equilibrium: one is chosen). Nothing where forces
+/// with a stiffness may hold the body. Sets `fault` when the loads do drive a free motion.
+std::vector<int> pins_of(const Problem& problem, const VectorXd& rest, std::string& fault) {
+  for (const auto& f : problem.loading.forces)
+    if (!f->dead()) return {};
+  const RigidModes modes(problem.mesh);
+  const MatrixXd free = modes.free(problem.loading.prescribed);
+  if (free.cols() == 0) return {};
+  if (modes.imbalance(free, problem.external(rest, 1.0)) > 1e-9) {
+    fault = fmt::format("nothing holds the body against {}",
+                        fmt::join(free_rigid_motions(problem.mesh, problem.loading), ", "));
+    return {};
+  }
+  return modes.pins(free);
+}
+
+}  // namespace
+
+/// From the last solution straight to the full load, with the last factor as long as it serves.
+bool EquilibriumSolver::Impl::warm(const Problem& problem, const EquilibriumOptions& options,
+                                   VectorXd& x) {
+  if (!state.factor || !state.factor->positive()) return false;
+  // The last solution's tangent moves the interior along with the supports; without such a move
+  // Newton starts where it is.
+  const VectorXd jump = prescribed_jump(problem, rest, x, x, 1.0);
+  VectorXd trial = x;
+  if (!jump.isZero(0.0)) trial += predict(problem, state, state.K, x, 1.0, jump);
+  if (!(assembly.smallest_J(trial) > 0)) return false;
+  NewtonGoal goal = goal_of(options, 1.0);
+  goal.reuse_factor = true;
+  goal.max_iterations = std::min(goal.max_iterations, 25);
+  if (!newton(problem, goal, state, trial).converged) return false;
+  x = std::move(trial);
+  return true;
+}
+
+/// Adaptive load steps from x, taken to be an equilibrium at fraction 0 with the supports at x.
+/// Intermediate states are only converged loosely.
+NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
+                                             const EquilibriumOptions& options, VectorXd& x,
+                                             double& reached) {
+  const VectorXd from = x;
+  NewtonOutcome out;
+  double s = 0, step = 1;
+  while (s < 1) {
+    step = std::min(step, 1 - s);
+    const double next = step >= 1 - s - 1e-12 ? 1.0 : s + step;
+    problem.tangent(x, s, false, state.K);
+    if (!state.factorize()) {
+      problem.tangent(x, s, true, state.K);
+      if (!state.factorize()) {
+        out.reason = "the tangent is singular: something is not held";
+        return out;
+      }
+    }
+    const VectorXd jump = prescribed_jump(problem, rest, from, x, next);
+    const VectorXd d = predict(problem, state, state.K, x, next, jump);
+    const double t = feasible(assembly, x, d, options.smallest_step / std::max(step, 1e-12));
+    if (t < 1) {
+      // The predictor is linear in the load: a part of it belongs to that part of the load.
+      out.reason = "the next load step would invert an element";
+      step *= t > 0 ? t : 0.25;
+    } else {
+      VectorXd trial = x + d;
+      NewtonGoal goal = goal_of(options, next);
+      if (next < 1) goal.tolerance = std::max(goal.tolerance, 1e-3);
+      goal.max_iterations = std::min(goal.max_iterations, next < 1 ? 15 : options.max_iterations);
+      out = newton(problem, goal, state, trial);
+      if (out.reason == "cancelled") return out;
+      if (out.converged) {
+        x = std::move(trial);
+        reached = s = next;
+        step *= 2;
+        continue;
+      }
+      step *= 0.4;
+    }
+    if (step < options.smallest_step) {
+      int element = -1;
+      const double J = assembly.smallest_J(x, &element);
+      out.converged = false;
+      out.reason += fmt::format(" (most compressed: element {}, det F {:.3g})", element, J);
+      return out;
+    }
+  }
+  return out;
+}
+
+std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(const Problem& problem,
+                                                                            VectorXd x) {
+  Equilibrium e;
+  e.R = problem.residual(x, 1.0);
+  e.stable = state.factorize();  // newton() left the true tangent at x in K
+  if (!e.stable && !state.factor->factorize_indefinite(state.K))
+    return NumericalFailure{problem.loading.name, 1.0,
+                            "the tangent at the solution is singular: the body buckles here or is not held"};
+  for (int u : state.free) e.R[u] = 0;
+  e.K = state.K;
+  e.factor = state.factor;
+  e.newton_iterations = state.iterations;
+  e.factorizations = state.factorizations;
+  q = x;
+  e.q = std::move(x);
+  return e;
+}
+
+EquilibriumSolver::EquilibriumSolver(std::shared_ptr<const TetMesh> mesh)
+    : impl_(std::make_unique<Impl>(std::move(mesh))) {}
+EquilibriumSolver::~EquilibriumSolver() = default;
+EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
+EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
+
+void EquilibriumSolver::forget() {
+  impl_->q.resize(0);
+  impl_->state.factor.reset();
+}
+
+std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
+    const EnergyModel& energy, const Loading& loading, const EquilibriumOptions& options,
+    const VectorXd* start) {
+  Impl& s = *impl_;
+  const Problem problem{*s.mesh, s.assembly, energy, loading};
+  std::string fault;
+  const std::vector<int> pins = pins_of(problem, s.rest, fault);
+  if (!fault.empty()) return NumericalFailure{loading.name, 0.0, fault};
+  std::vector<int> free = problem.free_unknowns();
+  std::erase_if(free, [&](int u) { return std::binary_search(pins.begin(), pins.end(), u); });
+  if (free != s.state.free) {
+    s.state.free = std::move(free);
+    s.state.symbolic.reset();
+    s.state.factor.reset();
+  }
+  s.state.iterations = s.state.factorizations = 0;
+  VectorXd x = s.q.size() ? s.q : start ? *start : s.rest;
+  if (s.q.size() && s.warm(problem, options, x)) return s.finish(problem, std::move(x));
+
+  NumericalFailure failure{loading.name, 0.0, ""};
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    double reached = 0;
+    const bool from_rest = attempt == 1 || (!s.q.size() && !start);
+    if (from_rest) x = s.rest;
+    const NewtonOutcome out = s.climb(problem, options, x, reached);
+    if (out.converged) return s.finish(problem, std::move(x));
+    failure.load_fraction = reached;
+    failure.reason = out.reason;
+    if (from_rest || out.reason == "cancelled") break;
+  }
+  return failure;
+}
+
+std::variant<Equilibrium, NumericalFailure> solve_equilibrium(const TetMesh& mesh,
+                                                              const EnergyModel& energy,
+                                                              const Loading& loading,
+                                                              const EquilibriumOptions& options) {
+  // Not owned: the solver does not outlive this call.
+  EquilibriumSolver solver(std::shared_ptr<const TetMesh>(std::shared_ptr<void>(), &mesh));
+  return solver.solve(energy, loading, options);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,189 @@
+#include "simulation/newton.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace hookeye {
+namespace {
+
+/// Conjugate gradients dearer than this many solves lose against a factorization.
+constexpr int kMaxCg = 15;
+/// Below this error the tangent changes little from one iteration to the next.
+constexpr double kNear = 0.3;
+
+VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::Index size) {
+  VectorXd all = VectorXd::Zero(size);
+  for (size_t i = 0; i < unknowns.size(); ++i) all[unknowns[i]] = some[static_cast<Eigen::Index>(i)];
+  return all;
+}
+
+struct LineSearch {
+  double step = 0.0;
+  VectorXd q, R;
+  int inverted_element = -1;  ///< the one that limited the step, -1: none
+};
+
+/// Longest of 1, 1/2, 1/4 ... that inverts nothing and either lowers the potential (Armijo) or
+/// shrinks the slope along the direction (Bonet and Wood, 9.6.2), which also serves loads without
+/// a potential and differences below rounding.
+LineSearch search(const Problem& problem, double s, const VectorXd& q, const VectorXd& R,
+                  const VectorXd& d, bool use_potential) {
+  LineSearch out;
+  const double slope = R.dot(d);
+  double start = 0;
+  if (use_potential) start = problem.potential(q, s);
+  double step = 1.0;
+  for (int i = 0; i < 24; ++i, step *= 0.5) {
+    out.q = q + step * d;
+    int element = -1;
+    if (!(problem.assembly.smallest_J(out.q, &element) > 0)) {
+      out.inverted_element = element;
+      continue;
+    }
+    out.R = problem.residual(out.q, s);
+    if (!out.R.allFinite()) continue;
+    bool good = std::abs(out.R.dot(d)) <= 0.8 * std::abs(slope);
+    if (use_potential) {
+      const double now = problem.potential(out.q, s);
+      const double rounding = 1e-13 * (std::abs(now) + std::abs(start));
+      good = now <= start + 1e-4 * step * slope ||
+             (good && now <= start + rounding);
+    }
+    if (good) {
+      out.step = step;
+      return out;
+    }
+  }
+  return out;
+}
+
+/// A descent direction from the true tangent (unless `project` says that it will be indefinite),
+/// else from the projected one, else from that with a growing shift. False: nothing factorizes.
+bool direction_by_factor(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
+                         const VectorXd& q, const VectorXd& b, bool& project, VectorXd& x) {
+  if (!project && state.factorize()) {
+    state.factor->solve(b, x);
+    return x.allFinite();
+  }
+  project = true;
+  problem.tangent(q, goal.s, true, state.K);
+  double shift = 0;
+  const double diagonal = state.K.diagonal().cwiseAbs().mean();
+  for (int i = 0; i < 12; ++i) {
+    if (state.factorize(shift)) {
+      state.factor->solve(b, x);
+      return x.allFinite();
+    }
+    shift = shift == 0 ? 1e-6 * diagonal : 10 * shift;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool NewtonState::factorize(double shift) {
+  if (!symbolic || !symbolic->fits(K, free)) {
+    symbolic = std::make_shared<SymbolicFactor>(K, free);
+    factor.reset();
+  }
+  if (!factor || factor.use_count() > 1 || factor->symbolic() != symbolic)
+    factor = std::make_shared<TangentFactor>(symbolic);
+  ++factorizations;
+  return factor->factorize(K, shift);
+}
+
+double relative_error(const Problem& problem, const NewtonState& state, const VectorXd& R,
+                      const VectorXd& q, double s) {
+  const VectorXd f = problem.external(q, s);
+  double largest = f.cwiseAbs().maxCoeff();
+  for (int u : problem.loading.prescribed) largest = std::max(largest, std::abs(R[u]));
+  if (state.K.nonZeros() > 0) {
+    const double size = (problem.mesh.X.rowwise().maxCoeff() - problem.mesh.X.rowwise().minCoeff()).norm();
+    largest = std::max(largest, 1e-9 * size * state.K.diagonal().cwiseAbs().maxCoeff());
+  }
+  double error = 0;
+  for (int u : state.free) error = std::max(error, std::abs(R[u]));
+  return largest > 0 ? error / largest : error;
+}
+
+int conjugate_gradients(const SparseMatrix& K, const TangentFactor& factor, const VectorXd& b,
+                        double tolerance, int max_iterations, VectorXd& x) {
+  const std::vector<int>& free = factor.free();
+  VectorXd r = b, z, Kp;
+  factor.solve(r, z);
+  x = VectorXd::Zero(b.size());
+  VectorXd p = z;
+  double rz = r.dot(z);
+  const double goal = tolerance * tolerance * rz;  // |r| in the norm of K^-1: soft modes count
+  if (rz == 0) return 1;
+  for (int i = 1; i <= max_iterations; ++i) {
+    Kp = select(K * spread(p, free, K.cols()), free);
+    const double curvature = p.dot(Kp);
+    if (!(curvature > 0) || !(rz > 0)) return -1;
+    const double alpha = rz / curvature;
+    x += alpha * p;
+    r -= alpha * Kp;
+    factor.solve(r, z);
+    const double next = r.dot(z);
+    if (next <= goal) return i;
+    p = z + (next / rz) * p;
+    rz = next;
+  }
+  return -1;
+}
+
+NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
+                     VectorXd& q) {
+  NewtonOutcome out;
+  const bool use_potential = problem.has_potential();
+  bool reuse = goal.reuse_factor && state.factor && state.factor->positive();
+  bool projected = false;
+  VectorXd R = problem.residual(q, goal.s);
+  double last_error = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= goal.max_iterations; ++i) {
+    if (goal.cancelled && goal.cancelled()) return {false, last_error, "cancelled"};
+    problem.tangent(q, goal.s, false, state.K);
+    out.error = relative_error(problem, state, R, q, goal.s);
+    if (out.error <= goal.tolerance) {
+      out.converged = true;
+      return out;
+    }
+    if (i == goal.max_iterations) break;
+    ++state.iterations;
+    const VectorXd b = -select(R, state.free);
+    VectorXd x;
+    // Forcing term: what quadratic convergence can use (Eisenstat and Walker 1996), and no more
+    // than the last step needs.
+    const double forcing = std::clamp(std::max(0.01 * out.error, 0.05 * goal.tolerance / out.error),
+                                      1e-7, 1e-2);
+    const bool by_cg = reuse && state.symbolic->fits(state.K, state.free) &&
+                       conjugate_gradients(state.K, *state.factor, b, forcing, kMaxCg, x) > 0;
+    if (!by_cg) {
+      // Far from the solution an indefinite tangent is followed by others.
+      projected = projected && out.error > kNear;
+      if (!direction_by_factor(problem, goal, state, q, b, projected, x))
+        return {false, out.error, "the tangent is singular: something is not held"};
+    }
+    reuse = (by_cg || !projected) && (by_cg || out.error < kNear);
+    LineSearch found = search(problem, goal.s, q, R, spread(x, state.free, q.size()), use_potential);
+    if (found.step == 0) {
+      if (out.error <= 100 * goal.tolerance && out.error <= 1e-7) {  // rounding stops it
+        out.converged = out.error <= 10 * goal.tolerance;
+        if (out.converged) return out;
+      }
+      out.reason = found.inverted_element >= 0
+                       ? fmt::format("every step inverts element {}", found.inverted_element)
+                       : "no step along Newton's direction lowers the potential";
+      return out;
+    }
+    q = std::move(found.q);
+    R = std::move(found.R);
+    last_error = out.error;
+  }
+  out.reason = fmt::format("no equilibrium after {} Newton iterations, residual {:.1e} of the largest force",
+                           goal.max_iterations, out.error);
+  return out;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,51 @@
+// Newton's method on the free unknowns at a fixed load fraction.
+#pragma once
+
+#include <string>
+
+#include "simulation/problem.h"
+#include "simulation/sparse_factor.h"
+
+namespace hookeye {
+
+/// Factors and counters that live across load steps and solves.
+struct NewtonState {
+  std::vector<int> free;
+  std::shared_ptr<const SymbolicFactor> symbolic;
+  std::shared_ptr<TangentFactor> factor;  ///< of some earlier tangent; null: none
+  SparseMatrix K;                         ///< last tangent assembled
+  int iterations = 0, factorizations = 0;
+
+  /// Factor of the K at hand: reuses the memory of `factor` unless an Equilibrium holds it.
+  bool factorize(double shift = 0.0);
+};
+
+struct NewtonGoal {
+  double s = 1.0;
+  double tolerance = 1e-9;     ///< |R_free|_inf over the largest nodal force
+  int max_iterations = 60;
+  bool reuse_factor = false;   ///< start with conjugate gradients on the factor at hand
+  std::function<bool()> cancelled;
+};
+
+struct NewtonOutcome {
+  bool converged = false;
+  double error = 0.0;  ///< |R_free|_inf over the largest nodal force
+  std::string reason;
+};
+
+/// Moves q's free unknowns to equilibrium; prescribed ones stay. q must have det F > 0 everywhere.
+NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
+                     VectorXd& q);
+
+/// |R_free|_inf over the largest nodal force: reactions, external forces, and a floor that keeps
+/// an unloaded body from dividing rounding by rounding (stiffness times 1e-9 of the size).
+double relative_error(const Problem& problem, const NewtonState& state, const VectorXd& R,
+                      const VectorXd& q, double s);
+
+/// Solves K_ff x = b by conjugate gradients preconditioned with the factor. Returns the number of
+/// iterations, or -1 where `max_iterations` did not reach |r| <= tolerance |b| or K is indefinite.
+int conjugate_gradients(const SparseMatrix& K, const TangentFactor& factor, const VectorXd& b,
+                        double tolerance, int max_iterations, VectorXd& x);
+
+}  // namespace hookeye

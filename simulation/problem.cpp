@@ -1,0 +1,101 @@
+#include "simulation/problem.h"
+
+namespace hookeye {
+
+bool Problem::has_potential() const {
+  for (const auto& f : loading.forces)
+    if (!f->has_potential()) return false;
+  return true;
+}
+
+double Problem::potential(const VectorXd& q, double s) const {
+  double sum = assembly.energy(energy, q);
+  for (const auto& f : loading.forces) sum += f->potential(mesh, q, s);
+  return sum;
+}
+
+VectorXd Problem::residual(const VectorXd& q, double s) const {
+  VectorXd R = VectorXd::Zero(q.size());
+  assembly.add_forces(energy, q, R);
+  for (const auto& f : loading.forces) f->add_residual(mesh, q, s, R);
+  return R;
+}
+
+VectorXd Problem::external(const VectorXd& q, double s) const {
+  VectorXd R = VectorXd::Zero(q.size());
+  for (const auto& f : loading.forces) f->add_residual(mesh, q, s, R);
+  return -R;
+}
+
+void Problem::tangent(const VectorXd& q, double s, bool projected, SparseMatrix& K) const {
+  assembly.set_tangent(energy, q, projected, K);
+  Triplets triplets;
+  for (const auto& f : loading.forces)
+    if (!f->dead()) f->add_tangent(mesh, q, s, triplets);
+  if (!triplets.empty()) add_triplets(triplets, K);
+}
+
+std::vector<int> Problem::free_unknowns() const {
+  std::vector<int> free;
+  free.reserve(3 * mesh.nodes() - loading.prescribed.size());
+  auto next = loading.prescribed.begin();
+  for (int u = 0; u < 3 * mesh.nodes(); ++u) {
+    if (next != loading.prescribed.end() && *next == u)
+      ++next;
+    else
+      free.push_back(u);
+  }
+  return free;
+}
+
+void add_triplets(const Triplets& triplets, SparseMatrix& K) {
+  Triplets outside;
+  for (const auto& t : triplets) {
+    const int* first = K.innerIndexPtr() + K.outerIndexPtr()[t.col()];
+    const int* last = K.innerIndexPtr() + K.outerIndexPtr()[t.col() + 1];
+    const int* at = std::lower_bound(first, last, t.row());
+    if (at != last && *at == t.row())
+      K.valuePtr()[at - K.innerIndexPtr()] += t.value();
+    else
+      outside.push_back(t);
+  }
+  if (outside.empty()) return;
+  SparseMatrix more(K.rows(), K.cols());
+  more.setFromTriplets(outside.begin(), outside.end());
+  K = SparseMatrix(K + more);
+}
+
+VectorXd select(const VectorXd& all, const std::vector<int>& unknowns) {
+  VectorXd some(static_cast<Eigen::Index>(unknowns.size()));
+  for (size_t i = 0; i < unknowns.size(); ++i) some[static_cast<Eigen::Index>(i)] = all[unknowns[i]];
+  return some;
+}
+
+double internal_energy(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {
+  return Assembly(mesh).energy(energy, q);
+}
+
+VectorXd residual(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
+                  const VectorXd& q, double load_fraction) {
+  Assembly assembly(mesh);
+  return Problem{mesh, assembly, energy, loading}.residual(q, load_fraction);
+}
+
+SparseMatrix tangent(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
+                     const VectorXd& q, double load_fraction) {
+  Assembly assembly(mesh);
+  SparseMatrix K;
+  Problem{mesh, assembly, energy, loading}.tangent(q, load_fraction, false, K);
+  return K;
+}
+
+MatrixXd element_forces(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {
+  return Assembly(mesh).element_forces(energy, q);
+}
+
+VectorXd dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q, int part,
+                   int k) {
+  return Assembly(mesh).dR_dtheta(energy, q, part, k);
+}
+
+}  // namespace hookeye

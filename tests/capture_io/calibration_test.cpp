@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "capture_io/camera.h"
+#include "capture_io/capture_folder.h"
+#include "capture_io/run.h"
+
+namespace hookeye::test {
+namespace {
+
+class EveryCalibrationFormat : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryCalibrationFormat, ReadsWhatOpenCvWrites) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / (std::string("camera.") + GetParam())).string();
+  {
+    cv::FileStorage out(file, cv::FileStorage::WRITE);
+    out << "image_width" << 640 << "image_height" << 480;
+    out << "camera_matrix" << (cv::Mat_<double>(3, 3) << 801, 0, 320.5, 0, 802, 241, 0, 0, 1);
+    out << "distortion_coefficients"
+        << (cv::Mat_<double>(1, 8) << -0.1, 0.2, 0.001, 0.002, -0.3, 0.4, 0.5, 0.6);
+    out << "R" << (cv::Mat_<double>(3, 3) << 0, -1, 0, 1, 0, 0, 0, 0, 1);
+    out << "T" << (cv::Mat_<double>(3, 1) << 1, 2, 3);
+  }
+  bool has_pose = false;
+  const Camera camera = read_opencv_calibration(file, &has_pose);
+  EXPECT_TRUE(has_pose);
+  EXPECT_EQ(camera.width, 640);
+  EXPECT_EQ(camera.height, 480);
+  EXPECT_EQ(camera.fx, 801);
+  EXPECT_EQ(camera.fy, 802);
+  EXPECT_EQ(camera.cx, 320.5);
+  EXPECT_EQ(camera.cy, 241);
+  EXPECT_EQ(camera.distortion, (std::vector<double>{-0.1, 0.2, 0.001, 0.002, -0.3, 0.4, 0.5, 0.6}));
+  EXPECT_EQ(camera.R(0, 1), -1);
+  EXPECT_EQ(camera.R(1, 0), 1);
+  EXPECT_EQ(camera.t, Eigen::Vector3d(1, 2, 3));
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EveryCalibrationFormat, testing::Values("yml", "xml", "json"));
+
+TEST(CalibrationTest, RotationVectorAndMissingPose) {
+  const TemporaryFolder folder;
+  write_text(folder / "a.yml",
+             "%YAML:1.0\n---\nK: [100., 0., 5., 0., 100., 5., 0., 0., 1.]\n"
+             "rvec: [0., 0., 1.5707963267948966]\ntvec: [0., 0., 9.]\n");
+  bool has_pose = false;
+  const Camera a = read_opencv_calibration(folder / "a.yml", &has_pose);
+  EXPECT_TRUE(has_pose);
+  EXPECT_NEAR(a.R(1, 0), 1, 1e-15);
+  EXPECT_EQ(a.width, 0);
+  write_text(folder / "b.yml", "%YAML:1.0\n---\nK: [100., 0., 5., 0., 100., 5., 0., 0., 1.]\n");
+  read_opencv_calibration(folder / "b.yml", &has_pose);
+  EXPECT_FALSE(has_pose);
+}
+
+/// Broken calibrations and what is said about them.
+TEST(CalibrationTest, FaultsAreNamed) {
+  const TemporaryFolder folder;
+  const std::string k = "K: [100., 0., 5., 0., 100., 5., 0., 0., 1.]\n";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"", "there is no camera matrix"},
+      {"K: [100., 0.", "this is not an OpenCV file"},
+      {"K: hello\n", "`K` is not a matrix"},
+      {"K: [100., 0., 5.]\n", "`K` has 3 numbers"},
+      {"K: [0., 0., 5., 0., 100., 5., 0., 0., 1.]\n", "the focal lengths are 0 and 100 px"},
+      {"K: [100., 1., 5., 0., 100., 5., 0., 0., 1.]\n", "the camera matrix has a skew"},
+      {"K: [.Nan, 1., 5., 0., 100., 5., 0., 0., 1.]\n", "`K` is not finite"},
+      {k + "D: [1., 2., 3.]\n", "`D` has 3 coefficients"},
+      {k + "fisheye_model: 1\n", "this is a fisheye calibration"},
+      {k + "image_width: 0\nimage_height: 3\n", "the picture size is 0 x 3"},
+      {k + "R: [0., 0., 0.]\n", "the pose is incomplete"},
+      {k + "R: [0., 0., 0.]\nT: [1., 2.]\n", "`T` has 2 numbers"},
+      {k + "R: [1., 0., 0., 0., 2., 0., 0., 0., 1.]\nT: [1., 2., 3.]\n", "`R` is not orthonormal"},
+  };
+  for (const auto& [text, wrong] : cases) {
+    write_text(folder / "c.yml", "%YAML:1.0\n---\n" + text);
+    try {
+      read_opencv_calibration(folder / "c.yml");
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.wrong(), wrong) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hookeye::test

@@ -1,0 +1,258 @@
+#include "capture_io/image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "capture_io/capture_folder.h"
+#include "capture_io/run.h"
+
+namespace hookeye::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+Image ramp(int channels) {
+  Image image{61, 47, channels, {}};
+  image.values.resize(image.pixels() * channels);
+  for (size_t i = 0; i < image.values.size(); ++i)
+    image.values[i] = static_cast<float>((i * 37) % 1000) / 999.0f;
+  return image;
+}
+
+/// Writes stored values as they are, in any format: independent of write_image().
+void store(const fs::path& file, const Image& image, OIIO::TypeDesc type, int quality = 0,
+           int orientation = 1) {
+  auto output = OIIO::ImageOutput::create(file.string());
+  ASSERT_TRUE(output);
+  OIIO::ImageSpec spec(image.width, image.height, image.channels, type);
+  if (quality) spec.attribute("Compression", "jpeg:" + std::to_string(quality));
+  if (orientation != 1) spec.attribute("Orientation", orientation);
+  ASSERT_TRUE(output->open(file.string(), spec)) << output->geterror();
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, image.values.data()));
+  output->close();
+}
+
+double largest_difference(const Image& a, const Image& b) {
+  if (a.width != b.width || a.height != b.height || a.channels != b.channels) return 1e9;
+  double largest = 0;
+  for (size_t i = 0; i < a.values.size(); ++i)
+    largest = std::max<double>(largest, std::abs(a.values[i] - b.values[i]));
+  return largest;
+}
+
+std::string complaint(const fs::path& file) {
+  try {
+    read_image(file);
+    return "";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().file, file.string());
+    return error.wrong();
+  }
+}
+
+struct FormatCase {
+  const char* name;
+  OIIO::TypeDesc type;
+  int quality;
+  double tolerance;
+  int bits;
+};
+
+class EveryPhotoFormat : public testing::TestWithParam<FormatCase> {};
+
+TEST_P(EveryPhotoFormat, RoundTripsGreyAndColour) {
+  const FormatCase& format = GetParam();
+  const TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    const Image image = ramp(channels);
+    const fs::path file = folder / format.name;
+    store(file, image, format.type, format.quality);
+    const ImageHeader header = read_image_header(file);
+    EXPECT_EQ(header.width, 61);
+    EXPECT_EQ(header.height, 47);
+    EXPECT_EQ(header.channels, channels);
+    EXPECT_EQ(header.bits, format.bits);
+    EXPECT_LE(largest_difference(read_image(file, Encoding{}), image), format.tolerance);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, EveryPhotoFormat,
+    testing::Values(FormatCase{"a.png", OIIO::TypeDesc::UINT8, 0, 0.51 / 255, 8},
+                    FormatCase{"b.png", OIIO::TypeDesc::UINT16, 0, 0.51 / 65535, 16},
+                    FormatCase{"c.tif", OIIO::TypeDesc::UINT8, 0, 0.51 / 255, 8},
+                    FormatCase{"d.tif", OIIO::TypeDesc::UINT16, 0, 0.51 / 65535, 16},
+                    FormatCase{"e.tif", OIIO::TypeDesc::FLOAT, 0, 0, 32},
+                    FormatCase{"f.exr", OIIO::TypeDesc::FLOAT, 0, 0, 32},
+                    FormatCase{"g.exr", OIIO::TypeDesc::HALF, 0, 5e-4, 16}));
+
+TEST(ImageTest, JpegIsReadWithinItsLoss) {
+  const TemporaryFolder folder;
+  for (const int channels : {1, 3}) {
+    Image smooth{64, 48, channels, {}};
+    smooth.values.resize(smooth.pixels() * channels);
+    for (size_t i = 0; i < smooth.values.size(); ++i)
+      smooth.values[i] =
+          0.2f + 0.5f * static_cast<float>(i) / static_cast<float>(smooth.values.size());
+    store(folder / "a.jpg", smooth, OIIO::TypeDesc::UINT8, 98);
+    EXPECT_LE(largest_difference(read_image(folder / "a.jpg", Encoding{}), smooth), 0.02);
+  }
+}
+
+TEST(ImageTest, EncodingsAreUndone) {
+  const TemporaryFolder folder;
+  const Image image = ramp(1);
+  const Encoding srgb{Encoding::Kind::srgb, 1.0}, gamma{Encoding::Kind::gamma, 2.2};
+  for (const Encoding& encoding : {Encoding{}, srgb, gamma}) {
+    write_image(folder / "a.tif", image, encoding);
+    EXPECT_LE(largest_difference(read_image(folder / "a.tif", encoding), image), 2e-5);
+  }
+  // Stored 188 of 255 is half of full scale in sRGB (IEC 61966-2-1).
+  Image half{1, 1, 1, {188 / 255.0f}};
+  store(folder / "b.png", half, OIIO::TypeDesc::UINT8);
+  EXPECT_NEAR(read_image(folder / "b.png").at(0, 0), 0.5029, 1e-4) << "8 bit is sRGB by default";
+  EXPECT_NEAR(read_image(folder / "b.png", Encoding{}).at(0, 0), 188 / 255.0, 1e-6);
+  EXPECT_NEAR(read_image(folder / "b.png", gamma).at(0, 0), std::pow(188 / 255.0, 2.2), 1e-6);
+  store(folder / "c.png", half, OIIO::TypeDesc::UINT16);
+  EXPECT_NEAR(read_image(folder / "c.png").at(0, 0), 188 / 255.0, 1e-5) << "16 bit is linear";
+}
+
+TEST(ImageTest, WrittenPicturesComeBack) {
+  const TemporaryFolder folder;
+  Image image = ramp(3);
+  image.at(3, 4, 1) = -0.5f;
+  image.at(5, 4, 2) = 7.0f;
+  write_image(folder / "a.exr", image);
+  EXPECT_EQ(largest_difference(read_image(folder / "a.exr"), image), 0);
+  write_image(folder / "a.png", image);
+  EXPECT_EQ(read_image(folder / "a.png", Encoding{}).at(5, 4, 2), 1) << "clamped";
+  size_t count = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(folder.path())) ++count;
+  EXPECT_EQ(count, 2u) << "no temporary file is left";
+  EXPECT_THROW(write_image(folder / "a.bmp", image), std::invalid_argument);
+  EXPECT_THROW(write_image(folder / "nowhere/a.png", image), std::runtime_error);
+}
+
+TEST(ImageTest, AlphaIsDroppedNotMultiplied) {
+  const TemporaryFolder folder;
+  Image image{2, 1, 4, {1, 0.5f, 0.25f, 0, 1, 0.5f, 0.25f, 1}};
+  for (const char* name : {"a.png", "a.tif"}) {
+    auto output = OIIO::ImageOutput::create((folder / name).string());
+    OIIO::ImageSpec spec(2, 1, 4, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    output->open((folder / name).string(), spec);
+    output->write_image(OIIO::TypeDesc::FLOAT, image.values.data());
+    output->close();
+    const Image read = read_image(folder / name, Encoding{});
+    ASSERT_EQ(read.channels, 3);
+    EXPECT_EQ(read.at(0, 0, 0), 1) << name;
+    EXPECT_NEAR(read.at(0, 0, 2), 0.25, 0.002) << name;
+  }
+}
+
+TEST(ImageTest, TruncatedPicturesAreRefused) {
+  const TemporaryFolder folder;
+  Image noise = ramp(3);
+  std::mt19937 random(3);
+  for (float& v : noise.values) v = static_cast<float>(random() % 1000) / 1000.0f;
+  for (const char* name : {"a.png", "a.jpg", "a.tif", "a.exr"}) {
+    const fs::path whole = folder / name;
+    store(whole, noise, name[2] == 'e' ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+    ASSERT_EQ(complaint(whole), "") << name;
+    const std::string bytes = read_text(whole);
+    for (const double part : {0.0, 0.001, 0.02, 0.2, 0.5, 0.9}) {
+      const fs::path cut = folder / (std::string("cut") + whole.extension().string());
+      write_text(cut,
+                 bytes.substr(0, static_cast<size_t>(part * static_cast<double>(bytes.size()))));
+      EXPECT_NE(complaint(cut), "") << name << " cut at " << part;
+    }
+  }
+}
+
+TEST(ImageTest, HugeClaimsAreRefusedBeforeAllocation) {
+  const TemporaryFolder folder;
+  // A portable float map's header is text: the claim costs nothing to write.
+  write_text(folder / "a.ppm", "P6\n60000 60000\n255\nxxxx");
+  EXPECT_EQ(complaint(folder / "a.ppm"), "the header claims 60000 x 60000 pixels with 3 channels");
+  write_text(folder / "b.ppm", "P6\n30000 30000\n255\nxxxx");
+  EXPECT_EQ(complaint(folder / "b.ppm"), "the header claims 30000 x 30000 pixels with 3 channels");
+}
+
+TEST(ImageTest, PixelsThatAreNoNumbersAreNamed) {
+  const TemporaryFolder folder;
+  Image image = ramp(3);
+  image.at(7, 11, 2) = std::numeric_limits<float>::quiet_NaN();
+  store(folder / "a.exr", image, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(complaint(folder / "a.exr"), "pixel (7, 11) holds not a number");
+  image.at(7, 11, 2) = -std::numeric_limits<float>::infinity();
+  store(folder / "a.exr", image, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(complaint(folder / "a.exr"), "pixel (7, 11) holds infinity");
+}
+
+TEST(ImageTest, OtherFaultsAreNamed) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(complaint(folder / "none.png"), "there is no such file");
+  EXPECT_EQ(complaint(folder.path()), "this is not a file");
+  write_text(folder / "text.png", "hello");
+  EXPECT_EQ(complaint(folder / "text.png"), "the file cannot be read as a picture");
+  store(folder / "turned.jpg", ramp(3), OIIO::TypeDesc::UINT8, 0, 6);
+  EXPECT_EQ(complaint(folder / "turned.jpg"), "the picture carries the orientation tag 6");
+}
+
+TEST(NoiseTest, ModelIsAffineInIntensity) {
+  const NoiseModel noise{20000, 0.001, false};
+  EXPECT_DOUBLE_EQ(noise.sigma(0), 0.001);
+  EXPECT_DOUBLE_EQ(noise.sigma(0.5), std::sqrt(1e-6 + 0.5 / 20000));
+  EXPECT_DOUBLE_EQ(noise.sigma(-3), 0.001);
+  EXPECT_DOUBLE_EQ((NoiseModel{0, 0.01, false}).sigma(1), 0.01);
+}
+
+TEST(NoiseTest, LuminanceIsRec709) {
+  const Image colour{1, 1, 3, {1, 0.5f, 0.25f}};
+  EXPECT_NEAR(luminance(colour).at(0, 0), 0.2126 + 0.5 * 0.7152 + 0.25 * 0.0722, 1e-6);
+  EXPECT_EQ(luminance(colour).channels, 1);
+}
+
+/// A smooth shading with blobs of texture over half the picture, and noise of a known law.
+Image noisy_scene(const NoiseModel& law, bool textured, int channels) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  Image image{400, 300, channels, {}};
+  image.values.resize(image.pixels() * channels);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < channels; ++c) {
+        double v = 0.08 + 0.75 * x / image.width;
+        if (textured && y > 150) v *= 1 + 0.15 * std::sin(x / 5.0) * std::cos(y / 4.0);
+        image.at(x, y, c) = static_cast<float>(v + law.sigma(v) * normal(random));
+      }
+  return image;
+}
+
+TEST(NoiseTest, EstimateFindsTheLaw) {
+  for (const NoiseModel& law : {NoiseModel{20000, 0.0011, false}, NoiseModel{2000, 0.004, false},
+                                NoiseModel{0, 0.01, false}})
+    for (const bool textured : {false, true})
+      for (const int channels : {1, 3}) {
+        const NoiseModel found = estimate_noise(noisy_scene(law, textured, channels));
+        EXPECT_TRUE(found.estimated);
+        for (const double intensity : {0.15, 0.4, 0.7})
+          EXPECT_NEAR(found.sigma(intensity) / law.sigma(intensity), 1, 0.08)
+              << "full well " << law.full_well << ", textured " << textured << ", at " << intensity;
+      }
+}
+
+TEST(NoiseTest, EstimateOfAFlatOrTinyPictureIsZero) {
+  Image flat{100, 100, 1, std::vector<float>(10000, 0.5f)};
+  EXPECT_NEAR(estimate_noise(flat).sigma(0.5), 0, 1e-6);
+  Image tiny{3, 3, 1, std::vector<float>(9, 0.5f)};
+  EXPECT_EQ(estimate_noise(tiny).sigma(0.5), 0);
+}
+
+}  // namespace
+}  // namespace hookeye::test

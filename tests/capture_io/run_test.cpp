@@ -1,0 +1,169 @@
+#include "capture_io/run.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "capture_io/capture_folder.h"
+
+namespace hookeye::test {
+namespace {
+
+namespace fs = std::filesystem;
+using RunFolder = hookeye::Run;  // testing::Test has a member of the short name
+
+std::string complaint(const std::function<void()>& action) {
+  try {
+    action();
+    return "";
+  } catch (const InputError& error) {
+    return error.wrong();
+  }
+}
+
+void write_model(const fs::path& folder) { write_text(folder / "model.yaml", "mu: 1\n"); }
+
+TEST(RunTest, StepsAreNumberedAndReopened) {
+  const TemporaryFolder folder;
+  write_text(folder / "capture.yaml", "");
+  const fs::path where = folder / "deep/run";
+  {
+    RunFolder run = RunFolder::create(where, folder / "capture.yaml");
+    EXPECT_EQ(run.capture(), folder / "capture.yaml");
+    EXPECT_EQ(run.add_step("base", {{"chi_fit", 6.1}}, write_model), where / "steps/00-base");
+    run.add_step("gravity", {{"chi_fit", 1.1}}, write_model);
+    run.update([](nlohmann::json& timeline) { timeline["verdict"] = "explained"; });
+  }
+  const RunFolder run = RunFolder::open(where, false);
+  ASSERT_EQ(run.steps().size(), 2u);
+  EXPECT_EQ(run.steps()[1], where / "steps/01-gravity");
+  EXPECT_EQ(read_text(run.steps()[1] / "model.yaml"), "mu: 1\n");
+  EXPECT_EQ(run.timeline()["hookeye"], 1);
+  EXPECT_EQ(run.timeline()["verdict"], "explained");
+  EXPECT_EQ(run.timeline()["steps"][1]["name"], "gravity");
+  EXPECT_EQ(run.timeline()["steps"][1]["chi_fit"], 1.1);
+}
+
+TEST(RunTest, AFailedStepLeavesNothing) {
+  const TemporaryFolder folder;
+  RunFolder run = RunFolder::create(folder / "run", folder / "capture.yaml");
+  EXPECT_THROW(run.add_step("base", {},
+                            [](const fs::path& step) {
+                              write_model(step);
+                              throw std::runtime_error("stop");
+                            }),
+               std::runtime_error);
+  EXPECT_TRUE(run.steps().empty());
+  EXPECT_TRUE(fs::is_empty(folder / "run/steps"));
+  run.add_step("base", {}, write_model);
+  EXPECT_EQ(run.steps().size(), 1u);
+}
+
+/// A process killed in the middle of a step: the run opens, the half step is gone.
+TEST(RunTest, AKillLeavesARunThatResumes) {
+  const TemporaryFolder folder;
+  const fs::path where = folder / "run", capture = folder / "capture.yaml";
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    RunFolder run = RunFolder::create(where, capture);
+    run.add_step("base", {}, write_model);
+    run.add_step("gravity", {}, [](const fs::path& step) {
+      write_model(step);
+      ::raise(SIGKILL);
+    });
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_TRUE(fs::exists(where / "steps/.tmp-01-gravity"));
+  EXPECT_EQ(RunFolder::open(where, false).steps().size(), 1u) << "readers see finished steps only";
+  RunFolder run = RunFolder::create(where, capture);
+  EXPECT_FALSE(fs::exists(where / "steps/.tmp-01-gravity"));
+  EXPECT_EQ(run.steps().size(), 1u);
+  EXPECT_EQ(run.add_step("swelling", {}, write_model), where / "steps/01-swelling");
+}
+
+/// A kill between the renaming of the folder and the writing of run.json.
+TEST(RunTest, AStepThatTheTimelineLacksIsReplaced) {
+  const TemporaryFolder folder;
+  RunFolder run = RunFolder::create(folder / "run", folder / "capture.yaml");
+  fs::create_directories(folder / "run/steps/00-orphan");
+  run.add_step("base", {}, write_model);
+  EXPECT_FALSE(fs::exists(folder / "run/steps/00-orphan"));
+  EXPECT_EQ(run.steps().size(), 1u);
+}
+
+TEST(RunTest, OneWriterAtATime) {
+  const TemporaryFolder folder;
+  const fs::path where = folder / "run", capture = folder / "capture.yaml";
+  {
+    const RunFolder first = RunFolder::create(where, capture);
+    EXPECT_EQ(complaint([&] { RunFolder::create(where, capture); }),
+              "another process is writing this run");
+    EXPECT_EQ(complaint([&] { RunFolder::open(where, true); }),
+              "another process is writing this run");
+    EXPECT_EQ(RunFolder::open(where, false).capture(), capture) << "reading needs no lock";
+  }
+  RunFolder::open(where, true);
+}
+
+TEST(RunTest, ForeignFoldersAreRefused) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "photos");
+  write_text(folder / "photos/holiday.png", "x");
+  EXPECT_EQ(complaint([&] { RunFolder::create(folder / "photos", folder / "c.yaml"); }),
+            "the folder holds something else than a run: holiday.png");
+  EXPECT_TRUE(fs::exists(folder / "photos/holiday.png"));
+  EXPECT_EQ(complaint([&] { RunFolder::create(folder / "photos/holiday.png", folder / "c.yaml"); }),
+            "this is a file, not a folder");
+  EXPECT_EQ(complaint([&] { RunFolder::open(folder / "photos", false); }),
+            "there is no run in this folder");
+  RunFolder::create(folder / "run", folder / "c.yaml");
+  EXPECT_EQ(complaint([&] { RunFolder::create(folder / "run", folder / "d.yaml"); }),
+            "the folder holds a run of another capture: " + (folder / "c.yaml").string());
+}
+
+TEST(RunTest, BrokenTimelinesAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* text : {"", "{", "[]", "{\"hookeye\": 2}", "{\"hookeye\": 1, \"capture\": 3}"}) {
+    write_text(folder / "run.json", text);
+    EXPECT_NE(complaint([&] { RunFolder::open(folder.path(), false); }), "") << text;
+  }
+}
+
+TEST(RunTest, FilesOfAStepAreNeverChanged) {
+  const TemporaryFolder folder;
+  RunFolder run = RunFolder::create(folder / "run", folder / "capture.yaml");
+  const fs::path step = run.add_step("base", {}, write_model);
+  const auto writer = [](const char* text) {
+    return [=](const fs::path& file) { write_text(file, text); };
+  };
+  run.add_file(step, "diagnosis.json", writer("{}"));
+  run.add_file(step, "diagnosis.json", writer("{}"));
+  EXPECT_EQ(complaint([&] { run.add_file(step, "diagnosis.json", writer("[]")); }),
+            "the step already has this file with other content");
+  EXPECT_EQ(read_text(step / "diagnosis.json"), "{}");
+  run.add_file(step, "diagnosis.json", writer("[]"), true);
+  EXPECT_EQ(read_text(step / "diagnosis.json"), "[]");
+  run.add_file(step, "pictures", [](const fs::path& f) {
+    fs::create_directories(f);
+    write_text(f / "a.txt", "a");
+  });
+  EXPECT_EQ(read_text(step / "pictures/a.txt"), "a");
+  size_t entries = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(step)) ++entries;
+  EXPECT_EQ(entries, 3u) << "no temporary file is left";
+}
+
+TEST(RunTest, ReadersCannotWrite) {
+  const TemporaryFolder folder;
+  RunFolder::create(folder / "run", folder / "capture.yaml");
+  RunFolder run = RunFolder::open(folder / "run", false);
+  EXPECT_THROW(run.add_step("base", {}, write_model), std::logic_error);
+}
+
+}  // namespace
+}  // namespace hookeye::test

@@ -1,0 +1,239 @@
+#include "estimation/effects_scene.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "simulation/equilibrium.h"
+
+namespace hookeye::test {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const kCapture = R"(hookeye: 1
+title: block for the catalogue
+units: {length: mm, force: N}
+body:
+  surface: block.obj
+  mesh: {edge: 11.0, order: 2}
+  density: 1.07e-9
+  texture: {image: albedo.png, encoding: linear}
+model:
+  material: {law: neo-hookean, mu: 0.05, kappa_over_mu: 10.0}
+  fit: [mu]
+cameras:
+  front:
+    size: [64, 48]
+    projection: perspective
+    intrinsics: {fx: 200, fy: 200, cx: 31.5, cy: 23.5}
+    pose: {rotation: [[1, 0, 0], [0, 0, -1], [0, 1, 0]], translation: [0, 20, 200]}
+  side:
+    size: [64, 48]
+    projection: perspective
+    intrinsics: {fx: 200, fy: 200, cx: 31.5, cy: 23.5}
+    pose: {rotation: [[0, 1, 0], [0, 0, -1], [-1, 0, 0]], translation: [0, 20, 200]}
+light:
+  ambient: 0.4
+  sun: {toward: [0.5, -0.6, 0.62449979983983983], strength: 0.5}
+photos:
+  encoding: linear
+  background: black
+  noise: {full_well: 20000, read: 0.001}
+regions:
+  base: {box: [[-11, -9, -0.1], [11, 9, 0.1]]}
+  grip: {box: [[-11, -9, 39.9], [11, 9, 40.1]]}
+  flank: {box: [[9.9, -9, 10], [10.1, 9, 30]]}
+examples:
+  rest:
+    supports:
+      - {region: base, fix: [x, y, z]}
+    photos: {front: grey.png, side: grey.png}
+  pull:
+    supports:
+      - {region: base, fix: [x, y, z]}
+    loads:
+      - {region: grip, force: [0.3, 0.1, 4.0]}
+    photos: {front: grey.png, side: grey.png}
+  twist:
+    supports:
+      - {region: base, fix: [x, y, z]}
+      - {region: grip, rigid: {rotate: {axis: [0, 0, 1], degrees: 20, center: [1, 0, 40]}, move: [0.5, 0, 2]}}
+    measured:
+      - {force_on: grip, value: [0, 0, 1], sigma: 0.1}
+    photos: {front: grey.png, side: grey.png}
+  bend:
+    supports:
+      - {region: base, fix: [x, y, z]}
+    loads:
+      - {region: grip, force: [0.5, 0.2, 0]}
+    photos: {front: grey.png, side: grey.png}
+  press:
+    use: validate
+    supports:
+      - {region: base, fix: [x, y, z]}
+      - {region: grip, rigid: {move: [0, 0, -3]}}
+    photos: {front: grey.png, side: grey.png}
+)";
+
+const char* const kBlock = R"(v -10 -8 0
+v 10 -8 0
+v 10 8 0
+v -10 8 0
+v -10 -8 40
+v 10 -8 40
+v 10 8 40
+v -10 8 40
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+f 1/1 3/3 2/2
+f 1/1 4/4 3/3
+f 5/1 6/2 7/3
+f 5/1 7/3 8/4
+f 1/1 2/2 6/3
+f 1/1 6/3 5/4
+f 2/1 3/2 7/3
+f 2/1 7/3 6/4
+f 3/1 4/2 8/3
+f 3/1 8/3 7/4
+f 4/1 1/2 5/3
+f 4/1 5/3 8/4
+)";
+
+std::shared_ptr<const Scene> read_block() {
+  const fs::path folder =
+      fs::temp_directory_path() / ("hookeye_effects_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "capture.yaml") << kCapture;
+  std::ofstream(folder / "block.obj") << kBlock;
+  Image grey{64, 48, 1, std::vector<float>(64 * 48, 0.25f)};
+  write_image(folder / "grey.png", grey);
+  Image albedo{64, 64, 1, {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x)
+      albedo.values.push_back(0.5f + 0.3f * std::sin(0.7f * x) * std::cos(0.5f * y));
+  write_image(folder / "albedo.png", albedo);
+  auto scene = load_scene(read_capture(folder));
+  fs::remove_all(folder);
+  return scene;
+}
+
+Eigen::Matrix3d quarter() {
+  Eigen::Matrix3d R;
+  R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  return R;
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> block_scene() {
+  static const auto scene = read_block();
+  return scene;
+}
+
+Eigen::Vector3d quarter_turn(const Eigen::Vector3d& x) { return {-x.y(), x.x(), x.z()}; }
+
+std::shared_ptr<const Scene> turned_scene() {
+  static const auto turned = [] {
+    auto scene = std::make_shared<Scene>(*block_scene());
+    auto body = std::make_shared<Body>(*scene->body);
+    body->mesh.X = quarter() * body->mesh.X;
+    body->surface.mesh.X = quarter() * body->surface.mesh.X;
+    // Regions are chosen again by the turned boxes.
+    for (auto& spec : scene->capture.regions) {
+      auto& box = std::get<RegionSpec::Box>(spec.shape);
+      const Vector3d a = quarter_turn(box.low), b = quarter_turn(box.high);
+      box.low = a.cwiseMin(b);
+      box.high = a.cwiseMax(b);
+    }
+    body->regions = RegionSet(scene->capture, body->mesh, nullptr);
+    for (auto& example : scene->capture.examples) {
+      for (auto& load : example.loads)
+        if (load.force) load.force = quarter_turn(*load.force);
+      for (auto& support : example.supports) {
+        support.rigid.axis = quarter_turn(support.rigid.axis);
+        support.rigid.center = quarter_turn(support.rigid.center);
+        support.rigid.move = quarter_turn(support.rigid.move);
+      }
+    }
+    scene->body = body;
+    return scene;
+  }();
+  return turned;
+}
+
+VectorXd deformed_state(const Scene& scene) {
+  const Matrix3Xd& X0 = block_scene()->body->mesh.X;
+  VectorXd q(X0.size());
+  for (int a = 0; a < X0.cols(); ++a) {
+    const Vector3d X = X0.col(a);
+    Vector3d u(0.002 * X.z() * X.z() + 0.01 * X.x(), -0.0015 * X.x() * X.z() + 0.02 * X.y(),
+               0.06 * X.z() + 0.004 * X.x() * X.y() - 0.0006 * X.z() * X.z());
+    u.y() -= 0.001 * X.z() * X.z();
+    const Vector3d x = X + u;
+    q.segment<3>(3 * a) = &scene == block_scene().get() ? x : quarter_turn(x);
+  }
+  return q;
+}
+
+VectorXd signature(const Model& model, const VectorXd& q) {
+  const TetMesh& mesh = model.scene->body->mesh;
+  std::vector<double> all;
+  auto append = [&](const auto& values) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) all.push_back(values(i));
+  };
+  for (size_t e = 0; e < model.examples.size(); ++e) {
+    const ExampleModel& example = model.examples[e];
+    append(residual(mesh, model.energy_of(static_cast<int>(e)), example.loading, q));
+    append(example.loading.displacement);
+    for (int unknown : example.loading.prescribed) all.push_back(unknown);
+    for (const auto& photo : example.photos) {
+      append(photo.camera.R.reshaped());
+      append(photo.camera.t);
+      append(photo.sun);
+      for (double x : {photo.camera.fx, photo.camera.fy, photo.gain, photo.ambient, photo.specular,
+                       photo.blur_variance, photo.background, photo.shininess})
+        all.push_back(x);
+    }
+    append(example.force_offset);
+  }
+  append(model.placement.matrix().reshaped());
+  return Eigen::Map<VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
+}
+
+ModelForm extended(const ModelForm& base, std::shared_ptr<const Ingredient> ingredient) {
+  ModelForm form = base;
+  form.ingredients.push_back(std::move(ingredient));
+  return form;
+}
+
+VectorXd with_values(const ModelForm& form, const VectorXd& values) {
+  VectorXd p = form.initial();
+  p.tail(values.size()) = values;
+  return p;
+}
+
+VectorXd null_values(const Ingredient& ingredient) {
+  const auto parameters = ingredient.parameters();
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) values[i] = parameters[i].value;
+  return values;
+}
+
+VectorXd some_values(const Ingredient& ingredient) {
+  const auto parameters = ingredient.parameters();
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    const double step = (0.3 + 0.1 * static_cast<double>(i % 4)) * p.typical;
+    values[i] = p.positive ? 1.3 * p.value : p.value + step;
+    if (values[i] > p.high) values[i] = p.value - step;
+  }
+  return values;
+}
+
+}  // namespace hookeye::test

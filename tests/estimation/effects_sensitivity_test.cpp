@@ -1,0 +1,173 @@
+// What the diagnosis uses of an effect, S = dq/dt at its null, against equilibria solved again.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "estimation/effects_scene.h"
+#include "estimation/evaluation.h"
+
+namespace hookeye::test {
+
+namespace {
+
+using States = std::vector<VectorXd>;
+
+States solve(const ModelForm& form, const VectorXd& p, const States& start) {
+  const Model model = form.realise(p);
+  EquilibriumOptions options;
+  options.tolerance = 1e-11;
+  States q;
+  for (size_t e = 0; e < model.examples.size(); ++e) {
+    EquilibriumSolver solver(model.scene->mesh());
+    auto solved = solver.solve(model.energy_of(static_cast<int>(e)), model.examples[e].loading,
+                               options, start.empty() ? nullptr : &start[e]);
+    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
+      ADD_FAILURE() << model.scene->capture.examples[e].name << ": " << failure->reason;
+      return {};
+    }
+    q.push_back(std::get<Equilibrium>(solved).q);
+  }
+  return q;
+}
+
+/// S by differences of solved equilibria, one-sided where the bound leaves no room.
+States solved_sensitivity(const ModelForm& form, const VectorXd& p, int k, double h, bool one_sided,
+                          const States& start) {
+  auto at = [&](double shift) {
+    VectorXd moved = p;
+    moved[k] += shift;
+    return solve(form, moved, start);
+  };
+  const States a = at(one_sided ? 2 * h : -h), b = at(h);
+  States S;
+  for (size_t e = 0; e < a.size() && e < b.size(); ++e)
+    S.push_back(one_sided ? VectorXd((-1.5 * start[e] + 2.0 * b[e] - 0.5 * a[e]) / h)
+                          : VectorXd((b[e] - a[e]) / (2.0 * h)));
+  return S;
+}
+
+Workspace& workspace() {
+  static Workspace one(block_scene());
+  return one;
+}
+
+/// S of `form` at p, and of candidates at their nulls beyond it.
+Evaluation evaluated(const ModelForm& form, const VectorXd& p,
+                     const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
+  EvaluationOptions options;
+  options.held_out = true;
+  auto result = workspace().evaluate(form, p, options, candidates);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+    ADD_FAILURE() << failure->example << ": " << failure->reason;
+    return {};
+  }
+  return std::get<Evaluation>(std::move(result));
+}
+
+/// Largest over the examples of |S - S_solved| against the largest |S_solved|.
+void expect_same(const Evaluation& evaluation, int column, const States& solved, double relative,
+                 const std::string& label, bool may_vanish = false) {
+  double scale = 0.0, error = 0.0;
+  for (const auto& example : evaluation.examples) {
+    scale = std::max(scale, solved[example.example].norm());
+    error = std::max(error, (example.S.col(column) - solved[example.example]).norm());
+  }
+  if (may_vanish && scale == 0.0) return;
+  EXPECT_GT(scale, 0.0) << label << ": nothing moves, the test would prove nothing";
+  EXPECT_LT(error, relative * scale) << label;
+}
+
+/// Candidates of one effect, scored at the null of the base model.
+void check_candidates(const std::string& name, double step, double relative) {
+  const ModelForm base = base_form(block_scene());
+  const VectorXd p = base.initial();
+  const States start = solve(base, p, {});
+  const Effect& effect = *find_effect(name);
+  const auto candidates = effect.candidates(base.realise(p), nullptr);
+  ASSERT_FALSE(candidates.empty());
+  const Evaluation evaluation = evaluated(base, p, candidates);
+  int column = base.size(), moving = 0;
+  for (const auto& one : candidates) {
+    const ModelForm form = extended(base, one);
+    const auto parameters = one->parameters();
+    const VectorXd at_null = with_values(form, null_values(*one));
+    for (size_t i = 0; i < parameters.size(); ++i, ++column) {
+      const double h = step * parameters[i].typical;
+      const int k = base.size() + static_cast<int>(i);
+      const States solved =
+          solved_sensitivity(form, at_null, k, h, parameters[i].low == parameters[i].value, start);
+      if (HasFailure() || solved.empty()) return;
+      // planes that no state reaches move nothing
+      expect_same(evaluation, column, solved, relative,
+                  name + " [" + one->variant() + "] " + parameters[i].name,
+                  name == "floor_contact");
+      for (const auto& s : solved) moving += s.norm() > 0.0;
+    }
+  }
+  EXPECT_GT(moving, 0);
+}
+
+TEST(Sensitivity, StrainStiffening) { check_candidates("strain_stiffening", 1e-3, 1e-4); }
+TEST(Sensitivity, Compressibility) { check_candidates("compressibility", 1e-3, 1e-4); }
+TEST(Sensitivity, Anisotropy) { check_candidates("anisotropy", 1e-3, 1e-4); }
+TEST(Sensitivity, Asymmetry) { check_candidates("tension_compression_asymmetry", 1e-3, 1e-4); }
+TEST(Sensitivity, StiffnessField) { check_candidates("stiffness_field", 1e-3, 1e-4); }
+TEST(Sensitivity, Gravity) { check_candidates("gravity", 1e-3, 1e-4); }
+TEST(Sensitivity, Swelling) { check_candidates("swelling", 1e-2, 1e-4); }
+TEST(Sensitivity, LoadDirection) { check_candidates("load_direction", 1e-2, 1e-4); }
+// Follower pressure on an open patch: K keeps only the symmetric part of its derivative, but at
+// the null pressure there is none.
+TEST(Sensitivity, Pressure) { check_candidates("pressure", 1e-3, 1e-4); }
+TEST(Sensitivity, SoftClamp) { check_candidates("soft_clamp", 1e-3, 1e-3); }
+TEST(Sensitivity, GripSlip) { check_candidates("grip_slip", 1e-3, 1e-4); }
+TEST(Sensitivity, FloorContact) { check_candidates("floor_contact", 1e-3, 1e-4); }
+TEST(Sensitivity, Creep) { check_candidates("creep", 1e-3, 1e-4); }
+TEST(Sensitivity, Softening) { check_candidates("softening", 1e-3, 1e-4); }
+
+/// Forms of the refit at values away from the null, as part of the model.
+TEST(Sensitivity, RefitForms) {
+  const ModelForm base = base_form(block_scene());
+  const Model model = base.realise(base.initial());
+  int tried = 0;
+  for (const Effect* effect : catalogue()) {
+    std::set<std::string> seen;
+    for (const auto& scored : effect->candidates(model, nullptr)) {
+      VectorXd values = some_values(*scored);
+      const auto larger = effect->refit_form(model, scored, values);
+      // one free form a kind: the fibre's 24 bases are alike
+      if (larger == scored || !seen.insert(larger->variant().substr(0, 12)).second) continue;
+      const ModelForm form = extended(base, larger);
+      const VectorXd p = with_values(form, values);
+      const States start = solve(form, p, {});
+      if (HasFailure()) return;
+      const Evaluation evaluation = evaluated(form, p, {});
+      const auto parameters = larger->parameters();
+      for (size_t i = 0; i < parameters.size(); ++i) {
+        const int k = base.size() + static_cast<int>(i);
+        const double h = 1e-3 * (parameters[i].positive ? p[k] : parameters[i].typical);
+        expect_same(evaluation, k, solved_sensitivity(form, p, k, h, false, start), 1e-3,
+                    effect->name() + " [" + larger->variant() + "] " + parameters[i].name,
+                    effect->name() == "floor_contact");
+        ++tried;
+      }
+    }
+  }
+  EXPECT_GT(tried, 15);
+}
+
+/// Effects of the photo and the sensor move no equilibrium.
+TEST(Sensitivity, MeasurementMovesNothing) {
+  const ModelForm base = base_form(block_scene());
+  for (const Effect* effect : catalogue()) {
+    if (effect->group() != EffectGroup::measurement) continue;
+    const auto candidates = effect->candidates(base.realise(base.initial()), nullptr);
+    const Evaluation evaluation = evaluated(base, base.initial(), candidates);
+    for (const auto& example : evaluation.examples)
+      EXPECT_EQ(example.S.rightCols(evaluation.columns - base.size()).norm(), 0.0)
+          << effect->name();
+  }
+}
+
+}  // namespace
+
+}  // namespace hookeye::test

@@ -1,0 +1,104 @@
+// Surfaces and folders for the tests of meshing.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "meshing/surface_mesh.h"
+#include "meshing/tet_mesh.h"
+
+namespace hookeye::test {
+
+/// Box from the origin to `size`, every side cut into cuts x cuts squares; each side has its own
+/// uv square, so edges are seams. Triangles 2 cuts^2 a side, sides -z +z -y +y -x +x.
+inline SurfaceMesh box_surface(const Vector3d& size, int cuts) {
+  SurfaceMesh s;
+  std::map<std::array<int, 3>, int> index;
+  std::vector<Vector3d> points;
+  const auto vertex = [&](std::array<int, 3> at) {
+    const auto [it, fresh] = index.try_emplace(at, static_cast<int>(points.size()));
+    if (fresh) points.push_back(Vector3d(at[0], at[1], at[2]).cwiseProduct(size) / cuts);
+    return it->second;
+  };
+  for (int axis = 2; axis >= 0; --axis) {
+    for (const int top : {0, 1}) {
+      const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+      for (int i = 0; i < cuts; ++i) {
+        for (int j = 0; j < cuts; ++j) {
+          std::array<int, 4> v;
+          std::array<Vector2d, 4> uv;
+          for (int c = 0; c < 4; ++c) {
+            std::array<int, 3> at;
+            at[axis] = top * cuts;
+            at[a] = i + (c == 1 || c == 2);
+            at[b] = j + (c >= 2);
+            v[c] = vertex(at);
+            uv[c] = Vector2d(at[a], at[b]) / cuts;
+          }
+          if (top == 0) {
+            std::swap(v[1], v[3]);
+            std::swap(uv[1], uv[3]);
+          }
+          s.triangles.push_back({v[0], v[1], v[2]});
+          s.uv.push_back({uv[0], uv[1], uv[2]});
+          s.triangles.push_back({v[0], v[2], v[3]});
+          s.uv.push_back({uv[0], uv[2], uv[3]});
+        }
+      }
+    }
+  }
+  s.X.resize(3, static_cast<Eigen::Index>(points.size()));
+  for (size_t i = 0; i < points.size(); ++i) s.X.col(static_cast<Eigen::Index>(i)) = points[i];
+  return s;
+}
+
+inline double area_of(const SurfaceMesh& s) {
+  double sum = 0;
+  for (const auto& t : s.triangles) {
+    const Vector3d a = s.X.col(t[0]), b = s.X.col(t[1]), c = s.X.col(t[2]);
+    sum += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return sum;
+}
+
+/// A folder that goes away with the test.
+class Scratch {
+ public:
+  Scratch() {
+    static int count = 0;
+    path_ = std::filesystem::temp_directory_path() /
+            ("hookeye_meshing_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+    std::filesystem::create_directories(path_);
+  }
+  ~Scratch() { std::filesystem::remove_all(path_); }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name, std::ios::binary) << text;
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The message of the InputError that `action` throws; a failure when it throws none.
+template <class Action>
+std::string refusal(Action action) {
+  try {
+    action();
+  } catch (const InputError& e) {
+    EXPECT_FALSE(e.wrong().empty());
+    EXPECT_FALSE(e.right().empty());
+    return e.what();
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return "";
+}
+
+}  // namespace hookeye::test

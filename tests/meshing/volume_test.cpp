@@ -1,0 +1,291 @@
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+
+#include "meshing/body.h"
+#include "shapes.h"
+#include "support/shared_data.h"
+
+namespace hookeye {
+namespace {
+
+using test::box_surface;
+using test::refusal;
+using test::Scratch;
+using ::testing::HasSubstr;
+
+const Place kPlace{"capture.yaml", 5, 3};
+
+TetMesh filled_box(double edge, int order, int cuts = 1) {
+  FillOptions options;
+  options.edge = edge;
+  options.order = order;
+  return fill(box_surface({3, 2, 1}, cuts), options, kPlace);
+}
+
+TEST(Fill, BoxIsFilledWithGoodElementsOfTheAskedSize) {
+  for (const double edge : {0.5, 0.25}) {
+    const TetMesh mesh = filled_box(edge, 2);
+    const MeshQuality q = quality(mesh);
+    EXPECT_NEAR(q.volume, 6.0, 1e-9);
+    EXPECT_GT(q.min_dihedral_deg, 5.0);  // measured 5.5 to 11 over all bounds asked of TetGen
+    EXPECT_GT(q.min_radius_ratio, 0.1);
+    EXPECT_LT(q.max_dihedral_deg, 165.0);
+    EXPECT_NEAR(q.mean_edge / edge, 1.0, 0.25) << edge;
+  }
+}
+
+TEST(Fill, BoundaryLiesOnTheTriangleItNames) {
+  const SurfaceMesh s = box_surface({3, 2, 1}, 2);
+  FillOptions options;
+  options.edge = 0.3;
+  const TetMesh mesh = fill(s, options, kPlace);
+  ASSERT_EQ(mesh.boundary_parent.size(), static_cast<size_t>(mesh.boundary.cols()));
+  std::vector<double> area(s.triangles.size(), 0.0);
+  for (Eigen::Index f = 0; f < mesh.boundary.cols(); ++f) {
+    const int parent = mesh.boundary_parent[f];
+    const auto& t = s.triangles[parent];
+    const Vector3d a = s.X.col(t[0]), u = Vector3d(s.X.col(t[1])) - a,
+                   v = Vector3d(s.X.col(t[2])) - a, n = u.cross(v);
+    for (int k = 0; k < 6; ++k) {
+      const Vector3d d = Vector3d(mesh.X.col(mesh.boundary(k, f))) - a;
+      const double w1 = d.cross(v).dot(n) / n.squaredNorm(),
+                   w2 = u.cross(d).dot(n) / n.squaredNorm();
+      EXPECT_NEAR(d.dot(n.normalized()), 0.0, 1e-12);
+      EXPECT_GT(std::min({w1, w2, 1 - w1 - w2}), -1e-9) << "outside its triangle";
+    }
+    const Vector3d x0 = mesh.X.col(mesh.boundary(0, f)), x1 = mesh.X.col(mesh.boundary(1, f)),
+                   x2 = mesh.X.col(mesh.boundary(2, f));
+    const Vector3d normal = 0.5 * (x1 - x0).cross(x2 - x0);
+    EXPECT_GT(normal.dot(n), 0.0) << "turned inwards";
+    area[parent] += normal.norm();
+  }
+  for (size_t t = 0; t < area.size(); ++t) {
+    const Vector3d a = s.X.col(s.triangles[t][0]), b = s.X.col(s.triangles[t][1]),
+                   c = s.X.col(s.triangles[t][2]);
+    EXPECT_NEAR(area[t], 0.5 * (b - a).cross(c - a).norm(), 1e-12);
+  }
+}
+
+TEST(Fill, BrokenSurfacesAreRefusedWithPlace) {
+  SurfaceMesh open = box_surface({3, 2, 1}, 1);
+  open.triangles.pop_back();
+  open.uv.pop_back();
+  EXPECT_THAT(refusal([&] { fill(open, {}, kPlace); }), HasSubstr("there is a hole"));
+  SurfaceMesh out = box_surface({3, 2, 1}, 1);
+  for (auto& t : out.triangles) std::swap(t[0], t[1]);
+  EXPECT_THAT(refusal([&] { fill(out, {}, kPlace); }), HasSubstr("inside out"));
+  EXPECT_THAT(refusal([&] { fill({}, {}, kPlace); }), HasSubstr("capture.yaml:5:3"));
+}
+
+TEST(Fill, WhatTetGenCannotMeshIsRefusedNotACrash) {
+  SurfaceMesh s = box_surface({3, 2, 1}, 1);
+  s.X.row(2) *= 1e-13;  // a body without thickness
+  EXPECT_THAT(refusal([&] { fill(s, {}, kPlace); }), HasSubstr("capture.yaml:5:3"));
+}
+
+TEST(Fill, SameInputSameMesh) {
+  const TetMesh a = filled_box(0.4, 2), b = filled_box(0.4, 2);
+  EXPECT_EQ(a.X, b.X);
+  EXPECT_EQ(a.elements, b.elements);
+}
+
+TEST(TetMeshes, OrdersRaiseAndLower) {
+  const TetMesh two = filled_box(0.5, 2), one = with_order(two, 1), again = with_order(one, 2);
+  EXPECT_EQ(one.elements.rows(), 4);
+  EXPECT_EQ(again.X, two.X);
+  EXPECT_EQ(again.elements, two.elements);
+  EXPECT_EQ(again.boundary, two.boundary);
+  const int edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
+  for (int e = 0; e < two.size(); ++e) {
+    for (int k = 0; k < 6; ++k) {
+      const Vector3d mid =
+          0.5 * (two.X.col(two.elements(edges[k][0], e)) + two.X.col(two.elements(edges[k][1], e)));
+      ASSERT_EQ(Vector3d(two.X.col(two.elements(4 + k, e))), mid);
+    }
+  }
+}
+
+TEST(TetMeshes, ShapeFunctionsAreOneAtTheirNodeAndSumToOne) {
+  EXPECT_EQ(shape_functions(1, {0.1, 0.2, 0.3, 0.4}),
+            VectorXd(Eigen::Vector4d(0.1, 0.2, 0.3, 0.4)));
+  const int edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
+  for (int i = 0; i < 10; ++i) {
+    Eigen::Vector4d L = Eigen::Vector4d::Zero();
+    if (i < 4) {
+      L[i] = 1;
+    } else {
+      L[edges[i - 4][0]] = L[edges[i - 4][1]] = 0.5;
+    }
+    EXPECT_LT((shape_functions(2, L) - VectorXd(VectorXd::Unit(10, i))).norm(), 1e-15);
+  }
+  EXPECT_NEAR(shape_functions(2, {0.1, 0.2, 0.3, 0.4}).sum(), 1.0, 1e-15);
+}
+
+TEST(TetMeshes, QualityOfARegularTetrahedron) {
+  TetMesh mesh;
+  mesh.order = 1;
+  mesh.X.resize(3, 4);
+  mesh.X << 1, -1, -1, 1, 1, -1, 1, -1, 1, 1, -1, -1;
+  mesh.elements = Eigen::Vector4i(0, 1, 2, 3);
+  if (quality(mesh).volume < 0) std::swap(mesh.elements(2, 0), mesh.elements(3, 0));
+  const MeshQuality q = quality(mesh);
+  EXPECT_NEAR(q.volume, 8.0 / 3.0, 1e-14);
+  EXPECT_NEAR(q.min_radius_ratio, 1.0, 1e-14);
+  EXPECT_NEAR(q.min_dihedral_deg, 70.528779, 1e-6);
+  EXPECT_NEAR(q.max_dihedral_deg, 70.528779, 1e-6);
+  EXPECT_NEAR(q.mean_edge, 2 * std::sqrt(2.0), 1e-14);
+}
+
+TEST(Vtu, MeshAndArraysComeBackAsWritten) {
+  const Scratch scratch;
+  for (const int order : {1, 2}) {
+    const TetMesh mesh = filled_box(0.5, order);
+    const Eigen::MatrixXd u = Eigen::MatrixXd::Random(3, mesh.nodes());
+    const Eigen::MatrixXd w = Eigen::MatrixXd::Random(1, mesh.size());
+    write_vtu(scratch / "a.vtu", mesh, {{"displacement", u, true}, {"energy", w, false}});
+    const TetMesh back = read_volume(scratch / "a.vtu", kPlace);
+    EXPECT_EQ(back.X, mesh.X);
+    EXPECT_EQ(back.elements, mesh.elements);
+    EXPECT_EQ(back.boundary, mesh.boundary);
+    EXPECT_EQ(read_vtu_array(scratch / "a.vtu", "displacement"), u);
+    EXPECT_EQ(read_vtu_array(scratch / "a.vtu", "energy", false), w);
+    EXPECT_THAT(refusal([&] { read_vtu_array(scratch / "a.vtu", "energy"); }),
+                HasSubstr("one of displacement"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch / "a.vtu.part"));
+  EXPECT_THAT(refusal([&] { write_vtu(scratch / "no/a.vtu", filled_box(1, 1), {}); }),
+              HasSubstr("cannot be written"));
+  std::filesystem::resize_file(scratch / "a.vtu", 3000);
+  EXPECT_THAT(refusal([&] { read_volume(scratch / "a.vtu", kPlace); }), HasSubstr("a.vtu"));
+}
+
+/// A single tetrahedron with mid nodes, in three formats; changes make the faults.
+std::string msh22(const std::string& tet = "1 2 3 4", const std::string& nodes = "4",
+                  const std::string& extra = "") {
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"BODY\"\n2 2 \"FOOT\"\n"
+         "$EndPhysicalNames\n$Nodes\n" +
+         nodes + "\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n" + extra +
+         "$EndNodes\n$Elements\n2\n1 2 2 2 1 1 2 3\n2 4 2 1 1 " + tet + "\n$EndElements\n";
+}
+
+TEST(ReadVolume, MshWithGroups) {
+  const Scratch scratch;
+  const TetMesh mesh = read_volume(scratch.write("a.msh", msh22()), kPlace);
+  EXPECT_EQ(mesh.order, 1);
+  EXPECT_EQ(mesh.nodes(), 4);
+  EXPECT_EQ(mesh.volume_groups.at("BODY"), std::vector<int>{0});
+  ASSERT_EQ(mesh.boundary_groups.at("FOOT").size(), 1u);
+  const int foot = mesh.boundary_groups.at("FOOT")[0];
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(mesh.X(2, mesh.boundary(k, foot)), 0.0);
+}
+
+TEST(ReadVolume, MshFaults) {
+  const Scratch scratch;
+  const auto fault = [&](const std::string& text) {
+    return refusal([&] { read_volume(scratch.write("a.msh", text), kPlace); });
+  };
+  EXPECT_THAT(fault(msh22("1 3 2 4")), HasSubstr("element 2 at (0, 0, 0) is inverted"));
+  EXPECT_THAT(fault(msh22("1 2 2 4")), HasSubstr("element 2 names a node twice"));
+  EXPECT_THAT(fault(msh22("1 2 3 4", "5", "5 0.2 0.7 0\n")), HasSubstr("5"));
+  EXPECT_THAT(fault(msh22("1 2 3 9")), HasSubstr("a.msh"));
+  const std::string whole = msh22();
+  for (const size_t length : {40u, 120u, 170u, 230u}) {
+    EXPECT_THAT(fault(whole.substr(0, length)), HasSubstr("a.msh")) << length;
+  }
+  EXPECT_THAT(fault("Point(1) = {0,0,0};\n"), HasSubstr("$MeshFormat"));
+  EXPECT_THAT(fault(""), HasSubstr("$MeshFormat"));
+  EXPECT_THAT(refusal([&] { read_volume(scratch / "none.msh", kPlace); }), HasSubstr("none.msh"));
+  EXPECT_THAT(refusal([&] { read_volume(scratch.write("a.xyz", "1"), kPlace); }),
+              HasSubstr(".xyz"));
+}
+
+TEST(ReadVolume, LooseNodesAreDroppedAndSaid) {
+  const Scratch scratch;
+  std::vector<std::string> said;
+  const auto file = scratch.write("a.mesh", "5 1 4\n0 0 0\n9 9 9\n1 0 0\n0 1 0\n0 0 1\n0 2 3 4\n");
+  const TetMesh mesh = read_volume(file, kPlace, &said);
+  EXPECT_EQ(mesh.nodes(), 4);
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_THAT(said[0], HasSubstr("the first being 2"));
+  EXPECT_NEAR(quality(mesh).volume, 1.0 / 6.0, 1e-15);
+}
+
+std::string inp(const std::string& last = "1, 2, 3, 4, 5, 6, 7, 8,\n 9, 10\n") {
+  return "** one C3D10\n*Node, nset=all\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,.5,0,0\n6,.5,.5,0\n"
+         "7,0,.5,0\n8,0,0,.5\n9,.5,0,.5\n10,0,.5,.5\n*ELEMENT, TYPE=C3D10, ELSET=E1\n1, " +
+         last + "*NSET, NSET=FOOT\n1,2,3\n5,6,7\n*NSET,NSET=GEN,GENERATE\n1,3,1\n*END STEP\n";
+}
+
+TEST(ReadVolume, InpOrdersMidNodesAndReadsSets) {
+  const Scratch scratch;
+  const TetMesh mesh = read_volume(scratch.write("a.inp", inp()), kPlace);
+  ASSERT_EQ(mesh.order, 2);
+  EXPECT_EQ(with_order(with_order(mesh, 1), 2).nodes(), 10);
+  EXPECT_EQ(Vector3d(mesh.X.col(mesh.elements(8, 0))), Vector3d(0, .5, .5)) << "mid of 23";
+  EXPECT_EQ(Vector3d(mesh.X.col(mesh.elements(9, 0))), Vector3d(.5, 0, .5)) << "mid of 13";
+  EXPECT_EQ(mesh.boundary_groups.at("FOOT").size(), 1u);
+  EXPECT_EQ(mesh.boundary_groups.at("GEN").size(), 1u);
+  EXPECT_EQ(mesh.volume_groups.at("E1").size(), 1u);
+}
+
+TEST(ReadVolume, InpFaultsHaveTheirLine) {
+  const Scratch scratch;
+  const auto fault = [&](const std::string& text) {
+    return refusal([&] { read_volume(scratch.write("a.inp", text), kPlace); });
+  };
+  EXPECT_THAT(fault(inp("1, 2, 3, 4, 5, 6, 7, 8,\n 9, 99\n")),
+              HasSubstr("a.inp:15: element 1 names node 99"));
+  EXPECT_THAT(fault(inp("1, 2, 3, 4, 5, 6, 7, 8,\n 9\n")), HasSubstr("a.inp:16"));
+  EXPECT_THAT(fault(inp("1, 2, 3, 4, 5, 6, 7, x,\n 9, 10\n")), HasSubstr("a.inp:14: 'x'"));
+  EXPECT_THAT(fault(inp("1, 3, 2, 4, 7, 6, 5, 8,\n 10, 9\n")), HasSubstr("is inverted"));
+  EXPECT_THAT(fault("*NODE\n1,0,0,0\n1,0,0,1\n"), HasSubstr("a.inp:3: node 1 is there twice"));
+  EXPECT_THAT(fault("*NODE\n1,0,0,0\n*ELEMENT,TYPE=C3D8\n1,1,1,1,1,1,1,1,1\n"),
+              HasSubstr("a.inp:3: elements of type C3D8"));
+  EXPECT_THAT(fault("*NODE\n1,0,0,0\n"), HasSubstr("no tetrahedra"));
+}
+
+TEST(ReadVolume, FoldedCurvedElementIsRefused) {
+  const Scratch scratch;
+  std::string text = inp();
+  const size_t at = text.find("5,.5,0,0");
+  text.replace(at, 8, "5,.5,1.9,1.9");
+  EXPECT_THAT(refusal([&] { read_volume(scratch.write("a.inp", text), kPlace); }),
+              HasSubstr("element 1 at (0, 0, 0) is curved so much that it folds"));
+}
+
+TEST(ReadVolume, TextMeshFaultsHaveTheirLine) {
+  const Scratch scratch;
+  const auto fault = [&](const std::string& text) {
+    return refusal([&] { read_volume(scratch.write("a.mesh", text), kPlace); });
+  };
+  EXPECT_THAT(fault("4 1 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 2 7\n"), HasSubstr("a.mesh:6"));
+  EXPECT_THAT(fault("4 1 4\n0 0 0\n1 0 nan\n0 1 0\n0 0 1\n0 1 2 3\n"), HasSubstr("node 2"));
+  EXPECT_THAT(fault("4 1 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1 3 4 5 6\n"), HasSubstr("a.mesh:5"));
+  EXPECT_THAT(fault("1000000000 1000000000 4\n"), HasSubstr("a.mesh:1"));
+  EXPECT_THAT(fault("hello\n"), HasSubstr("a.mesh:1"));
+  EXPECT_THAT(fault("4 2 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 2 3\n"), HasSubstr("a.mesh"));
+}
+
+TEST(ReadVolume, ElementThereTwiceIsRefused) {
+  const Scratch scratch;
+  const auto file =
+      scratch.write("a.mesh", "4 3 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 2 3\n0 1 2 3\n0 1 2 3\n");
+  EXPECT_THAT(refusal([&] { read_volume(file, kPlace); }), HasSubstr("shares a face"));
+}
+
+TEST(ReferenceData, InpAndTextMeshAreTheSameMesh) {
+  HOOKEYE_NEEDS_DATA("reference");
+  for (const std::string name : {"b10k", "q10k", "q30k"}) {
+    const auto folder = test::shared_data() / "reference";
+    const TetMesh text = read_volume(folder / (name + ".mesh"), kPlace);
+    const TetMesh inp = read_volume(folder / (name + "_A.inp"), kPlace);
+    EXPECT_EQ(text.elements, inp.elements) << name;
+    EXPECT_LT((text.X - inp.X).cwiseAbs().maxCoeff(), 1e-4) << name;
+    EXPECT_NEAR(quality(text).volume, 60000.0, 1e-3) << name;
+    EXPECT_FALSE(inp.boundary_groups.at("NFIX").empty());
+  }
+}
+
+}  // namespace
+}  // namespace hookeye

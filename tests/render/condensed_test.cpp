@@ -1,0 +1,75 @@
+// The condensed sums against explicit rows J.
+#include "render/condensed.h"
+
+#include <gtest/gtest.h>
+
+#include "scene.h"
+
+namespace hookeye {
+namespace {
+
+TEST(condensed, equals_explicit_rows) {
+  const SurfaceMesh surface = test::both(test::sphere({0, 0, -9}, 4, 2, 0.0, {0.25, 0}),
+                                         test::sphere({2, 1, 4}, 8, 2, 0.03, {-0.25, 0}));
+  Renderer renderer(surface);
+  Texture texture;
+  PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  for (bool from_photo : {false, true}) {
+    if (from_photo) {
+      texture.source = Texture::Source::photo;
+      texture.photo = test::waves(state.camera.width, state.camera.height, 3);
+      texture.reference_camera = state.camera;
+    }
+    const Matrix3Xd x = surface.X + 0.1 * test::field(surface.X, 0.2);
+    const Rendering out = renderer.render(x, &surface.X, texture, state, {}, true);
+    const Eigen::Index n = Eigen::Index(out.dI.pixel.size()), m = 7, nv = 3 * x.cols();
+    srand(1);
+    VertexSensitivity S;
+    S.position = Eigen::MatrixXd::Random(nv, m);
+    S.normal = Eigen::MatrixXd::Random(nv, m);
+    if (from_photo) S.reference = Eigen::MatrixXd::Random(nv, m);
+    S.photo = Eigen::MatrixXd::Random(kPhotoColumns, m);
+    const VectorXd r = VectorXd::Random(n), w = VectorXd::Random(n).array() + 1.5;
+    const VectorXd Bt_r = w.cwiseProduct(r);
+    Eigen::MatrixXd J = out.dI.d_photo.cast<double>().transpose() * S.photo;
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (int s = out.dI.first[i]; s < out.dI.first[i + 1]; ++s)
+        for (int k = 0; k < 3; ++k) {
+          const DerivativeSegment& g = out.dI.segments[s];
+          const int v = 3 * surface.triangles[g.triangle][k];
+          J.row(i) += g.d_position.col(k).cast<double>().transpose() * S.position.middleRows(v, 3);
+          J.row(i) += g.d_normal.col(k).cast<double>().transpose() * S.normal.middleRows(v, 3);
+          if (from_photo)
+            J.row(i) +=
+                g.d_reference.col(k).cast<double>().transpose() * S.reference.middleRows(v, 3);
+        }
+    J = (w.asDiagonal() * J).eval();
+    const auto sums =
+        NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, true, from_photo);
+    const CondensedPhoto c = sums.reduce(S);
+    EXPECT_LT((c.JtJ - J.transpose() * J).norm(), 1e-5 * c.JtJ.norm());
+    EXPECT_LT((c.Jtr - J.transpose() * r).norm(), 1e-5 * c.Jtr.norm());
+    EXPECT_NEAR(c.r2, r.squaredNorm(), 1e-9 * c.r2);
+    EXPECT_EQ(c.count, size_t(n));
+  }
+}
+
+TEST(renderer, threads_agree_bit_by_bit) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
+  Renderer renderer(surface);
+  Texture texture;
+  const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  RenderOptions one, three;
+  three.threads = 3;
+  const Rendering a = renderer.render(surface.X, nullptr, texture, state, one, true);
+  const Rendering b = renderer.render(surface.X, nullptr, texture, state, three, true);
+  EXPECT_EQ(a.I.values, b.I.values);
+  EXPECT_EQ(a.dI.pixel, b.dI.pixel);
+  EXPECT_TRUE(a.dI.d_photo == b.dI.d_photo);
+  ASSERT_EQ(a.dI.segments.size(), b.dI.segments.size());
+  for (size_t i = 0; i < a.dI.segments.size(); ++i)
+    ASSERT_TRUE(a.dI.segments[i].d_position == b.dI.segments[i].d_position);
+}
+
+}  // namespace
+}  // namespace hookeye

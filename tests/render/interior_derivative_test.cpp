@@ -1,0 +1,190 @@
+// Derivatives where no contour passes: pixel by pixel against differences of the picture.
+#include "render/renderer.h"
+#include "scene.h"
+#include "support/derivative.h"
+
+namespace hookeye {
+namespace {
+
+using test::expect_derivative;
+using Source = Texture::Source;
+
+struct Setting {
+  Source source;
+  Camera::Projection projection;
+  bool distorted, smooth;
+};
+
+std::string name_of(const testing::TestParamInfo<Setting>& info) {
+  const Setting& s = info.param;
+  std::string out = s.source == Source::image ? "image" : s.source == Source::photo ? "photo" : "uniform";
+  out += s.projection == Camera::Projection::perspective ? "_perspective" : "_orthographic";
+  if (s.distorted) out += "_distorted";
+  return out + (s.smooth ? "" : "_flat");
+}
+
+class Interior : public testing::TestWithParam<Setting> {
+ protected:
+  Interior()
+      : surface(test::sphere(Vector3d::Zero(), 8, 3, 0.05)),
+        renderer(surface),
+        x(surface.X + 0.05 * test::field(surface.X, 0.7)),
+        x_reference(surface.X),
+        state(test::state(test::camera(GetParam().projection, GetParam().distorted))) {
+    texture.source = GetParam().source;
+    texture.albedo = 0.8;
+    texture.image = test::waves(1024, 1024, 4);
+    if (GetParam().source == Source::photo) {
+      texture.photo = test::waves(state.camera.width, state.camera.height, 3);
+      texture.reference_camera = state.camera;
+      texture.reference_gain = 1.2;
+      state.shaded = false;
+    }
+    state.ambient = 0;  // see positions_where_facets_matter
+    options.visibility_rays = 0;
+    options.smooth_normals = GetParam().smooth;
+  }
+
+  Rendering render(const Matrix3Xd& at, const Matrix3Xd& reference, const PhotoState& photo,
+                   bool derivatives) {
+    RenderOptions o = options;
+    o.derivatives = derivatives;
+    return renderer.render(at, &reference, texture, photo, o, false);
+  }
+  /// Pixels well inside the body, where no step uncovers anything; they pass the test one by one.
+  void choose_pixels(const Rendering& r) {
+    const Image& c = r.coverage;
+    for (size_t i = 0; i < r.dI.pixel.size(); ++i) {
+      const int px = r.dI.pixel[i], u = px % c.width, v = px / c.width;
+      bool inside = u > 1 && v > 1 && u < c.width - 2 && v < c.height - 2;
+      for (int dv = -2; inside && dv <= 2; ++dv)
+        for (int du = -2; du <= 2; ++du) inside = inside && c.at(u + du, v + dv) == 1.0f;
+      if (inside) pixels.push_back(px);
+    }
+    ASSERT_GT(pixels.size(), 300u);
+  }
+  VectorXd pick(const Image& image) const {
+    VectorXd out(Eigen::Index(pixels.size()));
+    for (size_t i = 0; i < pixels.size(); ++i) out[i] = image.values[pixels[i]];
+    return out;
+  }
+  VectorXd pick(const VectorXd& all) const {
+    VectorXd out(Eigen::Index(pixels.size()));
+    for (size_t i = 0; i < pixels.size(); ++i) out[i] = all[pixels[i]];
+    return out;
+  }
+
+  SurfaceMesh surface;
+  Renderer renderer;
+  Matrix3Xd x, x_reference;
+  PhotoState state;
+  Texture texture;
+  RenderOptions options;
+  std::vector<int> pixels;
+};
+
+TEST_P(Interior, positions) {
+  if (!GetParam().smooth) GTEST_SKIP() << "below: intensities jump between facets";
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  for (double phase : {0.0, 1.3}) {
+    const Matrix3Xd u = test::field(surface.X, phase);
+    const VectorXd analytic =
+        pick(test::directional(renderer, r, x, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
+    expect_derivative(
+        [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); }, analytic,
+        0.01, 1e-3, "positions");
+  }
+}
+
+// Flat shading jumps at the facets' edges, and so does the share of the sky that lies below a facet.
+// A ray that changes facets within the step measures that jump and not a derivative: the median
+// pixel has none.
+TEST_P(Interior, positions_where_facets_matter) {
+  state.ambient = 0.4;
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  const Matrix3Xd u = test::field(surface.X, 0.5);
+  const VectorXd analytic =
+      pick(test::directional(renderer, r, x, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
+  const auto f = [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); };
+  const VectorXd numeric = (f(1e-3) - f(-1e-3)) / 2e-3;
+  ASSERT_GT(numeric.cwiseAbs().mean(), 0);
+  std::vector<double> error;
+  for (int i = 0; i < numeric.size(); ++i) error.push_back(std::abs(numeric[i] - analytic[i]));
+  std::nth_element(error.begin(), error.begin() + error.size() / 2, error.end());
+  EXPECT_LT(error[error.size() / 2], 2e-3 * numeric.cwiseAbs().mean());
+}
+
+TEST_P(Interior, reference) {
+  if (GetParam().source != Source::photo) GTEST_SKIP() << "no reference without a photo";
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  const Matrix3Xd u = test::field(surface.X, 0.4);
+  const VectorXd analytic =
+      pick(test::directional(renderer, r, x, nullptr, &u, VectorXd::Zero(kPhotoColumns)));
+  expect_derivative(
+      [&](double h) { return pick(render(x, x_reference + h * u, state, false).I); }, analytic, 0.01,
+      1e-3, "reference");
+}
+
+TEST_P(Interior, photo_columns) {
+  if (!GetParam().smooth) GTEST_SKIP() << "as with smooth normals";
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  for (int column = 0; column < kBlur; ++column) {
+    const bool light = column >= kAmbient;
+    if (light && !state.shaded) continue;
+    if (column == kMove + 2 && state.camera.projection == Camera::Projection::orthographic) continue;
+    const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
+    const auto f = [&](double h) {
+      PhotoState s = state;
+      if (column < kMove)
+        s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
+      else if (column < kZoom)
+        s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
+      else if (column == kZoom)
+        s.camera = s.camera.zoomed(h);
+      else if (column == kLogGain)
+        s.gain *= std::exp(h);
+      else if (column == kAmbient)
+        s.ambient += h;
+      else if (column < kSpecular)
+        s.sun[column - kSun] += h;
+      else
+        s.specular += h;
+      return pick(render(x, x_reference, s, false).I);
+    };
+    const double h = column < kMove || column == kZoom ? 1e-3 : 0.01;
+    const VectorXd d = test::directional(renderer, r, x, nullptr, nullptr, unit);
+    expect_derivative(f, pick(d), h, 1e-3, "column " + std::to_string(column));
+  }
+}
+
+constexpr auto kPerspective = Camera::Projection::perspective;
+constexpr auto kOrthographic = Camera::Projection::orthographic;
+INSTANTIATE_TEST_SUITE_P(
+    all, Interior,
+    testing::Values(Setting{Source::image, kPerspective, false, true},
+                    Setting{Source::image, kPerspective, true, true},
+                    Setting{Source::image, kOrthographic, false, true},
+                    Setting{Source::photo, kPerspective, false, true},
+                    Setting{Source::photo, kPerspective, true, true},
+                    Setting{Source::photo, kOrthographic, false, true},
+                    Setting{Source::uniform, kPerspective, false, true},
+                    Setting{Source::uniform, kOrthographic, false, true},
+                    Setting{Source::uniform, kPerspective, true, true},
+                    Setting{Source::image, kPerspective, false, false}),
+    name_of);
+
+TEST(normals, derivative) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 1, 0.2);
+  const Renderer renderer(surface);
+  const Matrix3Xd u = test::field(surface.X, 0.3);
+  expect_derivative(
+      [&](double h) { return VectorXd(renderer.normals(surface.X + h * u).reshaped()); },
+      renderer.normal_derivative(surface.X) * u.reshaped(), 1e-3, 1e-8, "normals");
+}
+
+}  // namespace
+}  // namespace hookeye

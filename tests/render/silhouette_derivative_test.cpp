@@ -1,0 +1,164 @@
+// The contour term: sums over blocks of pixels along the edges, since a finite ray pattern counts
+// coverage in steps. 24 x 24 rays a pixel and steps of a good part of a pixel.
+#include "render/renderer.h"
+#include "scene.h"
+#include "support/derivative.h"
+
+namespace hookeye {
+namespace {
+
+constexpr int kBlockPx = 8;
+
+VectorXd block_sums(const VectorXd& pixels, int width, int height) {
+  const int columns = (width + kBlockPx - 1) / kBlockPx, rows = (height + kBlockPx - 1) / kBlockPx;
+  VectorXd out = VectorXd::Zero(columns * rows);
+  for (int i = 0; i < pixels.size(); ++i)
+    if (std::isfinite(pixels[i]))
+      out[i / width / kBlockPx * columns + i % width / kBlockPx] += pixels[i];
+  return out;
+}
+
+struct Contours : testing::Test {
+  // A small bright ball before a large dark one: outer contours and one within the body.
+  Contours() {
+    front = test::sphere({0, 0, -9}, 4, 3, 0.0, {0.25, 0});
+    surface = test::both(front, test::sphere({2, 1, 4}, 8, 3, 0.03, {-0.25, 0}));
+    texture.source = Texture::Source::image;
+    auto image = std::make_shared<Image>(Image{64, 64, 1, std::vector<float>(64 * 64, 0.2f)});
+    for (int y = 0; y < 64; ++y)
+      for (int x = 32; x < 64; ++x) image->at(x, y) = 0.9f;
+    texture.image = image;
+    state = test::state(test::camera(Camera::Projection::perspective, false));
+    state.shaded = false;
+    options.rays_per_axis = 24;
+    options.visibility_rays = 0;
+  }
+  VectorXd picture(Renderer& renderer, const Matrix3Xd& x, const PhotoState& s) {
+    RenderOptions o = options;
+    o.derivatives = false;
+    return Eigen::Map<Eigen::VectorXf>(
+               renderer.render(x, nullptr, texture, s, o, true).I.values.data(),
+               state.camera.width * state.camera.height)
+        .cast<double>();
+  }
+  void compare(const VectorXd& analytic, const std::function<VectorXd(double)>& f, double h,
+               const std::string& what) {
+    const int w = state.camera.width, height = state.camera.height;
+    const VectorXd numeric = block_sums((f(h) - f(-h)) / (2 * h), w, height);
+    const VectorXd ours = block_sums(analytic, w, height);
+    ASSERT_GT(numeric.norm(), 0) << what;
+    EXPECT_LT((numeric - ours).norm(), 0.02 * numeric.norm())
+        << what << ": analytic " << ours.norm() << ", difference " << numeric.norm();
+  }
+
+  SurfaceMesh front, surface;
+  Texture texture;
+  PhotoState state;
+  RenderOptions options;
+};
+
+TEST_F(Contours, positions) {
+  for (bool distorted : {false, true})
+    for (auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
+      if (distorted && projection == Camera::Projection::orthographic) continue;
+      state.camera = test::camera(projection, distorted);
+      Renderer renderer(surface);
+      const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+      const Matrix3Xd u = test::field(surface.X, 0.3);
+      compare(test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
+              [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1,
+              "positions");
+    }
+}
+
+TEST_F(Contours, inner_edge_alone) {
+  Renderer renderer(surface);
+  const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, false);
+  Matrix3Xd u = Matrix3Xd::Zero(3, surface.X.cols());
+  u.leftCols(front.X.cols()) = test::field(front.X, 1.0);
+  // Pixels that body covers wholly; nothing but the front ball moves.
+  VectorXd analytic =
+      test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns));
+  ASSERT_GT(r.dI.pixel.size(), 500u);
+  compare(analytic,
+          [&](double h) {
+            VectorXd I = picture(renderer, surface.X + h * u, state);
+            for (int i = 0; i < I.size(); ++i)
+              if (!std::isfinite(analytic[i])) I[i] = 0;
+            return I;
+          },
+          0.1, "inner edge");
+}
+
+TEST_F(Contours, camera) {
+  Renderer renderer(surface);
+  const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+  for (int column = 0; column < kLogGain; ++column) {
+    const auto f = [&](double h) {
+      PhotoState s = state;
+      if (column < kMove)
+        s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
+      else if (column < kZoom)
+        s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
+      else
+        s.camera = s.camera.zoomed(h);
+      return picture(renderer, surface.X, s);
+    };
+    const double h = column < 2 ? 0.002 : column == 2 ? 0.01 : column < 5 ? 0.1 : column == 5 ? 0.5 : 0.01;
+    compare(test::directional(renderer, r, surface.X, nullptr, nullptr,
+                              VectorXd::Unit(kPhotoColumns, column)),
+            f, h, "column " + std::to_string(column));
+  }
+}
+
+TEST_F(Contours, background_and_blur) {
+  state.blur_variance = 0.4;
+  options.rays_per_axis = 3;
+  Renderer renderer(surface);
+  const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+  const auto at = [&](const VectorXd& all) {
+    VectorXd out(Eigen::Index(r.dI.pixel.size()));
+    for (size_t i = 0; i < r.dI.pixel.size(); ++i) out[i] = all[r.dI.pixel[i]];
+    return out;
+  };
+  test::expect_derivative(
+      [&](double h) {
+        PhotoState s = state;
+        s.blur_variance += h;
+        return at(picture(renderer, surface.X, s));
+      },
+      r.dI.d_photo.row(kBlur).transpose().cast<double>(), 0.02, 1e-3, "blur");
+  state.blur_variance = 0;
+  const Rendering sharp = renderer.render(surface.X, nullptr, texture, state, options, true);
+  test::expect_derivative(
+      [&](double h) {
+        PhotoState s = state;
+        s.background += h;
+        return at(picture(renderer, surface.X, s));
+      },
+      sharp.dI.d_photo.row(kBackground).transpose().cast<double>(), 0.02, 1e-4, "background");
+}
+
+TEST(blur, is_a_semigroup_that_keeps_the_mean) {
+  const auto image = test::waves(40, 30, 3);
+  const Image once = blur(*image, 0.8), twice = blur(blur(*image, 0.3), 0.5);
+  double sum = 0, before = 0, worst = 0;
+  for (int y = 8; y < 22; ++y)  // away from the border, which is repeated
+    for (int x = 8; x < 32; ++x)
+      worst = std::max(worst, double(std::abs(once.at(x, y) - twice.at(x, y))));
+  Image spot{41, 41, 1, std::vector<float>(41 * 41, 0.0f)};
+  spot.at(20, 20) = 1;
+  const Image spread = blur(spot, 1.7);
+  double variance = 0;
+  for (int y = 0; y < 41; ++y)
+    for (int x = 0; x < 41; ++x) {
+      sum += spread.at(x, y), before += spot.at(x, y);
+      variance += (x - 20) * (x - 20) * spread.at(x, y);
+    }
+  EXPECT_LT(worst, 1e-6);
+  EXPECT_NEAR(sum, before, 1e-5);
+  EXPECT_NEAR(variance, 1.7, 1e-4);
+}
+
+}  // namespace
+}  // namespace hookeye

@@ -1,0 +1,343 @@
+// Equilibria with known answers, sensitivities against re-solved equilibria, and failure.
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+
+#include "simulation/blocks.h"
+#include "simulation/equilibrium.h"
+#include "support/derivative.h"
+
+namespace hookeye {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+
+EnergyModel of(std::shared_ptr<const EnergyTerm> law) {
+  EnergyModel energy;
+  energy.parts.push_back({std::move(law), {}});
+  return energy;
+}
+
+Region plane(const TetMesh& mesh, int axis, double at) {
+  return test::region_where(mesh, [=](const Vector3d& X) { return std::abs(X[axis] - at) < 1e-9; });
+}
+
+void hold(const TetMesh& mesh, const Region& region, Loading& loading) {
+  for (int i = 0; i < 3; ++i) loading.prescribe(mesh, region, i, 0);
+}
+
+Equilibrium solve(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
+                  double tolerance = 1e-11) {
+  EquilibriumOptions options;
+  options.tolerance = tolerance;
+  auto result = solve_equilibrium(mesh, energy, loading, options);
+  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
+    ADD_FAILURE() << failure->reason << " at " << failure->load_fraction;
+    return {};
+  }
+  return std::get<Equilibrium>(std::move(result));
+}
+
+class Exact : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Orders, Exact, testing::Values(1, 2));
+
+TEST_P(Exact, UniaxialStretchIsExact) {
+  // Symmetry planes held, the end pulled by a given stretch: uniform F = diag(l, t, t), P_22 = 0.
+  const TetMesh mesh = test::block(3, 2, 2, {3, 1, 1}, GetParam(), 0.25);
+  const auto law = neo_hookean(0.05, 0.6);
+  const double l = 1.5;
+  double t = 1 / std::sqrt(l);
+  for (int i = 0; i < 50; ++i) {
+    const Matrix3d F = Vector3d(l, t, t).asDiagonal();
+    const Matrix9d D = law->dP_dF(F);
+    t -= law->P(F)(1, 1) / (D(4, 4) + D(4, 8));
+  }
+  Loading loading;
+  for (int i = 0; i < 3; ++i) loading.prescribe(mesh, plane(mesh, i, 0), i, 0);
+  loading.prescribe(mesh, plane(mesh, 0, 3), 0, 3 * (l - 1));
+  const Equilibrium e = solve(mesh, of(law), loading);
+  const VectorXd exact = (Vector3d(l, t, t).asDiagonal() * mesh.X).reshaped();
+  EXPECT_LE((e.q - exact).cwiseAbs().maxCoeff(), 1e-9);
+  const double force = law->P(Vector3d(l, t, t).asDiagonal())(0, 0);
+  EXPECT_NEAR(support_force(e, plane(mesh, 0, 3)).x(), force, 1e-10);
+  EXPECT_NEAR(support_force(e, plane(mesh, 0, 0)).x(), -force, 1e-10);
+  const ElementState state = element_state(mesh, of(law), e.q);
+  EXPECT_NEAR(state.cauchy_stress(0, 5), force / (t * t), 1e-10);
+  EXPECT_NEAR(state.von_mises[5], force / (t * t), 1e-10);
+  EXPECT_NEAR(state.J[5], l * t * t, 1e-10);
+  EXPECT_NEAR(state.green_strain(0, 5), (l * l - 1) / 2, 1e-10);
+  EXPECT_NEAR(state.energy_density.sum() / mesh.size(), internal_energy(mesh, of(law), e.q) / 3, 1e-10);
+}
+
+TEST_P(Exact, PatchTestOfShearAndStretch) {
+  const TetMesh mesh = test::block(3, 3, 3, {1, 1, 1}, GetParam(), 0.25);
+  Matrix3d F;
+  F << 1.2, 0.4, 0, 0, 0.9, -0.1, 0.2, 0, 1.1;
+  const VectorXd exact = (F * mesh.X).reshaped();
+  const Region skin = test::region_where(mesh, [](const Vector3d& X) {
+    return (X.array() < 1e-9).any() || (X.array() > 1 - 1e-9).any();
+  });
+  Loading loading;
+  hold(mesh, skin, loading);
+  for (size_t i = 0; i < loading.prescribed.size(); ++i)
+    loading.displacement[static_cast<int>(i)] =
+        exact[loading.prescribed[i]] - mesh.X.reshaped()[loading.prescribed[i]];
+  for (const auto& law : {neo_hookean(0.05, 5.0), mooney_rivlin(0.02, 0.013, 0.6), stvk(0.3, 0.05),
+                          ogden({0.03, -0.01}, {1.3, -2.7}, 0.6), yeoh(0.03, -0.002, 0.0007, 0.6)})
+    EXPECT_LE((solve(mesh, of(law), loading).q - exact).cwiseAbs().maxCoeff(), 1e-9) << law->name();
+}
+
+/// A bent, loaded block: everything at once.
+struct Case {
+  TetMesh mesh = test::block(4, 2, 2, {4, 2, 2}, 2, 0.2);
+  Region base = plane(mesh, 0, 0), tip = plane(mesh, 0, 4), side = plane(mesh, 2, 2);
+  double lift = 0.6, gravity = 0.004, pressure = 0.002, spring = 0.01, swelling = 1.03;
+  VectorXd theta;
+  std::shared_ptr<const EnergyTerm> law = neo_hookean(0.05, 0.6);
+
+  EnergyModel energy() const {
+    EnergyModel model = of(theta.size() ? law->with(theta) : law);
+    model.swelling = VectorXd::Constant(mesh.size(), swelling);
+    return model;
+  }
+  Loading loading() const {
+    Loading l;
+    hold(mesh, base, l);
+    l.prescribe(mesh, tip, 2, lift);
+    l.forces = {self_weight(mesh, 1.0, Vector3d(0, gravity, 0)),
+                dead_force(tip, Vector3d(0.02, 0, 0)),
+                follower_pressure(test::region_where(mesh, [](const Vector3d&) { return true; }), pressure),
+                elastic_foundation(side, spring, 0.5 * spring, mesh.X.reshaped())};
+    return l;
+  }
+  Equilibrium solved() const { return solve(mesh, energy(), loading()); }
+};
+
+/// dR/dp at fixed q by central differences of the residual, as effects do it.
+VectorXd dR(const Case& c, const VectorXd& q, const std::function<void(Case&, double)>& change, double h) {
+  Case up = c, down = c;
+  change(up, h);
+  change(down, -h);
+  return (residual(c.mesh, up.energy(), up.loading(), q) -
+          residual(c.mesh, down.energy(), down.loading(), q)) / (2 * h);
+}
+
+void check_sensitivity(const Case& c, const std::function<void(Case&, double)>& change, double h,
+                       const VectorXd& dqc, const std::string& what, double relative = 2e-6) {
+  const Equilibrium e = c.solved();
+  const Loading loading = c.loading();
+  const MatrixXd dR_dp = dR(c, e.q, change, h);
+  const MatrixXd S = sensitivities(e, loading, dR_dp, dqc);
+  const MatrixXd dR_total = dR_dp + e.K * S;
+  const Vector3d about(0.5, -1, 0.3);
+  const auto resolved = [&](double t) {
+    Case other = c;
+    change(other, t);
+    return other.solved();
+  };
+  test::expect_derivative([&](double t) { return resolved(t).q; }, S, h, relative, what);
+  test::expect_derivative([&](double t) { return VectorXd(support_force(resolved(t), c.base)); },
+                          d_support_force(c.base, dR_total), h, relative, what + ", force");
+  test::expect_derivative([&](double t) { return VectorXd(support_moment(resolved(t), c.tip, about)); },
+                          d_support_moment(e, c.tip, about, dR_total, S), h, relative, what + ", moment");
+}
+
+TEST(Sensitivities, LoadsAndSupports) {
+  const Case c;
+  check_sensitivity(c, [](Case& x, double h) { x.gravity += h; }, 4e-4, {}, "gravity");
+  check_sensitivity(c, [](Case& x, double h) { x.pressure += h; }, 2e-4, {}, "pressure");
+  check_sensitivity(c, [](Case& x, double h) { x.spring += h; }, 1e-3, {}, "foundation");
+  check_sensitivity(c, [](Case& x, double h) { x.swelling += h; }, 2e-3, {}, "swelling");
+  const Loading loading = c.loading();
+  VectorXd dqc(static_cast<int>(loading.prescribed.size()));
+  for (size_t i = 0; i < loading.prescribed.size(); ++i)
+    dqc[static_cast<int>(i)] = loading.displacement[static_cast<int>(i)] != 0;
+  check_sensitivity(c, [](Case& x, double h) { x.lift += h; }, 1e-2, dqc, "prescribed motion");
+}
+
+TEST(Sensitivities, EveryParameterOfEveryLaw) {
+  const std::pair<std::shared_ptr<const EnergyTerm>, std::vector<double>> laws[] = {
+      {neo_hookean(0.05, 0.6), {0.05, 0.6}},
+      {neo_hookean_tied(0.05, 12), {0.05}},
+      {stvk(0.3, 0.05), {0.3, 0.05}},
+      {mooney_rivlin(0.02, 0.013, 0.6), {0.02, 0.013, 0.6}},
+      {yeoh(0.03, -0.002, 0.0007, 0.6), {0.03, -0.002, 0.0007, 0.6}},
+      {ogden({0.03, -0.01}, {1.3, -2.7}, 0.6), {0.03, -0.01, 1.3, -2.7, 0.6}}};
+  for (const auto& [law, values] : laws) {
+    Case c;
+    c.mesh = test::block(2, 1, 1, {4, 2, 2}, 2);
+    c.base = plane(c.mesh, 0, 0), c.tip = plane(c.mesh, 0, 4), c.side = plane(c.mesh, 2, 2);
+    c.law = law;
+    c.theta = Eigen::Map<const VectorXd>(values.data(), static_cast<int>(values.size()));
+    const Equilibrium e = c.solved();
+    for (int k = 0; k < c.theta.size(); ++k) {
+      const double h = 0.01 * std::abs(c.theta[k]);
+      const auto change = [k](Case& x, double t) { x.theta[k] += t; };
+      const VectorXd exact = dR_dtheta(c.mesh, c.energy(), e.q, 0, k);
+      const VectorXd S = sensitivities(e, c.loading(), exact, {});
+      test::expect_derivative(
+          [&](double t) {
+            Case other = c;
+            change(other, t);
+            return other.solved().q;
+          },
+          S, h, 1e-5, law->name() + " parameter " + std::to_string(k));
+    }
+  }
+}
+
+TEST(Reactions, BalanceAppliedLoads) {
+  Case c;
+  c.pressure = c.spring = 0;
+  const Equilibrium e = c.solved();
+  const Vector3d held = support_force(e, c.base) + support_force(e, c.tip);
+  EXPECT_LE((held + Vector3d(0.02, c.gravity * 16, 0)).norm(), 1e-9);
+  const Vector3d about(1, 2, 3);
+  Vector3d applied = Vector3d::Zero();
+  const Loading loading = c.loading();
+  VectorXd R = VectorXd::Zero(e.q.size());
+  for (const auto& f : loading.forces) f->add_residual(c.mesh, e.q, 1.0, R);
+  for (int a = 0; a < c.mesh.nodes(); ++a)
+    applied -= (e.q.segment<3>(3 * a) - about).cross(Vector3d(R.segment<3>(3 * a)));
+  EXPECT_LE((support_moment(e, c.base, about) + support_moment(e, c.tip, about) + applied).norm(), 1e-9);
+}
+
+TEST(Solver, RerunsAreBitEqualAndWarmEqualsCold) {
+  const Case c;
+  const Equilibrium a = c.solved(), b = c.solved();
+  EXPECT_EQ(a.q, b.q);
+  EXPECT_EQ(a.R, b.R);
+  EquilibriumSolver solver(std::make_shared<TetMesh>(c.mesh));
+  EquilibriumOptions options;
+  options.tolerance = 1e-11;
+  const auto first = solver.solve(c.energy(), c.loading(), options);
+  ASSERT_EQ(first.index(), 0u);
+  const MatrixXd load = test::noise(a.q.size(), 3);
+  const MatrixXd before = sensitivities(std::get<Equilibrium>(first), c.loading(), load, {});
+  Case other = c;
+  other.law = neo_hookean(0.0525, 0.57);
+  other.lift = 0.7;
+  const auto warm = solver.solve(other.energy(), other.loading(), options);
+  ASSERT_EQ(warm.index(), 0u);
+  EXPECT_LE((std::get<Equilibrium>(warm).q - other.solved().q).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_EQ(std::get<Equilibrium>(warm).factorizations, 1);
+  // The first solution's factor is the caller's: the warm solve must not have written into it.
+  EXPECT_EQ(before, sensitivities(std::get<Equilibrium>(first), c.loading(), load, {}));
+}
+
+TEST(Solver, NearlyIncompressibleBendsAndTwists) {
+  Case c;
+  c.law = neo_hookean(0.05, 5.0);
+  c.swelling = 1.0;
+  Loading loading;
+  hold(c.mesh, c.base, loading);
+  RigidMotion motion;
+  motion.axis = Vector3d::UnitX();
+  motion.degrees = 60;
+  motion.center = Vector3d(0, 1, 1);
+  motion.move = Vector3d(0.8, 0, 0);
+  loading.prescribe_rigid(c.mesh, c.tip, motion);
+  const Equilibrium e = solve(c.mesh, c.energy(), loading);
+  EXPECT_TRUE(e.stable);
+  EXPECT_GT(element_state(c.mesh, c.energy(), e.q).J.minCoeff(), 0.8);
+}
+
+TEST(Solver, QuadraticElementsDoNotLock) {
+  // Cook's membrane, kappa/mu = 100: coarse against fine.
+  const auto tip_of = [](int n, int order) {
+    TetMesh mesh = test::block(n, n, 1, {1, 1, 0.1}, order);
+    for (int a = 0; a < mesh.nodes(); ++a) {
+      const double x = mesh.X(0, a), y = mesh.X(1, a);
+      mesh.X(0, a) = 48 * x;
+      mesh.X(1, a) = 44 * x + (44 - 28 * x) * y;
+    }
+    mesh.X.row(2) *= 10;
+    Loading loading;
+    const Region left = plane(mesh, 0, 0), right = plane(mesh, 0, 48);
+    hold(mesh, left, loading);
+    loading.prescribe(mesh, test::region_where(mesh, [](const Vector3d& X) { return X.z() < 1e-9 || X.z() > 1 - 1e-9; }), 2, 0);
+    loading.forces = {dead_force(right, Vector3d(0, 0.02 * 16, 0))};
+    const Equilibrium e = solve(mesh, of(neo_hookean(0.3, 30.0)), loading, 1e-9);
+    double v = 0;
+    for (int a : right.nodes) v = std::max(v, e.q[3 * a + 1] - mesh.X(1, a));
+    return v;
+  };
+  const double fine = tip_of(24, 2), coarse = tip_of(6, 2), linear = tip_of(12, 1);
+  EXPECT_NEAR(coarse, fine, 0.02 * fine);
+  EXPECT_LT(linear, 0.9 * fine) << "the test does not see locking: linear elements should lock";
+}
+
+TEST(Solver, FailureSaysWhereAndWhy) {
+  Case c;
+  Loading loading;
+  loading.name = "crush";
+  hold(c.mesh, c.base, loading);
+  hold(c.mesh, c.tip, loading);
+  loading.prescribe(c.mesh, c.tip, 0, -4.5);  // through the base
+  auto result = solve_equilibrium(c.mesh, c.energy(), loading, {1e-9, 30, 1e-2, {}});
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  const auto& failure = std::get<NumericalFailure>(result);
+  EXPECT_EQ(failure.example, "crush");
+  EXPECT_GT(failure.load_fraction, 0.1);
+  EXPECT_LT(failure.load_fraction, 0.9);
+  EXPECT_THAT(failure.reason, testing::HasSubstr("element"));
+
+  Loading floating;
+  floating.forces = {dead_force(c.tip, Vector3d(1, 0, 0))};
+  result = solve_equilibrium(c.mesh, c.energy(), floating);
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  EXPECT_THAT(std::get<NumericalFailure>(result).reason, testing::HasSubstr("translation along (1, 0, 0)"));
+
+  EquilibriumOptions options;
+  options.cancelled = [] { return true; };
+  result = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  EXPECT_EQ(std::get<NumericalFailure>(result).reason, "cancelled");
+}
+
+TEST(Solver, UnloadedBodyStaysAtRest) {
+  Case c;
+  c.swelling = 1;
+  Loading loading;
+  hold(c.mesh, c.base, loading);
+  const Equilibrium e = solve(c.mesh, of(c.law), loading, 1e-9);
+  EXPECT_LE((e.q - VectorXd(c.mesh.X.reshaped())).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_TRUE(e.stable);
+}
+
+TEST(Solver, FreeBodySwellsInPlace) {
+  const Case c;  // swollen, and nothing holds it: self-equilibrated
+  const Equilibrium e = solve(c.mesh, c.energy(), Loading{}, 1e-9);
+  EXPECT_LE((element_state(c.mesh, c.energy(), e.q).J.array() - std::pow(c.swelling, 3)).abs().maxCoeff(), 1e-8);
+  EXPECT_TRUE(e.stable);
+}
+
+TEST(Solver, FoundationAloneHoldsTheBody) {
+  Case c;
+  Loading loading;
+  loading.forces = {elastic_foundation(c.base, 0.5, 0.5, c.mesh.X.reshaped()),
+                    dead_force(c.tip, Vector3d(0.05, 0, 0))};
+  const Equilibrium e = solve(c.mesh, of(c.law), loading, 1e-9);
+  EXPECT_TRUE(e.stable);
+  double mean = 0;
+  for (int a : c.base.nodes) mean += c.base.nodal_area[a] / c.base.area * (e.q[3 * a] - c.mesh.X(0, a));
+  EXPECT_NEAR(mean, 0.05 / (0.5 * 4), 1e-7);
+}
+
+TEST(Solver, SlenderColumnLeavesTheUnstableBranch) {
+  const TetMesh mesh = test::block(10, 1, 1, {20, 1, 1}, 2);
+  Loading loading;
+  hold(mesh, plane(mesh, 0, 0), loading);
+  hold(mesh, plane(mesh, 0, 20), loading);
+  loading.prescribe(mesh, plane(mesh, 0, 20), 0, -2.0);  // ten times the buckling strain
+  const Equilibrium e = solve(mesh, of(neo_hookean(0.05, 0.6)), loading, 1e-9);
+  EXPECT_TRUE(e.stable);
+  double bow = 0;
+  for (int a = 0; a < mesh.nodes(); ++a)
+    bow = std::max(bow, (e.q.segment<3>(3 * a) - mesh.X.col(a)).tail<2>().norm());
+  EXPECT_GT(bow, 2.0);
+}
+
+}  // namespace
+}  // namespace hookeye

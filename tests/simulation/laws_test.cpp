@@ -1,0 +1,316 @@
+// Every law against finite differences, against automatic differentiation of an independently
+// written energy, and against closed forms.
+#include <ceres/jet.h>
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "simulation/blocks.h"
+#include "simulation/energy_term.h"
+#include "support/derivative.h"
+
+namespace hookeye {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+using Law = std::shared_ptr<const EnergyTerm>;
+template <class T>
+using M3 = Eigen::Matrix<T, 3, 3>;
+
+template <class T>
+T determinant(const M3<T>& F) {
+  return F.row(0).dot(F.row(1).cross(F.row(2)));
+}
+template <class T>
+T volumetric(T J, double kappa) {
+  return kappa / 2 * (J - 1.0) * (J - 1.0);
+}
+
+// Energies written from the manual, templated for automatic differentiation.
+struct NeoEnergy {
+  template <class T>
+  static T psi(const M3<T>& F, const VectorXd& p) {
+    using std::pow;
+    const T J = determinant<T>(F);
+    return p[0] / 2 * (pow(J, -2.0 / 3) * (F.transpose() * F).trace() - 3.0) + volumetric(J, p[1]);
+  }
+};
+struct TiedEnergy {
+  template <class T>
+  static T psi(const M3<T>& F, const VectorXd& p) {
+    return NeoEnergy::psi<T>(F, Eigen::Vector2d(p[0], 12 * p[0]));
+  }
+};
+struct StVkEnergy {
+  template <class T>
+  static T psi(const M3<T>& F, const VectorXd& p) {
+    const M3<T> E = (F.transpose() * F - M3<T>::Identity()) * T(0.5);
+    return p[0] / 2 * E.trace() * E.trace() + p[1] * (E * E).trace();
+  }
+};
+struct MooneyEnergy {
+  template <class T>
+  static T psi(const M3<T>& F, const VectorXd& p) {
+    using std::pow;
+    const T J = determinant<T>(F);
+    const M3<T> C = F.transpose() * F;
+    const T I2 = (C.trace() * C.trace() - (C * C).trace()) / 2.0;
+    return p[0] * (pow(J, -2.0 / 3) * C.trace() - 3.0) + p[1] * (pow(J, -4.0 / 3) * I2 - 3.0) +
+           volumetric(J, p[2]);
+  }
+};
+struct YeohEnergy {
+  template <class T>
+  static T psi(const M3<T>& F, const VectorXd& p) {
+    using std::pow;
+    const T J = determinant<T>(F);
+    const T i = pow(J, -2.0 / 3) * (F.transpose() * F).trace() - 3.0;
+    return p[0] * i + p[1] * i * i + p[2] * i * i * i + volumetric(J, p[3]);
+  }
+};
+struct FibreEnergy {
+  template <class T>
+  static T psi(const M3<T>& F, const VectorXd& p) {
+    using std::pow;
+    const T J = determinant<T>(F);
+    const Vector3d a = p.segment<3>(1).normalized();
+    const Eigen::Matrix<T, 3, 1> Fa = F * a.cast<T>();
+    const T i = pow(J, -2.0 / 3) * Fa.squaredNorm() - 1.0;
+    return p[0] / 2 * i * i;
+  }
+};
+
+VectorXd values_of(const Law& law) {
+  const auto parameters = law->parameters(Units{"mm", "N"});
+  VectorXd v(static_cast<Eigen::Index>(parameters.size()));
+  for (size_t i = 0; i < parameters.size(); ++i) v[static_cast<Eigen::Index>(i)] = parameters[i].value;
+  return v;
+}
+
+std::vector<std::pair<std::string, Law>> all_laws() {
+  return {{"neo-hookean", neo_hookean(0.05, 0.6)},
+          {"neo-hookean tied", neo_hookean_tied(0.05, 12)},
+          {"neo-hookean stiff", neo_hookean(0.05, 5.0)},
+          {"stvk", stvk(0.3, 0.05)},
+          {"mooney-rivlin", mooney_rivlin(0.02, 0.013, 0.6)},
+          {"yeoh", yeoh(0.03, -0.002, 0.0007, 0.6)},
+          {"ogden", ogden({0.03, -0.01}, {1.3, -2.7}, 0.6)},
+          {"ogden three", ogden({0.03, 0.001, -0.01}, {1.3, 5.0, -2.0}, 0.6)},
+          {"fibre", fibre(0.08, Vector3d(1, 2, -0.5))}};
+}
+
+std::vector<std::pair<std::string, Matrix3d>> deformations() {
+  std::vector<std::pair<std::string, Matrix3d>> all;
+  const Matrix3d turn = Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.5).normalized()).matrix();
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Matrix3d F = Matrix3d::Identity() + 0.35 * test::noise(9, seed).reshaped(3, 3);
+    if (F.determinant() < 0.1) F = Matrix3d::Identity() + 0.2 * (F - Matrix3d::Identity());
+    all.emplace_back("random " + std::to_string(seed), turn * F);
+  }
+  // Near and at equal stretches, where spectral formulas break.
+  all.emplace_back("two equal", turn * Vector3d(1.2, 1.2, 0.8).asDiagonal() * turn.transpose());
+  all.emplace_back("nearly equal", Matrix3d(Vector3d(1.2, 1.2 + 1e-9, 0.8).asDiagonal()) * turn);
+  all.emplace_back("all equal", 1.1 * turn);
+  all.emplace_back("strong compression", turn * Vector3d(0.4, 1.3, 1.5).asDiagonal());
+  return all;
+}
+
+TEST(Laws, StressIsDerivativeOfEnergy) {
+  for (const auto& [name, law] : all_laws())
+    for (const auto& [what, F] : deformations()) {
+      if (what == "all equal" && name == "fibre") continue;  // no stress: I4bar = 1
+      const Matrix3d direction = test::noise(9, 77).reshaped(3, 3);
+      const auto f = [&, &law = law, &F = F](double h) {
+        return VectorXd::Constant(1, law->psi(F + h * direction));
+      };
+      const double analytic = law->P(F).cwiseProduct(direction).sum();
+      test::expect_derivative(f, VectorXd::Constant(1, analytic), 1e-3, 1e-6, name + ", " + what);
+    }
+}
+
+TEST(Laws, StiffnessIsDerivativeOfStressAndSymmetric) {
+  for (const auto& [name, law] : all_laws())
+    for (const auto& [what, F] : deformations()) {
+      const Matrix9d D = law->dP_dF(F);
+      EXPECT_LE((D - D.transpose()).norm(), 1e-13 * D.norm()) << name << ", " << what;
+      for (int k = 0; k < 9; ++k) {
+        Matrix3d direction = Matrix3d::Zero();
+        direction(k % 3, k / 3) = 1;
+        const auto f = [&, &law = law, &F = F](double h) {
+          return VectorXd(law->P(F + h * direction).reshaped());
+        };
+        test::expect_derivative(f, D.col(k), 1e-4, 1e-7, name + ", " + what);
+      }
+    }
+}
+
+TEST(Laws, ParameterDerivative) {
+  for (const auto& [name, law] : all_laws())
+    for (const auto& [what, F] : deformations()) {
+      if (what == "all equal" && name != "stvk") continue;  // isochoric stress vanishes there
+      const VectorXd p = values_of(law);
+      for (int k = 0; k < p.size(); ++k) {
+        const auto f = [&, &law = law, &F = F](double h) {
+          VectorXd v = p;
+          v[k] += h;
+          return VectorXd(law->with(v)->P(F).reshaped());
+        };
+        test::expect_derivative(f, law->dP_dtheta(F, k).reshaped(), 1e-3 * std::abs(p[k]), 1e-6,
+                                name + ", " + what + ", parameter " + std::to_string(k));
+      }
+    }
+}
+
+/// psi and P by automatic differentiation of the energies above.
+template <class Energy>
+void compare_with_jets(const Law& law) {
+  using Jet = ceres::Jet<double, 9>;
+  const VectorXd p = values_of(law);
+  for (const auto& [what, F] : deformations()) {
+    M3<Jet> x;
+    for (int k = 0; k < 9; ++k) x(k % 3, k / 3) = Jet(F(k % 3, k / 3), k);
+    const Jet y = Energy::template psi<Jet>(x, p);
+    const double scale = law->dP_dF(F).norm();
+    EXPECT_NEAR(law->psi(F), y.a, 1e-13 * scale) << law->name() << ", " << what;
+    EXPECT_LE((law->P(F).reshaped() - y.v).norm(), 1e-13 * scale) << law->name() << ", " << what;
+  }
+}
+
+TEST(Laws, AgreeWithAutomaticDifferentiation) {
+  compare_with_jets<NeoEnergy>(neo_hookean(0.05, 0.6));
+  compare_with_jets<TiedEnergy>(neo_hookean_tied(0.05, 12));
+  compare_with_jets<StVkEnergy>(stvk(0.3, 0.05));
+  compare_with_jets<MooneyEnergy>(mooney_rivlin(0.02, 0.013, 0.6));
+  compare_with_jets<YeohEnergy>(yeoh(0.03, -0.002, 0.0007, 0.6));
+  compare_with_jets<FibreEnergy>(fibre(0.08, Vector3d(1, 2, -0.5)));
+}
+
+TEST(Laws, OgdenWithOneTermOfTwoIsNeoHooke) {
+  // mu/2 (I1bar - 3) = mu/alpha (sum lbar^alpha - 3) at alpha = 2.
+  const Law a = ogden({0.05}, {2.0}, 0.6), b = neo_hookean(0.05, 0.6);
+  // and alpha = -2 with c01 of Mooney-Rivlin: I2bar = sum lbar^-2.
+  const Law c = ogden({0.04, -0.026}, {2.0, -2.0}, 0.6), d = mooney_rivlin(0.02, 0.013, 0.6);
+  for (const auto& [what, F] : deformations()) {
+    EXPECT_NEAR(a->psi(F), b->psi(F), 1e-13) << what;
+    EXPECT_LE((a->P(F) - b->P(F)).norm(), 1e-13) << what;
+    EXPECT_LE((a->dP_dF(F) - b->dP_dF(F)).norm(), 1e-12 * b->dP_dF(F).norm()) << what;
+    EXPECT_LE((c->P(F) - d->P(F)).norm(), 1e-13) << what;
+    EXPECT_LE((c->dP_dF(F) - d->dP_dF(F)).norm(), 1e-12 * d->dP_dF(F).norm()) << what;
+  }
+}
+
+TEST(Laws, RestIsStressFreeAndSmallStrainModuliAreRight) {
+  const Matrix3d I = Matrix3d::Identity();
+  struct Expected { Law law; double mu, kappa; };
+  const std::vector<Expected> all = {{neo_hookean(0.05, 0.6), 0.05, 0.6},
+                                     {stvk(0.3, 0.05), 0.05, 0.3 + 0.1 / 3},
+                                     {mooney_rivlin(0.02, 0.013, 0.6), 0.066, 0.6},
+                                     {yeoh(0.03, -0.002, 0.0007, 0.6), 0.06, 0.6},
+                                     {ogden({0.03, -0.01}, {1.3, -2.7}, 0.6), 0.033, 0.6}};
+  for (const auto& [law, mu, kappa] : all) {
+    EXPECT_LE(law->P(I).norm(), 1e-15) << law->name();
+    const Matrix9d D = law->dP_dF(I);
+    EXPECT_NEAR(D(1, 1) + D(1, 3), 2 * mu, 1e-12) << law->name();  // E_21 + E_12
+    EXPECT_NEAR(D(0, 0) + 2 * D(0, 4), 3 * kappa, 1e-12) << law->name();
+  }
+}
+
+TEST(Laws, SimpleShearStress) {
+  // J = 1: P_12 is the derivative of psi by the amount of shear g: I1bar = I2bar = 3 + g^2.
+  const double g = 0.7;
+  Matrix3d F = Matrix3d::Identity();
+  F(0, 1) = g;
+  EXPECT_NEAR(neo_hookean(0.05, 0.6)->P(F)(0, 1), 0.05 * g, 1e-15);
+  EXPECT_NEAR(mooney_rivlin(0.02, 0.013, 0.6)->P(F)(0, 1), 2 * 0.033 * g, 1e-15);
+  EXPECT_NEAR(yeoh(0.03, -0.002, 0.0007, 0.6)->P(F)(0, 1),
+              2 * g * (0.03 - 2 * 0.002 * g * g + 3 * 0.0007 * std::pow(g, 4)), 1e-15);
+}
+
+TEST(Laws, UniaxialStressOfIncompressibleStretch) {
+  // F = diag(l, l^-1/2, l^-1/2), J = 1: Cauchy stress difference s1 - s2 = l dpsi/dl.
+  const double l = 1.6;
+  const Matrix3d F = Vector3d(l, 1 / std::sqrt(l), 1 / std::sqrt(l)).asDiagonal();
+  const auto difference = [&](const Law& law) {
+    const Matrix3d sigma = law->P(F) * F.transpose();
+    return sigma(0, 0) - sigma(1, 1);
+  };
+  EXPECT_NEAR(difference(neo_hookean(0.05, 0.6)), 0.05 * (l * l - 1 / l), 1e-15);
+  EXPECT_NEAR(difference(mooney_rivlin(0.02, 0.013, 0.6)),
+              2 * (l * l - 1 / l) * (0.02 + 0.013 / l), 1e-15);
+  EXPECT_NEAR(difference(ogden({0.03, -0.01}, {1.3, -2.7}, 0.6)),
+              0.03 * (std::pow(l, 1.3) - std::pow(l, -0.65)) -
+                  0.01 * (std::pow(l, -2.7) - std::pow(l, 1.35)),
+              1e-15);
+}
+
+TEST(Laws, RotationOfTheBodyRotatesStress) {
+  const Matrix3d Q = Eigen::AngleAxisd(0.9, Vector3d(3, 1, 2).normalized()).matrix();
+  for (const auto& [name, law] : all_laws())
+    for (const auto& [what, F] : deformations())
+      EXPECT_LE((law->P(Q * F) - Q * law->P(F)).norm(), 1e-12 * law->P(F).norm() + 1e-14)
+          << name << ", " << what;
+}
+
+TEST(Laws, InvertedIsNotAdmissible) {
+  const Matrix3d F = Vector3d(-0.1, 1, 1).asDiagonal();
+  for (const auto& [name, law] : all_laws())
+    if (name != "stvk") {
+      EXPECT_TRUE(std::isinf(law->psi(F))) << name;
+    }
+}
+
+MaterialSpec spec(const std::string& law, std::map<std::string, std::vector<double>> values) {
+  MaterialSpec s;
+  s.law = law;
+  s.place = {"capture.yaml", 9, 14};
+  int column = 20;
+  for (auto& [name, numbers] : values) s.parameters[name] = {numbers, {"capture.yaml", 9, column++}};
+  return s;
+}
+
+void expect_fault(const MaterialSpec& s, const std::string& wrong, const std::string& right,
+                  int column) {
+  try {
+    make_law(s);
+    ADD_FAILURE() << "accepted: " << wrong;
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.wrong(), testing::HasSubstr(wrong));
+    EXPECT_THAT(e.right(), testing::HasSubstr(right));
+    EXPECT_EQ(e.place().column, column);
+  }
+}
+
+TEST(Registry, NamesTheFaultAndItsPlace) {
+  expect_fault(spec("neo-hokean", {{"mu", {1}}}), "no law `neo-hokean`", "`neo-hookean`", 14);
+  expect_fault(spec("xyz", {{"mu", {1}}}), "no law", "yeoh {c1, c2, c3, kappa}", 14);
+  expect_fault(spec("neo-hookean", {{"mu", {1}}}), "lacks `kappa`", "kappa_over_mu", 14);
+  expect_fault(spec("neo-hookean", {{"kappa", {1}}, {"mux", {1}}, {"mu", {1}}}), "`mux`", "`mu`", 22);
+  expect_fault(spec("neo-hookean", {{"kappa", {1}}, {"kappa_over_mu", {1}}, {"mu", {1}}}),
+               "does not go", "kappa", 21);
+  expect_fault(spec("yeoh", {{"c1", {-1}}, {"c2", {0}}, {"c3", {0}}, {"kappa", {1}}}), "`c1` is -1",
+               "above 0", 20);
+  expect_fault(spec("stvk", {{"lambda", {1, 2}}, {"mu", {1}}}), "2 numbers", "one number", 20);
+  expect_fault(spec("stvk", {{"lambda", {NAN}}, {"mu", {1}}}), "`lambda` is nan", "finite", 20);
+  expect_fault(spec("ogden", {{"alpha", {2}}, {"kappa", {1}}, {"mu", {1, 2}}}), "2 moduli", "ogden", 14);
+  expect_fault(spec("ogden", {{"alpha", {-2}}, {"kappa", {1}}, {"mu", {1}}}), "shear modulus", "", 14);
+}
+
+TEST(Registry, MakesEveryLawWithItsNumbers) {
+  EXPECT_THAT(law_names(), testing::ElementsAre("neo-hookean", "stvk", "mooney-rivlin", "yeoh", "ogden"));
+  const Law law = make_law(spec("ogden", {{"alpha", {1.3, -2.7}}, {"kappa", {0.6}}, {"mu", {0.03, -0.01}}}));
+  const auto p = law->parameters(Units{"mm", "N"});
+  ASSERT_EQ(p.size(), 5u);
+  EXPECT_EQ(p[1].name, "mu2");
+  EXPECT_EQ(p[3].name, "alpha2");
+  EXPECT_EQ(p[4].unit, "MPa");
+  const Matrix3d F = deformations()[0].second;
+  EXPECT_EQ(law->P(F), ogden({0.03, -0.01}, {1.3, -2.7}, 0.6)->P(F));
+  EXPECT_EQ(make_law(spec("neo-hookean", {{"mu", {0.05}}, {"kappa_over_mu", {12}}}))->P(F),
+            neo_hookean_tied(0.05, 12)->P(F));
+}
+
+}  // namespace
+}  // namespace hookeye
