@@ -61,6 +61,11 @@ json quantum_json(const Quantised& quantum) {
   return {{"step", quantum.step}, {"zero", quantum.zero}};
 }
 
+/// Where the texture is a photo, its noise enters every residual too (photo_evaluation.cpp).
+double noise_factor(const Capture& capture) {
+  return capture.body.texture == BodySpec::Texture::rest ? std::sqrt(2.0) : 1.0;
+}
+
 /// A single file name, so that no part of a request can lead out of the run.
 bool plain(const std::string& name) {
   return !name.empty() && name[0] != '.' && name.find_first_of("/\\") == std::string::npos &&
@@ -116,9 +121,14 @@ json RunView::photos_json(json& faults, int factor) {
                     {"file", spec.file.filename().string()}};
         one["photo"] = {{"blob", at_factor("photo/" + name, factor)}, {"shrink", factor},
                         {"quantum", quantum_json(intensity_quantum(1.25))}};
-        one["sigma"] = {{"blob", at_factor("sigma/" + name, std::max(factor, 4))},
-                        {"shrink", std::max(factor, 4)},
-                        {"quantum", quantum_json(intensity_quantum(0.25))}};
+        // Told noise of one channel is a function of its intensity; else it takes a picture.
+        const bool told = spec.noise && (spec.rgb || read_image_header(spec.file).channels == 1);
+        if (told)
+          one["noise"] = {{"read", spec.noise->read}, {"full_well", spec.noise->full_well},
+                          {"factor", noise_factor(*capture_)}};
+        else
+          one["sigma"] = {{"blob", at_factor("sigma/" + name, factor)}, {"shrink", factor},
+                          {"quantum", quantum_json(intensity_quantum(0.25))}};
         all.push_back(std::move(one));
       }
   return all;
@@ -188,10 +198,8 @@ std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const 
   if (kind == "photo")
     return Blob{encode_png16(shrink(photo.planes[found->second.plane], factor),
                              intensity_quantum(1.25)), "image/png"};
-  // Where the texture is a photo, its noise enters every residual too (photo_evaluation.cpp).
   Image& sigma = photo.sigma[found->second.plane];
-  if (capture_->body.texture == BodySpec::Texture::rest)
-    for (float& s : sigma.values) s *= std::sqrt(2.0f);
+  for (float& s : sigma.values) s *= static_cast<float>(noise_factor(*capture_));
   return Blob{encode_png16(shrink(sigma, factor), intensity_quantum(0.25)), "image/png"};
 }
 
