@@ -18,7 +18,7 @@ Bench open_capture(const std::filesystem::path& capture_path, Session& session) 
   return {scene, Workspace(scene)};
 }
 
-Step newest_step(const Run& run, Bench& bench) {
+Step newest_step(const Run& run, Bench& bench, const FitOptions& options) {
   const auto steps = run.steps();
   if (steps.empty())
     throw InputError({run.folder().string()}, "the run has no finished step",
@@ -28,7 +28,7 @@ Step newest_step(const Run& run, Bench& bench) {
   step.name = entry.at("name");
   if (!entry.at("added").is_null()) step.added = entry.at("added");
   auto [form, p] = read_model(steps.back() / "model.yaml", bench.scene);
-  step.fitted = value_or_fail(assess(bench.workspace, form, p, fit_options()));
+  step.fitted = value_or_fail(assess(bench.workspace, form, p, options));
   step.fitted.converged = entry.value("converged", true);
   step.fitted.iterations = entry.value("iterations", 0);
   return step;

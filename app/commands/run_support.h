@@ -23,11 +23,11 @@ T value_or_fail(std::variant<T, NumericalFailure> result) {
   return std::get<T>(std::move(result));
 }
 
-/// The newest step of a run, its model evaluated again (pictures and derivatives).
-Step newest_step(const Run& run, Bench& bench);
-
 /// Options with the progress bar and Ctrl-C wired in.
 FitOptions fit_options();
+/// The newest step of a run, its model evaluated again (pictures and derivatives).
+Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_options());
+
 DiscoverOptions discover_options();
 
 /// Writes the step's folder and the timeline's entry.

@@ -190,6 +190,8 @@ json RunView::document(int shrink_old, int shrink_new) {
   return out;
 }
 
+size_t RunView::step_count() const { return step_folders(folder_).size(); }
+
 std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const std::string& name,
                                                  int factor) {
   const auto found = planes_.find(name);

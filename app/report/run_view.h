@@ -30,6 +30,8 @@ class RunView {
   /// A part by the name that the document gives it. Empty: there is none. Thread-safe.
   std::optional<Blob> blob(const std::string& name);
 
+  /// Finished steps in the folder now.
+  size_t step_count() const;
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
