@@ -93,6 +93,11 @@ bool same_content(const fs::path& a, const fs::path& b) {
          static_cast<size_t>(std::distance(fs::directory_iterator(b), fs::directory_iterator()));
 }
 
+/// The capture's yaml, whether the user named it or its folder.
+fs::path yaml_of(const fs::path& capture) {
+  return fs::weakly_canonical(fs::is_directory(capture) ? capture / "capture.yaml" : capture);
+}
+
 void check_name(const std::string& name) {
   if (name.empty() || name[0] == '.' || name.find('/') != std::string::npos ||
       name.find('\0') != std::string::npos)
@@ -143,7 +148,7 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
                      "choose a folder that you may write");
   if (is_run) {
     Run run = open(folder, true);
-    if (run.capture() != fs::weakly_canonical(capture))
+    if (run.capture() != yaml_of(capture))
       throw InputError(
           {folder.string()},
           fmt::format("the folder holds a run of another capture: {}", run.capture().string()),
@@ -156,7 +161,7 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
   remove_leftovers(impl->folder);
   fs::create_directories(impl->folder / "steps");
   impl->store({{"hookeye", 1},
-               {"capture", fs::weakly_canonical(capture).string()},
+               {"capture", yaml_of(capture).string()},
                {"verdict", "unexplained"},
                {"steps", json::array()}});
   return Run(std::move(impl));

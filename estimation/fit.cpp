@@ -310,8 +310,9 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
   int iterations = 0;
   bool converged = true;
   if (form.size() > 0) {
-    const int coarsest = options.coarse_to_fine ? 2 : 0;
-    for (int level = coarsest; level >= 0; level -= coarsest > 0 ? coarsest : 1) {
+    // Gauss-Newton follows a speckle only while it overlaps with itself: an eighth of the size
+    // brings a misfit of 16 px down to 2.
+    for (int level : options.coarse_to_fine ? std::vector<int>{3, 0} : std::vector<int>{0}) {
       auto stage = run_stage(workspace, form, p, options, level);
       if (auto* failure = std::get_if<NumericalFailure>(&stage)) return *failure;
       const auto& result = std::get<StageResult>(stage);

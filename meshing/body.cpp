@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "meshing/detail.h"
 #include "meshing/subdivide.h"
@@ -114,11 +115,28 @@ double place_on(const TetMesh& mesh, RenderSurface& surface) {
   return farthest;
 }
 
-/// Whether every vertex is a corner node of the mesh (then it moves as that node does).
-bool vertices_are_corners(const RenderSurface& surface, double farthest, double tolerance) {
+/// Whether the triangles are faces of the mesh: every vertex a corner node, every triangle a
+/// boundary face. Vertices alone would not do: a mesh filled from a coarse surface has them all.
+bool triangles_are_faces(const TetMesh& mesh, const RenderSurface& surface, double farthest,
+                         double tolerance) {
   if (farthest > tolerance) return false;
+  std::vector<int> node_of;
   for (const SurfacePoint& p : surface.points) {
-    if (p.barycentric.maxCoeff() < 1.0 - 1e-4) return false;
+    int corner = 0;
+    if (p.barycentric.maxCoeff(&corner) < 1.0 - 1e-4) return false;
+    node_of.push_back(mesh.elements(corner, p.element));
+  }
+  std::set<std::array<int, 3>> faces;
+  for (Eigen::Index f = 0; f < mesh.boundary.cols(); ++f) {
+    std::array<int, 3> c{mesh.boundary(0, f), mesh.boundary(1, f), mesh.boundary(2, f)};
+    std::sort(c.begin(), c.end());
+    faces.insert(c);
+  }
+  for (const auto& t : surface.mesh.triangles) {
+    std::array<int, 3> c;
+    for (size_t k = 0; k < 3; ++k) c[k] = node_of[static_cast<size_t>(t[k])];
+    std::sort(c.begin(), c.end());
+    if (!faces.contains(c)) return false;
   }
   return true;
 }
@@ -163,7 +181,7 @@ RenderSurface ride(const TetMesh& mesh, const MendedSurface& file, std::vector<s
   out.file_triangle = file.file_triangle;
   const double size = detail::diagonal(mesh.X);
   const double farthest = place_on(mesh, out);
-  if (vertices_are_corners(out, farthest, 1e-5 * size)) {
+  if (triangles_are_faces(mesh, out, farthest, 1e-5 * size)) {
     for (SurfacePoint& p : out.points) {
       p.barycentric = p.barycentric.array().round();  // a selection: exactly one node a vertex
     }

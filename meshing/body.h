@@ -12,8 +12,8 @@ namespace hookeye {
 
 /// The surface that is photographed. Its vertices ride on the tetrahedra: x = X_surface + W (q - X)
 /// per coordinate. Triangles of the surface file are subdivided (uv interpolated, flat) until no
-/// edge is longer than the tetrahedra's edge (half of it for order 2), unless vertices of the file
-/// already coincide with corner nodes of the volume, in which case the file's triangles are kept.
+/// edge is longer than the tetrahedra's edge (half of it for order 2), unless the file's triangles
+/// already are the faces of the volume (corner nodes), in which case they are kept.
 struct RenderSurface {
   SurfaceMesh mesh;                                ///< rest
   std::vector<int> file_triangle;                  ///< triangle of the surface file each comes from

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <gmsh.h>
 
+#include <fstream>
 #include <mutex>
+#include <sstream>
 #include <unordered_map>
 
 #include "meshing/detail.h"
@@ -73,6 +75,24 @@ std::vector<std::string> groups_of(const Block& block) {
   std::vector<std::string> names;
   for (const int tag : tags) names.push_back(group_name(block.dimension, std::abs(tag)));
   return names;
+}
+
+/// Nodes a text msh announces (0: unknown): gmsh leaves out silently those of no element.
+int announced_nodes(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  int version = 0, binary = 0;
+  while (std::getline(in, line) && line.rfind("$Nodes", 0) != 0) {
+    if (line.rfind("$MeshFormat", 0) == 0 && std::getline(in, line)) {
+      std::istringstream format(line);
+      double number = 0;
+      format >> number >> binary;
+      version = static_cast<int>(number);
+    }
+  }
+  int first = 0, second = 0;
+  if (binary != 0 || !(in >> first)) return 0;
+  return version >= 4 && in >> second ? second : first;
 }
 
 /// Node tags ascending: node i of a file numbered without gaps becomes column i-1.
@@ -178,6 +198,7 @@ RawVolume read_gmsh(const std::filesystem::path& file, const Place& place) {
   }
   RawVolume raw;
   const auto column_of = read_nodes(raw);
+  raw.lost = std::max(0, announced_nodes(file) - static_cast<int>(raw.X.cols()));
   take_tetrahedra(raw, column_of, file);
   take_triangles(raw, column_of);
   return raw;

@@ -96,9 +96,10 @@ std::vector<int> drop_unused(RawVolume& raw, const Place& place, std::vector<std
     raw.X.col(n) = raw.X.col(static_cast<Eigen::Index>(i)).eval();
     fresh[i] = n++;
   }
-  if (dropped == 0) return fresh;
+  if (dropped + raw.lost == 0) return fresh;
   const std::string message =
-      fmt::format("{} nodes belong to no tetrahedron, the first being {}", dropped, first + 1);
+      fmt::format("{} nodes belong to no tetrahedron{}", dropped + raw.lost,
+                  first < 0 ? "" : fmt::format(", the first being {}", first + 1));
   if (said == nullptr) throw InputError(place, message, "a mesh without loose nodes");
   said->push_back(message + "; they were dropped and later nodes renumbered");
   raw.X.conservativeResize(3, n);

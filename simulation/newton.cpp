@@ -100,7 +100,7 @@ double relative_error(const Problem& problem, const NewtonState& state, const Ve
   for (int u : problem.loading.prescribed) largest = std::max(largest, std::abs(R[u]));
   if (state.K.nonZeros() > 0) {
     const double size = (problem.mesh.X.rowwise().maxCoeff() - problem.mesh.X.rowwise().minCoeff()).norm();
-    largest = std::max(largest, 1e-9 * size * state.K.diagonal().cwiseAbs().maxCoeff());
+    largest = std::max(largest, 1e-5 * size * state.K.diagonal().cwiseAbs().maxCoeff());
   }
   double error = 0;
   for (int u : state.free) error = std::max(error, std::abs(R[u]));

@@ -122,6 +122,9 @@ TEST(RunTest, ForeignFoldersAreRefused) {
   EXPECT_EQ(complaint([&] { RunFolder::open(folder / "photos", false); }),
             "there is no run in this folder");
   RunFolder::create(folder / "run", folder / "c.yaml");
+  write_text(folder / "capture.yaml", "");
+  EXPECT_EQ(RunFolder::create(folder / "by_folder", folder.path()).capture(),
+            folder / "capture.yaml");
   EXPECT_EQ(complaint([&] { RunFolder::create(folder / "run", folder / "d.yaml"); }),
             "the folder holds a run of another capture: " + (folder / "c.yaml").string());
 }

@@ -225,6 +225,27 @@ TEST(RenderSurfaces, CarryAffineMotionExactly) {
   }
 }
 
+TEST(RenderSurfaces, ACoarseSurfaceIsDividedSoThatItBends) {
+  const BoxBody box;  // all its vertices are corner nodes of what fills it
+  for (const int order : {1, 2}) {
+    const Body body = make_body(box.capture, 1.0, order);
+    const SurfaceMesh& s = body.surface.mesh;
+    for (const auto& t : s.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_LT((s.X.col(t[k]) - s.X.col(t[(k + 1) % 3])).norm(), 3.0 * 1.4 / order);
+      }
+    }
+    // Bent: the surface follows the elements.
+    Matrix3Xd x = body.mesh.X;
+    x.row(2) += 0.01 * x.row(0).cwiseAbs2();
+    Matrix3Xd expected = s.X;
+    expected.row(2) += 0.01 * s.X.row(0).cwiseAbs2();
+    const VectorXd q = Eigen::Map<const VectorXd>(x.data(), x.size());
+    const double error = (body.surface.deformed(body.mesh, q) - expected).cwiseAbs().maxCoeff();
+    EXPECT_LT(error, order == 1 ? 0.05 : 1e-11);
+  }
+}
+
 TEST(RenderSurfaces, BodyWithoutSurfaceOrVolumeIsRefused) {
   EXPECT_THAT(refusal([] { make_body(Capture()); }), HasSubstr("neither a surface nor a volume"));
 }

@@ -180,6 +180,25 @@ TEST(ReadVolume, MshWithGroups) {
   for (int k = 0; k < 3; ++k) EXPECT_EQ(mesh.X(2, mesh.boundary(k, foot)), 0.0);
 }
 
+TEST(ReadVolume, Msh41AndMedit) {
+  const Scratch scratch;
+  const TetMesh msh = read_volume(
+      scratch.write("a.msh",
+                    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 7 \"BODY\"\n"
+                    "$EndPhysicalNames\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 7 0\n$EndEntities\n"
+                    "$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+                    "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n"),
+      kPlace);
+  EXPECT_EQ(msh.volume_groups.at("BODY"), std::vector<int>{0});
+  const TetMesh medit = read_volume(
+      scratch.write("a.mesh",
+                    "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 1\n1 0 0 1\n0 1 0 1\n"
+                    "0 0 1 1\nTetrahedra\n1\n1 2 3 4 1\nEnd\n"),
+      kPlace);
+  EXPECT_EQ(medit.X, msh.X);
+  EXPECT_EQ(medit.elements, msh.elements);
+}
+
 TEST(ReadVolume, MshFaults) {
   const Scratch scratch;
   const auto fault = [&](const std::string& text) {
@@ -187,7 +206,8 @@ TEST(ReadVolume, MshFaults) {
   };
   EXPECT_THAT(fault(msh22("1 3 2 4")), HasSubstr("element 2 at (0, 0, 0) is inverted"));
   EXPECT_THAT(fault(msh22("1 2 2 4")), HasSubstr("element 2 names a node twice"));
-  EXPECT_THAT(fault(msh22("1 2 3 4", "5", "5 0.2 0.7 0\n")), HasSubstr("5"));
+  EXPECT_THAT(fault(msh22("1 2 3 4", "5", "5 0.2 0.7 0\n")),
+              HasSubstr("1 nodes belong to no tetrahedron"));
   EXPECT_THAT(fault(msh22("1 2 3 9")), HasSubstr("a.msh"));
   const std::string whole = msh22();
   for (const size_t length : {40u, 120u, 170u, 230u}) {
