@@ -52,8 +52,12 @@ DiscoverOptions discover_options() {
   return options;
 }
 
-std::filesystem::path record(Run& run, const Scene& scene, const Step& step) {
-  return run.add_step(step.name, timeline_entry(step), [&](const std::filesystem::path& folder) {
+std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
+                             const std::string& command) {
+  nlohmann::json entry = timeline_entry(step);
+  entry["command"] = command;
+  entry["made_by"] = versions();
+  return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {
     write_step(folder, scene, step);
   });
 }

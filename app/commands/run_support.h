@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "app/invocation.h"
 #include "app/session.h"
 #include "capture_io/run.h"
 #include "estimation/discover.h"
@@ -30,8 +31,9 @@ Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_o
 
 DiscoverOptions discover_options();
 
-/// Writes the step's folder and the timeline's entry.
-std::filesystem::path record(Run& run, const Scene& scene, const Step& step);
+/// Writes the step's folder and the timeline's entry, which keeps the command that made it.
+std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
+                             const std::string& command = invocation());
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 

@@ -8,9 +8,9 @@ import {figure} from '../format';
 import {array, field, type StoredArray} from '../parts';
 import {chosenPhoto, floor, other, run, step, units, wantedPixel} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
-import {frames, paint, residualScale, valuesAt, type Frames, type Kind} from './frames';
+import {counted, frames, paint, residualScale, valuesAt, type Frames, type Kind} from './frames';
 import {Panel, type Arrow, type Layer} from './panel';
-import {cursor, place, zoom} from './viewport';
+import {cursor, focus, place, resolved, zoom} from './viewport';
 
 const layouts = ['side by side', 'swipe', 'blink'] as const;
 const layout = signal<(typeof layouts)[number]>('side by side');
@@ -146,6 +146,9 @@ export function Compare() {
     return () => clearInterval(timer);
   }, [layout.value]);
   useEffect(() => {
+    focus.value = shown ? counted(shown.frames) : null;
+  }, [shown]);
+  useEffect(() => {
     const wanted = wantedPixel.value;
     if (!wanted || !entry || wanted.photo !== entry.name) return;
     cursor.value = {x: Math.round(wanted.x), y: Math.round(wanted.y)};
@@ -171,7 +174,7 @@ export function Compare() {
       const panel = area.current!.querySelector('canvas')!;
       const size = {width: panel.clientWidth, height: panel.clientHeight};
       if (cursor.value && event.key === '+' && place.value.scale === 0)
-        place.value = {scale: size.width / entry.width, ...cursor.value};
+        place.value = {scale: resolved(size, entry).scale, ...cursor.value};
       zoom(size, entry, event.key === '+' ? 1.5 : 1 / 1.5, size.width / 2, size.height / 2);
     } else if (event.key === '0') place.value = {scale: 0, x: 0, y: 0};
     else return;
@@ -197,6 +200,10 @@ export function Compare() {
           <label><input type="checkbox" checked={showArrows.value}
             onChange={(e) => (showArrows.value = e.currentTarget.checked)} /> arrows</label>
           <button onClick={() => (place.value = {scale: 0, x: 0, y: 0})}>Fit</button>
+          <button onClick={() => {
+            focus.value = null;
+            place.value = {scale: 0, x: 0, y: 0};
+          }}>Whole</button>
           <button onClick={() => (place.value = {scale: 1, x: entry.width / 2, y: entry.height / 2})}>1:1</button>
           <span class="push" />
           <button onClick={() => shown && pixelCsv(shown)}>CSV</button>
@@ -233,7 +240,7 @@ export function Compare() {
                   to={`+${residualScale}`} background={gradient(diverging, -1, 1)} />
           {shown?.flow && <span class="arrow-legend">
             arrows: the displacement that would remove the residual, {figure(shown.gain)} times as long;
-            rms {figure(shown.flow.rms_px)} px = {figure(shown.flow.rms_px * shown.flow.length_per_px)} {units.value.length}
+            rms {figure(shown.flow.rms_px)} px = {figure(shown.flow.rms_px * shown.flow.length_per_px)} {units.value.length}; the longest are cut
           </span>}
           <span class="swatch">grey: does not count</span>
         </div>

@@ -2,6 +2,7 @@
 import {diverging, notCounted, shown, type Rgb} from '../colours';
 import type {PhotoEntry, StepEntry} from '../document';
 import {at, picture, type Grid} from '../parts';
+import type {Box} from './viewport';
 
 /** Residuals are shown from -8 to +8 standard deviations in every picture of every run. */
 export const residualScale = 8;
@@ -80,4 +81,28 @@ export function paint(frames: Frames, kind: Kind): HTMLCanvasElement {
     }
   context.putImageData(pixels, 0, 0);
   return canvas;
+}
+
+/** The smallest box around the pixels that count, with a margin; null: all or none of them. */
+export function counted(frames: Frames): Box | null {
+  const grid = frames.residual;
+  if (!grid) return null;
+  let [left, top, right, bottom] = [Infinity, Infinity, -1, -1];
+  for (let y = 0, i = 0; y < grid.height; ++y)
+    for (let x = 0; x < grid.width; ++x, ++i)
+      if (!Number.isNaN(grid.values[i])) {
+        left = Math.min(left, x);
+        right = Math.max(right, x);
+        top = Math.min(top, y);
+        bottom = Math.max(bottom, y);
+      }
+  if (right < 0) return null;
+  const margin = 0.06 * Math.max(right - left, bottom - top);
+  const s = grid.shrink;
+  return {
+    left: Math.max(0, (left - margin) * s),
+    top: Math.max(0, (top - margin) * s),
+    right: Math.min(frames.entry.width - 1, (right + margin) * s),
+    bottom: Math.min(frames.entry.height - 1, (bottom + margin) * s),
+  };
 }

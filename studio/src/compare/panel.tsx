@@ -1,6 +1,6 @@
 // One picture: draws, zooms, pans, and says which pixel is under the pointer.
 import {useEffect, useRef} from 'preact/hooks';
-import {cursor, pan, pixelAt, place, resolved, screenAt, zoom, type Size} from './viewport';
+import {cursor, focus, pan, pixelAt, place, resolved, screenAt, zoom, type Size} from './viewport';
 
 export interface Arrow {
   x: number;
@@ -33,6 +33,9 @@ function drawLayer(context: CanvasRenderingContext2D, panel: Size, photo: Size, 
     layer.canvas.height * layer.shrink * scale);
 }
 
+/** Longer arrows are cut, so that one bad cell does not cross the picture [px of the photo]. */
+export const longest = 48;
+
 function drawArrows(context: CanvasRenderingContext2D, panel: Size, photo: Size, arrows: Arrow[],
                     gain: number): void {
   for (const [width, colour] of [[3, '#0009'], [1.4, '#ffd400']] as const) {
@@ -41,7 +44,9 @@ function drawArrows(context: CanvasRenderingContext2D, panel: Size, photo: Size,
     context.beginPath();
     for (const a of arrows) {
       const [x, y] = screenAt(panel, photo, a.x, a.y);
-      const [u, v] = screenAt(panel, photo, a.x + gain * a.dx, a.y + gain * a.dy);
+      const length = gain * Math.hypot(a.dx, a.dy);
+      const drawn = length > longest ? (gain * longest) / length : gain;
+      const [u, v] = screenAt(panel, photo, a.x + drawn * a.dx, a.y + drawn * a.dy);
       const head = 0.3 * Math.hypot(u - x, v - y);
       const angle = Math.atan2(v - y, u - x);
       context.moveTo(x, y);
@@ -99,6 +104,7 @@ export function Panel(props: Props) {
   // Read here, so that the panel is drawn again whenever either changes.
   void place.value;
   void cursor.value;
+  void focus.value;
 
   useEffect(() => {
     if (ref.current) render(ref.current, props);

@@ -7,7 +7,7 @@ export interface Place {
   x: number;
   y: number;
 }
-/** scale 0: fit the picture into the panel. */
+/** scale 0: fit what counts into the panel. */
 export const place = signal<Place>({scale: 0, x: 0, y: 0});
 /** The pixel under the pointer or the keyboard's cross, in every panel. */
 export const cursor = signal<{x: number; y: number} | null>(null);
@@ -16,11 +16,23 @@ export interface Size {
   width: number;
   height: number;
 }
+export interface Box {
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
+}
+/** What "fit" shows: the pixels that count; null: the whole picture. */
+export const focus = signal<Box | null>(null);
 
 export function resolved(panel: Size, photo: Size): Place {
   if (place.value.scale > 0) return place.value;
-  const scale = Math.min(panel.width / photo.width, panel.height / photo.height);
-  return {scale, x: (photo.width - 1) / 2, y: (photo.height - 1) / 2};
+  const box = focus.value ?? {left: 0, top: 0, right: photo.width - 1, bottom: photo.height - 1};
+  const scale = Math.min(
+    panel.width / (box.right - box.left + 1),
+    panel.height / (box.bottom - box.top + 1),
+  );
+  return {scale, x: (box.left + box.right) / 2, y: (box.top + box.bottom) / 2};
 }
 
 /** Photo pixel under a point of the panel. Pixel centres are whole numbers. */
