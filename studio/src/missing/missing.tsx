@@ -20,7 +20,7 @@ function Confusion(props: {effects: EffectScore[]}) {
   const list = together(props.effects.slice(0, 12));
   const n = list.length;
   const size = 20;
-  const left = 128;
+  const left = 180;
   if (n < 2) return null;
   return (
     <figure class="confusion">
@@ -45,7 +45,7 @@ function Confusion(props: {effects: EffectScore[]}) {
           </g>
         ))}
       </svg>
-      <p class="note">Cosine between the pictures' changes: 0 (dark) told apart, 1 (bright) not.</p>
+      <p class="note">Cosine between the pictures' changes: 1 (bright) cannot be told apart; dark is told apart well enough not to be listed.</p>
     </figure>
   );
 }
@@ -91,7 +91,7 @@ export function Missing() {
                   onMouseEnter={() => (chosenEffect.value = e.effect)}>
                 <td><button class="link" onClick={() => (chosenEffect.value = e.effect)}
                   onFocus={() => (chosenEffect.value = e.effect)}>{spaced(e.effect)}</button></td>
-                <td><span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, e.explains ?? 0))}%`}} /></span> {percent(e.explains)}</td>
+                <td class="share"><span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, e.explains ?? 0))}%`}} /></span> {percent(e.explains)}</td>
                 <td>{figure(e.evidence)}</td><td>{percent(e.weight)}</td><td>{e.dof}</td>
                 <td>{(e.confused_with ?? []).map(spaced).join(', ')}</td>
               </tr>
