@@ -24,4 +24,7 @@ if(NOT OPENBLAS_LIBRARY)
   find_package(BLAS REQUIRED)
   set(OPENBLAS_LIBRARY ${BLAS_LIBRARIES})
 endif()
+# First on every link line: Ceres brings whatever BLAS it finds (ATLAS where that is installed), and
+# the first library that knows dgemm serves CHOLMOD and Eigen too.
+link_libraries(${OPENBLAS_LIBRARY})
 find_package(OpenMP REQUIRED COMPONENTS CXX)

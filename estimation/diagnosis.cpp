@@ -70,6 +70,7 @@ struct Sums {
   EffectiveSums effective;
   Eigen::MatrixXd noise;            ///< covariance of effective.s under the null
   NormalEquations fitted, held_out; ///< plain pixel sums
+  double pixel_floor2 = 1.0;
   double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
   double whiteness_p = 1.0;
 };
@@ -79,7 +80,8 @@ Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
   const int m = evaluation.columns;
   out.effective.H.setZero(m, m);
   out.effective.s.setZero(m);
-  out.effective.floor2 = floor.chi * floor.chi;
+  out.effective.floor2 = floor.cell_variance;
+  out.pixel_floor2 = floor.chi * floor.chi;
   out.noise.setZero(m, m);
   int photos = 0;
   for (const auto& example : evaluation.examples)
@@ -226,9 +228,9 @@ EffectScore describe(const Context& context, const Candidate& candidate,
     score.values[i] = std::clamp(score.values[i], parameters[i].low, parameters[i].high);
   score.base_step = -plain.to_base * t;
   const double structured =
-      context.sums.photo_r2 - context.sums.photo_count * context.sums.effective.floor2;
+      context.sums.photo_r2 - context.sums.photo_count * context.sums.pixel_floor2;
   const double held =
-      context.sums.held_r2 - context.sums.held_count * context.sums.effective.floor2;
+      context.sums.held_r2 - context.sums.held_count * context.sums.pixel_floor2;
   const VectorXd step =
       joint_step(context.evaluation.columns, weighted, score, null_values);
   if (structured > 0.0)

@@ -82,7 +82,7 @@ EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference) 
 
 double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor) {
   const EffectiveMisfit misfit = effective_misfit(fitted, reference);
-  const double noise = std::max(floor.chi * floor.chi, misfit.r2 / misfit.count);
+  const double noise = std::max(floor.cell_variance, misfit.r2 / misfit.count);
   return -0.5 * misfit.count * std::log(noise) - 0.5 * misfit.r2 / noise -
          0.5 * fitted.form.size() * std::log(std::max(misfit.count, 2.0));
 }

@@ -93,6 +93,9 @@ class ReducedCost final : public ceres::CostFunction {
     return true;
   }
   const std::optional<NumericalFailure>& failure() const { return failure_; }
+  /// Fall of |r|^2 that the next Gauss-Newton step promises, and |r|^2 itself.
+  double promised() const { return cached_.z.squaredNorm(); }
+  double r2() const { return cached_.z.squaredNorm() + cached_.rho * cached_.rho; }
 
  private:
   Workspace& workspace_;
@@ -106,10 +109,12 @@ class ReducedCost final : public ceres::CostFunction {
 
 class Reporter final : public ceres::IterationCallback {
  public:
-  Reporter(const FitOptions& options, std::string stage, double count, int of)
-      : options_(options), stage_(std::move(stage)), count_(count), of_(of) {}
+  Reporter(const FitOptions& options, const ReducedCost& cost, std::string stage, double count,
+           int of)
+      : options_(options), cost_(cost), stage_(std::move(stage)), count_(count), of_(of) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
+    if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (options_.progress)
       options_.progress({stage_, summary.iteration, of_,
                          std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
@@ -117,7 +122,18 @@ class Reporter final : public ceres::IterationCallback {
   }
 
  private:
+  /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
+  /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
+  /// apart in a modulus differ by some 1e-5). A refused step that changed next to nothing has met
+  /// the same limit.
+  bool done(const ceres::IterationSummary& summary) const {
+    if (summary.step_is_successful)
+      return cost_.promised() < std::max(0.01, 1e-6 * cost_.r2());
+    return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
+  }
+
   const FitOptions& options_;
+  const ReducedCost& cost_;
   std::string stage_;
   double count_;
   int of_;
@@ -186,7 +202,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.parameter_tolerance = 1e-7;
   solver.logging_type = ceres::SILENT;
   solver.max_num_consecutive_invalid_steps = 8;
-  Reporter reporter(options, level > 0 ? fmt::format("1/{} size", 1 << level) : "full size",
+  Reporter reporter(options, cost, level > 0 ? fmt::format("1/{} size", 1 << level) : "full size",
                     photo_count(seen), solver.max_num_iterations);
   solver.callbacks.push_back(&reporter);
   ceres::Solver::Summary summary;
@@ -194,7 +210,9 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
   if (summary.termination_type == ceres::FAILURE)
     return cost.failure().value_or(NumericalFailure{"", 0.0, summary.message});
-  return StageResult{scaling.to_p(x), summary.termination_type == ceres::CONVERGENCE, false,
+  return StageResult{scaling.to_p(x), summary.termination_type == ceres::CONVERGENCE ||
+                         summary.termination_type == ceres::USER_SUCCESS,
+                     false,
                      static_cast<int>(summary.iterations.size())};
 }
 
@@ -303,6 +321,22 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
   return out;
 }
 
+namespace {
+
+/// Gauss-Newton follows a pattern only while it overlaps with itself. At 1/32 a misfit of some
+/// tens of pixels is one pixel and speckle has averaged out; 1/8 brings the rest below a speckle.
+std::vector<int> pyramid(const Scene& scene) {
+  int smallest = 1 << 20;
+  for (const auto& camera : scene.capture.cameras)
+    smallest = std::min({smallest, camera.width, camera.height});
+  std::vector<int> levels;
+  for (int level : {5, 3, 0})
+    if (level == 0 || (smallest >> level) >= 12) levels.push_back(level);
+  return levels;
+}
+
+}  // namespace
+
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
@@ -310,9 +344,7 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
   int iterations = 0;
   bool converged = true;
   if (form.size() > 0) {
-    // Gauss-Newton follows a speckle only while it overlaps with itself: an eighth of the size
-    // brings a misfit of 16 px down to 2.
-    for (int level : options.coarse_to_fine ? std::vector<int>{3, 0} : std::vector<int>{0}) {
+    for (int level : options.coarse_to_fine ? pyramid(workspace.scene()) : std::vector<int>{0}) {
       auto stage = run_stage(workspace, form, p, options, level);
       if (auto* failure = std::get_if<NumericalFailure>(&stage)) return *failure;
       const auto& result = std::get<StageResult>(stage);

@@ -9,6 +9,10 @@ namespace hookeye {
 
 struct Floor {
   double chi = 1.0;
+  /// The same for cells: variance of their standardised estimates (FlowCell::z) in the rest photos
+  /// after smooth motions and brightness changes are taken out, at least 1. Shading and texture
+  /// errors of the renderer are in it; they are in every photo.
+  double cell_variance = 1.0;
   std::string source = "noise model";  ///< or "rest photos"
 };
 

@@ -13,6 +13,9 @@ struct PhotoPlane {
   std::vector<unsigned char> valid;
 };
 
+/// Means over squares of two by two pixels.
+Image halved(const Image& image);
+
 /// levels[0] is the photo itself. The only file that touches OpenCV's image filters here.
 std::vector<PhotoPlane> photo_pyramid(const Photo& photo, int plane, int levels);
 

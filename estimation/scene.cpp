@@ -1,27 +1,37 @@
 #include <set>
 
 #include "estimation/model.h"
+#include "estimation/photo_pyramid.h"
 
 namespace hookeye {
 
 namespace {
 
 /// Splits an albedo picture into linear planes that match how the photos are compared.
-std::vector<std::shared_ptr<const Image>> albedo_planes(const BodySpec& body, bool rgb) {
+std::vector<std::vector<std::shared_ptr<const Image>>> albedo_planes(const BodySpec& body,
+                                                                     bool rgb) {
   const Image image = read_image(body.texture_image, body.texture_encoding);
-  std::vector<std::shared_ptr<const Image>> planes;
+  std::vector<Image> planes;
   if (!rgb || image.channels == 1) {
-    planes.push_back(std::make_shared<Image>(luminance(image)));
-    return planes;
+    planes.push_back(luminance(image));
+  } else {
+    for (int c = 0; c < image.channels; ++c) {
+      Image plane{image.width, image.height, 1, {}};
+      plane.values.resize(image.pixels());
+      for (size_t i = 0; i < image.pixels(); ++i)
+        plane.values[i] = image.values[i * image.channels + c];
+      planes.push_back(std::move(plane));
+    }
   }
-  for (int c = 0; c < image.channels; ++c) {
-    auto plane = std::make_shared<Image>(Image{image.width, image.height, 1, {}});
-    plane->values.resize(image.pixels());
-    for (size_t i = 0; i < image.pixels(); ++i)
-      plane->values[i] = image.values[i * image.channels + c];
-    planes.push_back(std::move(plane));
+  std::vector<std::vector<std::shared_ptr<const Image>>> pyramids;
+  for (auto& plane : planes) {
+    std::vector<std::shared_ptr<const Image>> sizes;
+    sizes.push_back(std::make_shared<Image>(std::move(plane)));
+    while (sizes.size() < 3 && std::min(sizes.back()->width, sizes.back()->height) >= 8)
+      sizes.push_back(std::make_shared<Image>(halved(*sizes.back())));
+    pyramids.push_back(std::move(sizes));
   }
-  return planes;
+  return pyramids;
 }
 
 bool any_rgb(const Capture& capture) {

@@ -13,7 +13,7 @@ namespace hookeye {
 
 using nlohmann::json;
 
-json to_json(const Floor& floor) { return {{"chi", floor.chi}, {"source", floor.source}}; }
+json to_json(const Floor& floor) { return {{"chi", floor.chi}, {"cell_variance", floor.cell_variance}, {"source", floor.source}}; }
 
 namespace {
 

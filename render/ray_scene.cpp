@@ -16,10 +16,11 @@ static_assert(offsetof(RayPacket, triangle) ==
 
 namespace {
 
-/// One device a process. Its threads only build; scenes here are small, so one does.
+/// One device a process. Its number of threads is left alone: any limit here would be TBB's for the
+/// whole process.
 RTCDevice device() {
   struct Holder {
-    RTCDevice handle = rtcNewDevice("threads=1,set_affinity=0");
+    RTCDevice handle = rtcNewDevice("set_affinity=0");
     ~Holder() {
       if (handle) rtcReleaseDevice(handle);
     }

@@ -32,6 +32,7 @@ struct EdgePoint {
   double length_px;  ///< of the edge that this point stands for
   Vector2d px, normal;  ///< in the picture; normal away from the triangle
   double depth;         ///< as Sample::depth
+  double facet_size;    ///< longest edge of the triangle [length]
   Vector2d h, step_h;   ///< ray through the point, and the change of h for kStepPx along the normal
   Eigen::Matrix<double, 1, 3> n_by_point;   ///< normal motion [px] by camera-space position
   Eigen::Matrix<double, 1, 7> n_by_camera;
@@ -60,9 +61,13 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
   const auto& t = f.surface.triangles[inside];
   const int apex = t[0] + t[1] + t[2] - edge.a - edge.b;
   const int count = static_cast<int>(std::ceil(length * per_px));
+  double size = 0;
+  for (int k = 0; k < 3; ++k)
+    size = std::max(size, (view.p.col(t[k]) - view.p.col(t[(k + 1) % 3])).norm());
   for (int i = 0; i < count; ++i) {
     EdgePoint q;
     q.inside = inside, q.a = edge.a, q.b = edge.b;
+    q.facet_size = size;
     q.s = (i + 0.5) / count;
     const Vector3d p = (1 - q.s) * pa + q.s * pb;
     Camera::Jacobian3 by_point;
@@ -86,8 +91,10 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
 
 /// Inside minus outside; 0 where something lies in front of the edge.
 double contrast(const Frame& f, const EdgePoint& q, const Sample& inside, const Sample& outside) {
-  const double nearest = q.depth - 30 * f.scene.epsilon();
-  if (inside.triangle >= 0 && inside.triangle != q.inside && inside.depth < nearest) return 0;
+  // Beside a contour the surface is seen edge-on: within a facet's size nothing counts as in front
+  // (and what lies there hides both sides alike, so that the contrast vanishes anyhow).
+  const double nearest = q.depth - q.facet_size;
+  if (inside.triangle >= 0 && inside.depth < nearest) return 0;
   if (outside.triangle >= 0 && outside.depth < nearest) return 0;
   const double I_in = inside.triangle < 0 ? f.photo.background : shade(f, inside, false).I;
   const double I_out = outside.triangle < 0 ? f.photo.background : shade(f, outside, false).I;

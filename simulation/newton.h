@@ -39,8 +39,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
                      VectorXd& q);
 
 /// |R_free|_inf over the largest nodal force: reactions, external forces, and a floor that keeps
-/// an unloaded body from dividing rounding by rounding: stiffness times 1e-5 of the size, of which the
-/// default tolerance is 1e-14, some fifty roundings of the positions.
+/// an unloaded body from dividing rounding by rounding (stiffness times 1e-5 of the size).
 double relative_error(const Problem& problem, const NewtonState& state, const VectorXd& R,
                       const VectorXd& q, double s);
 

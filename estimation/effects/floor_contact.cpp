@@ -96,7 +96,7 @@ class FloorContact final : public Effect {
     spec.name = name();
     spec.variant = fmt::format("plane at {} side, position {:g}", kSides[side], position);
     spec.parameters = {{"floor_contact.k", units.stress() + "/" + units.length, "contact stiffness",
-                        0.0, 0.0, 1e4 * mu / size, mu / size, false}};
+                        0.0, 0.0, 1e4 * mu / size, 0.1 * mu / size, false}};
     spec.touches = {.loading = true};
     spec.apply = [side, position](const VectorXd& k, Model& m) {
       const auto force = plane(m, side, position, k[0]);

@@ -199,7 +199,7 @@ class SoftClamp final : public Effect {
                                  1e4 * typical, typical, false});
     spec.touches = {.loading = true};
     spec.apply = [region, typical](const VectorXd& c, Model& m) {
-      const double least = 1e-6 * typical;
+      const double least = 1e-8 * typical;  // as good as rigid, and still solvable
       soften(m, region, 1.0 / std::max(c[0], least), 1.0 / std::max(c[1], least));
     };
     spec.derivative = [region, patch](const VectorXd& c, const Model& m, int example,

@@ -8,22 +8,22 @@ namespace {
 
 const int kFieldBumps = 16, kBlobs = 16;
 
-/// Forces of the parts that a field scales: once it is in, those are the parts with weights (an
-/// effect added after it appends its part without any).
-std::shared_ptr<ElementForces> forces_of_scaled_parts() {
-  return std::make_shared<ElementForces>([](const Model& model, int example, const VectorXd& q) {
-    EnergyModel scaled = model.energy_of(example);
-    bool any = false;
-    for (const auto& part : model.energy.parts) any |= part.weight.size() != 0;
-    if (any) {
-      std::vector<EnergyModel::Part> kept;
-      for (size_t i = 0; i < scaled.parts.size(); ++i)
-        if (model.energy.parts[i].weight.size() != 0) kept.push_back(scaled.parts[i]);
-      scaled.parts = std::move(kept);
-    }
+/// Element forces of what a field scales. At its null that is every part, for a candidate comes
+/// last; once it is in, the parts with weights (an effect added after it appends its part without
+/// any).
+struct ScaledForces {
+  ElementForces at_null{[](const Model& model, int example, const VectorXd& q) {
+    return element_forces(model.scene->body->mesh, model.energy_of(example), q);
+  }};
+  ElementForces within{[](const Model& model, int example, const VectorXd& q) {
+    const EnergyModel all = model.energy_of(example);
+    EnergyModel scaled = all;
+    scaled.parts.clear();
+    for (size_t i = 0; i < all.parts.size(); ++i)
+      if (model.energy.parts[i].weight.size() != 0) scaled.parts.push_back(all.parts[i]);
     return element_forces(model.scene->body->mesh, scaled, q);
-  });
-}
+  }};
+};
 
 void scale_energy(Model& model, const VectorXd& log_factor) {
   const VectorXd factor = log_factor.array().exp();
@@ -46,7 +46,7 @@ class StiffnessField final : public Effect {
   Ingredients candidates(const Model& model, std::string*) const override {
     const Scene& scene = *model.scene;
     const double size = body_size(scene).size;
-    auto forces = forces_of_scaled_parts();
+    auto forces = std::make_shared<ScaledForces>();
     Ingredients all = {
         field(model, spread_centres(scene, kFieldBumps), field_radius(scene), forces)};
     for (const Vector3d& c : spread_centres(scene, kBlobs))
@@ -59,11 +59,11 @@ class StiffnessField final : public Effect {
     if (variant == "free blob") return free_blob(model);
     const auto n = numbers_in(variant);
     if (starts_with(variant, "blob") && n.size() == 4)
-      return blob(model, Vector3d(n[0], n[1], n[2]), n[3], forces_of_scaled_parts());
+      return blob(model, Vector3d(n[0], n[1], n[2]), n[3], std::make_shared<ScaledForces>());
     if (!starts_with(variant, "field") || n.size() < 4 || n.size() % 3 != 1) return nullptr;
     std::vector<Vector3d> centres;
     for (size_t i = 1; i + 2 < n.size(); i += 3) centres.emplace_back(n[i], n[i + 1], n[i + 2]);
-    return field(model, centres, n[0], forces_of_scaled_parts());
+    return field(model, centres, n[0], std::make_shared<ScaledForces>());
   }
 
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
@@ -109,7 +109,7 @@ class StiffnessField final : public Effect {
   }
 
   std::shared_ptr<const Ingredient> linear(IngredientSpec spec, std::vector<VectorXd> bumps,
-                                           std::shared_ptr<ElementForces> forces) const {
+                                           std::shared_ptr<ScaledForces> forces) const {
     spec.name = name();
     spec.touches = {.energy = true};
     const auto phi = std::make_shared<const std::vector<VectorXd>>(std::move(bumps));
@@ -119,10 +119,11 @@ class StiffnessField final : public Effect {
       scale_energy(m, log_factor);
     };
     // d(weight)/da_i = phi_i weight: element by element the present force times phi_i.
-    spec.derivative = [phi, forces](const VectorXd&, const Model& m, int example,
+    spec.derivative = [phi, forces](const VectorXd& values, const Model& m, int example,
                                     const Equilibrium& equilibrium, int k,
                                     MechanicsDerivative& out) {
-      const auto f = forces->at(m, example, equilibrium.q);
+      ElementForces& source = values.isZero(0.0) ? forces->at_null : forces->within;
+      const auto f = source.at(m, example, equilibrium.q);
       out.dR_dt = scatter(m.scene->body->mesh, *f, (*phi)[k]);
       return true;
     };
@@ -131,7 +132,7 @@ class StiffnessField final : public Effect {
 
   std::shared_ptr<const Ingredient> field(const Model& model, const std::vector<Vector3d>& centres,
                                           double radius,
-                                          std::shared_ptr<ElementForces> forces) const {
+                                          std::shared_ptr<ScaledForces> forces) const {
     IngredientSpec spec;
     spec.variant = fmt::format("field of bumps, radius {:g}, around", radius);
     std::vector<VectorXd> bumps;
@@ -144,7 +145,7 @@ class StiffnessField final : public Effect {
   }
 
   std::shared_ptr<const Ingredient> blob(const Model& model, const Vector3d& centre, double radius,
-                                         std::shared_ptr<ElementForces> forces) const {
+                                         std::shared_ptr<ScaledForces> forces) const {
     radius = std::stod(fmt::format("{:.3g}", radius));
     IngredientSpec spec;
     spec.variant = fmt::format("blob around {}, radius {:g}", place_text(centre), radius);

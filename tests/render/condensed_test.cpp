@@ -59,10 +59,10 @@ TEST(renderer, threads_agree_bit_by_bit) {
   Renderer renderer(surface);
   Texture texture;
   const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
-  RenderOptions one, three;
-  three.threads = 3;
+  RenderOptions one, two;
+  two.threads = 2;
   const Rendering a = renderer.render(surface.X, nullptr, texture, state, one, true);
-  const Rendering b = renderer.render(surface.X, nullptr, texture, state, three, true);
+  const Rendering b = renderer.render(surface.X, nullptr, texture, state, two, true);
   EXPECT_EQ(a.I.values, b.I.values);
   EXPECT_EQ(a.dI.pixel, b.dI.pixel);
   EXPECT_TRUE(a.dI.d_photo == b.dI.d_photo);

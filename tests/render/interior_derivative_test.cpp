@@ -26,7 +26,7 @@ std::string name_of(const testing::TestParamInfo<Setting>& info) {
 class Interior : public testing::TestWithParam<Setting> {
  protected:
   Interior()
-      : surface(test::sphere(Vector3d::Zero(), 8, 3, 0.05)),
+      : surface(test::sphere(Vector3d::Zero(), 8, 4, 0.05)),
         renderer(surface),
         x(surface.X + 0.05 * test::field(surface.X, 0.7)),
         x_reference(surface.X),
@@ -93,7 +93,7 @@ TEST_P(Interior, positions) {
         pick(test::directional(renderer, r, x, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
     expect_derivative(
         [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); }, analytic,
-        0.01, 1e-3, "positions");
+        0.004, 1e-3, "positions");
   }
 }
 
@@ -136,6 +136,8 @@ TEST_P(Interior, photo_columns) {
     const bool light = column >= kAmbient;
     if (light && !state.shaded) continue;
     if (column == kMove + 2 && state.camera.projection == Camera::Projection::orthographic) continue;
+    // A uniform ball turned about the optical axis hardly changes: only breaks of slope remain.
+    if (column == kRotate + 2 && GetParam().source == Source::uniform) continue;
     const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
     const auto f = [&](double h) {
       PhotoState s = state;
@@ -155,7 +157,7 @@ TEST_P(Interior, photo_columns) {
         s.specular += h;
       return pick(render(x, x_reference, s, false).I);
     };
-    const double h = column < kMove || column == kZoom ? 1e-3 : 0.01;
+    const double h = column < kMove || column == kZoom ? 1e-4 : column < kZoom ? 0.004 : 0.01;
     const VectorXd d = test::directional(renderer, r, x, nullptr, nullptr, unit);
     expect_derivative(f, pick(d), h, 1e-3, "column " + std::to_string(column));
   }

@@ -1,5 +1,5 @@
 // The contour term: sums over blocks of pixels along the edges, since a finite ray pattern counts
-// coverage in steps. 24 x 24 rays a pixel and steps of a good part of a pixel.
+// coverage in steps. 16 x 16 rays a pixel and steps of a good part of a pixel.
 #include "render/renderer.h"
 #include "scene.h"
 #include "support/derivative.h"
@@ -30,7 +30,7 @@ struct Contours : testing::Test {
     texture.image = image;
     state = test::state(test::camera(Camera::Projection::perspective, false));
     state.shaded = false;
-    options.rays_per_axis = 24;
+    options.rays_per_axis = 16;
     options.visibility_rays = 0;
   }
   VectorXd picture(Renderer& renderer, const Matrix3Xd& x, const PhotoState& s) {
@@ -104,7 +104,7 @@ TEST_F(Contours, camera) {
         s.camera = s.camera.zoomed(h);
       return picture(renderer, surface.X, s);
     };
-    const double h = column < 2 ? 0.002 : column == 2 ? 0.01 : column < 5 ? 0.1 : column == 5 ? 0.5 : 0.01;
+    const double h = column < 2 ? 0.002 : column == 2 ? 0.03 : column < 5 ? 0.1 : column == 5 ? 0.5 : 0.01;
     compare(test::directional(renderer, r, surface.X, nullptr, nullptr,
                               VectorXd::Unit(kPhotoColumns, column)),
             f, h, "column " + std::to_string(column));

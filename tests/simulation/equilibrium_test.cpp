@@ -90,7 +90,7 @@ TEST_P(Exact, PatchTestOfShearAndStretch) {
 
 /// A bent, loaded block: everything at once.
 struct Case {
-  TetMesh mesh = test::block(4, 2, 2, {4, 2, 2}, 2, 0.2);
+  TetMesh mesh = test::block(3, 1, 2, {4, 2, 2}, 2);
   Region base = plane(mesh, 0, 0), tip = plane(mesh, 0, 4), side = plane(mesh, 2, 2);
   double lift = 0.6, gravity = 0.004, pressure = 0.002, spring = 0.01, swelling = 1.03;
   VectorXd theta;
@@ -147,8 +147,8 @@ TEST(Sensitivities, LoadsAndSupports) {
   const Case c;
   check_sensitivity(c, [](Case& x, double h) { x.gravity += h; }, 4e-4, {}, "gravity");
   check_sensitivity(c, [](Case& x, double h) { x.pressure += h; }, 2e-4, {}, "pressure");
-  check_sensitivity(c, [](Case& x, double h) { x.spring += h; }, 1e-3, {}, "foundation");
-  check_sensitivity(c, [](Case& x, double h) { x.swelling += h; }, 2e-3, {}, "swelling");
+  check_sensitivity(c, [](Case& x, double h) { x.spring += h; }, 2e-4, {}, "foundation");
+  check_sensitivity(c, [](Case& x, double h) { x.swelling += h; }, 3e-4, {}, "swelling");
   const Loading loading = c.loading();
   VectorXd dqc(static_cast<int>(loading.prescribed.size()));
   for (size_t i = 0; i < loading.prescribed.size(); ++i)
@@ -263,7 +263,7 @@ TEST(Solver, QuadraticElementsDoNotLock) {
     for (int a : right.nodes) v = std::max(v, e.q[3 * a + 1] - mesh.X(1, a));
     return v;
   };
-  const double fine = tip_of(24, 2), coarse = tip_of(6, 2), linear = tip_of(12, 1);
+  const double fine = tip_of(24, 2), coarse = tip_of(12, 2), linear = tip_of(24, 1);
   EXPECT_NEAR(coarse, fine, 0.02 * fine);
   EXPECT_LT(linear, 0.9 * fine) << "the test does not see locking: linear elements should lock";
 }
@@ -336,7 +336,7 @@ TEST(Solver, SlenderColumnLeavesTheUnstableBranch) {
   double bow = 0;
   for (int a = 0; a < mesh.nodes(); ++a)
     bow = std::max(bow, (e.q.segment<3>(3 * a) - mesh.X.col(a)).tail<2>().norm());
-  EXPECT_GT(bow, 2.0);
+  EXPECT_GT(bow, 1.0) << "the straight column bulges by less than 0.1";
 }
 
 }  // namespace

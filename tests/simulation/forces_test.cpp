@@ -96,7 +96,7 @@ TEST_P(Forces, PressureOnClosedSurface) {
 }
 
 TEST_P(Forces, PressureOnPatchFollowsTheNormalAndHasTheTangentOfAHeldRim) {
-  const TetMesh mesh = small(GetParam());
+  const TetMesh mesh = test::block(4, 4, 1, {2, 1.5, 1}, GetParam());
   const Region patch = top(mesh);
   const auto pressure = follower_pressure(patch, 0.3);
   const Eigen::Matrix3d Q = Eigen::AngleAxisd(0.8, Vector3d(1, 2, 3).normalized()).matrix();
@@ -208,7 +208,7 @@ TEST_P(Forces, SwollenFreeBodyIsStressFree) {
   EnergyModel energy;
   energy.parts.push_back({neo_hookean(0.05, 0.6), {}});
   energy.swelling = VectorXd::Constant(mesh.size(), 1.2);
-  EXPECT_LE(residual(mesh, energy, Loading{}, 1.2 * mesh.X.reshaped()).norm(), 1e-15);
+  EXPECT_LE(residual(mesh, energy, Loading{}, 1.2 * mesh.X.reshaped()).norm(), 1e-14);
   EXPECT_GT(residual(mesh, energy, Loading{}, mesh.X.reshaped()).norm(), 1e-3);
 }
 

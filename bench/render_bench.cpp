@@ -1,0 +1,129 @@
+// Rays against the bare library call, and one photo's whole share of a Gauss-Newton iteration.
+// Ratios count: everything here runs on the same machine at the same time.
+#include <benchmark/benchmark.h>
+
+#include "render/condensed.h"
+#include "render/frame.h"
+#include "render/scene.h"
+
+namespace hookeye {
+namespace {
+
+constexpr int kWidth = 1156, kHeight = 867;  // 1 Mpx
+
+struct Bench {
+  Bench() : surface(test::sphere(Vector3d::Zero(), 10, 5, 0.05)), renderer(surface) {
+    texture.source = Texture::Source::image;
+    texture.image = test::waves(1024, 1024, 30);
+    Camera c = test::camera(Camera::Projection::perspective, false);
+    c.width = kWidth, c.height = kHeight;
+    c.fx = c.fy = 1780;  // the body covers 40 %
+    c.cx = kWidth / 2.0, c.cy = kHeight / 2.0;
+    c.t = {0, 0, 50};
+    state = test::state(c);
+    state.specular = 0;
+  }
+  SurfaceMesh surface;
+  Renderer renderer;
+  Texture texture;
+  PhotoState state;
+};
+
+Bench& bench() {
+  static Bench b;
+  return b;
+}
+
+/// Calls `block` with the ray directions of each 4 x 4 block of pixels.
+template <class Block>
+void for_blocks(const RayGrid& grid, const Block& block) {
+  Vector2d h[16];
+  for (int y = 0; y + 4 <= kHeight; y += 4)
+    for (int x = 0; x + 4 <= kWidth; x += 4) {
+      for (int i = 0; i < 16; ++i) h[i] = grid.h(x + i % 4, y + i / 4);
+      block(h);
+    }
+}
+
+void rays_of_the_library(benchmark::State& s) {
+  Bench& b = bench();
+  const RayScene scene(b.surface.triangles, b.surface.X);
+  const View view(b.state.camera, b.surface.X, b.surface.triangles);
+  const RayGrid grid(b.state.camera, PixelFilter(1, 0.5));
+  std::vector<RayPacket> packets;
+  for_blocks(grid, [&](const Vector2d* h) {
+    RayPacket& p = packets.emplace_back();
+    p.reset(0, std::numeric_limits<float>::infinity());
+    for (int i = 0; i < 16; ++i) view.set_ray(p, i, h[i], scene.centre());
+  });
+  alignas(64) int active[16];
+  std::fill(active, active + 16, -1);
+  for (auto _ : s)
+    for (const RayPacket& p : packets) {
+      RayPacket rays = p;
+      scene.intersect(rays, active);
+      benchmark::DoNotOptimize(rays.triangle[0]);
+    }
+  s.SetItemsProcessed(int64_t(s.iterations() * packets.size() * 16));
+}
+
+void rays_of_the_product(benchmark::State& s) {
+  Bench& b = bench();
+  const RayScene scene(b.surface.triangles, b.surface.X);
+  const View view(b.state.camera, b.surface.X, b.surface.triangles);
+  const RayGrid grid(b.state.camera, PixelFilter(1, 0.5));
+  const Matrix3Xd normals = b.renderer.normals(b.surface.X);
+  const std::vector<double> visibility(b.surface.X.cols(), 1.0);
+  const std::vector<Vector3d> facets(b.surface.triangles.size(), Vector3d::UnitZ());
+  const RenderOptions options;
+  PhotoState state = b.state;
+  state.shaded = false;  // no shadow rays: the same rays as above
+  const Frame frame{b.surface, b.surface.X, view,      scene, normals,
+                    facets,    visibility,  b.texture, state, options};
+  int64_t blocks = 0;
+  for (auto _ : s)
+    for_blocks(grid, [&](const Vector2d* h) {
+      Sample out[16];
+      trace(frame, h, 16, out);
+      benchmark::DoNotOptimize(out[0].triangle);
+      ++blocks;
+    });
+  s.SetItemsProcessed(blocks * 16);
+}
+
+/// Refit, rays, residual, derivative, J^T J. Arguments: rays per axis, parameters, threads.
+void one_view(benchmark::State& s) {
+  Bench& b = bench();
+  RenderOptions options;
+  options.rays_per_axis = int(s.range(0));
+  options.filter_width_px = options.rays_per_axis == 1 ? 0.5 : 3.0;
+  options.visibility_rays = 0;
+  options.threads = int(s.range(2));
+  const Eigen::Index m = s.range(1), nv = 3 * b.surface.X.cols();
+  VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m), {},
+                      Eigen::MatrixXd::Random(kPhotoColumns, m)};
+  double shift = 0;
+  for (auto _ : s) {
+    const Matrix3Xd x = b.surface.X.array() + (shift += 1e-3);  // new positions: a refit
+    const Rendering r = b.renderer.render(x, nullptr, b.texture, b.state, options, true);
+    VectorXd residual(Eigen::Index(r.dI.pixel.size()));
+    for (size_t i = 0; i < r.dI.pixel.size(); ++i)
+      residual[i] = 0.5 - r.I.values[r.dI.pixel[i]];
+    const VectorXd w = VectorXd::Ones(residual.size());
+    const auto sums =
+        NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, true, false);
+    benchmark::DoNotOptimize(sums.reduce(S).r2);
+    s.counters["active_px"] = double(residual.size());
+  }
+}
+
+BENCHMARK(rays_of_the_library)->Unit(benchmark::kMillisecond);
+BENCHMARK(rays_of_the_product)->Unit(benchmark::kMillisecond);
+BENCHMARK(one_view)
+    ->Args({1, 10, 1})->Args({1, 100, 1})->Args({2, 10, 1})->Args({3, 10, 1})->Args({3, 10, 2})
+    ->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace hookeye
+
+BENCHMARK_MAIN();
