@@ -11,6 +11,7 @@
 
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
+#include "app/invocation.h"
 #include "app/progress.h"
 #include "capture_io/input_error.h"
 #include "capture_io/scope.h"
@@ -163,6 +164,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   hookeye::watch_interrupts();
+  hookeye::remember_invocation(argc, argv);
   try {
     return hookeye::run_program(argc, argv);
   } catch (const std::exception& error) {

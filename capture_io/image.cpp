@@ -176,11 +176,8 @@ std::vector<Level> to_levels(const Image& image, const Encoding& encoding) {
   return levels;
 }
 
-}  // namespace
-
-ImageHeader read_image_header(const fs::path& file) { return header_of(open_image(file)->spec()); }
-
-Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
+/// The picture as its file holds it.
+Image read_stored(const fs::path& file, Encoding& stored_as) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
@@ -197,10 +194,23 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   const std::string why = one_line(input->geterror());
   input->close();
   if (!complete || !why.empty()) unreadable(file, "the picture is truncated or damaged");
-  Image image = keep_colours(all, spec);
-  check_finite(file, image);
+  if (!is_floating(spec) && spec.format.size() == 1) stored_as.kind = Encoding::Kind::srgb;
+  return keep_colours(all, spec);
+}
+
+}  // namespace
+
+ImageHeader read_image_header(const fs::path& file) { return header_of(open_image(file)->spec()); }
+
+Image read_image_with_holes(const fs::path& file) {
+  Encoding ignored;
+  return read_stored(file, ignored);
+}
+
+Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   Encoding used;
-  if (!is_floating(spec) && spec.format.size() == 1) used.kind = Encoding::Kind::srgb;
+  Image image = read_stored(file, used);
+  check_finite(file, image);
   if (encoding) used = *encoding;
   if (used.kind != Encoding::Kind::linear)
     for (float& value : image.values) value = static_cast<float>(decode(value, used));

@@ -51,6 +51,9 @@ ImageHeader read_image_header(const std::filesystem::path& file);
 /// Throws InputError: missing, truncated, unreadable, claimed size above 1 Gpixel.
 Image read_image(const std::filesystem::path& file, std::optional<Encoding> encoding = {});
 
+/// A float picture in which NaN means "does not count" (residuals); values as stored.
+Image read_image_with_holes(const std::filesystem::path& file);
+
 /// Written whole or not at all (temporary name, then rename). Format by extension: .exr (float or
 /// half), .png (8 bit), .tif (16 bit). Values are linear; png and tif are stored with `encoding`.
 /// `dither_free` values are rounded to the nearest level.

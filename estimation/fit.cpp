@@ -210,7 +210,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.logging_type = ceres::SILENT;
   solver.max_num_consecutive_invalid_steps = 8;
   Reporter reporter(options, cost, level > 0 ? fmt::format("1/{} size", 1 << level) : "full size",
-                    photo_count(seen), std::min(misfit, 10.0), solver.max_num_iterations);
+                    photo_count(seen), std::min(misfit, 30.0), solver.max_num_iterations);
   solver.callbacks.push_back(&reporter);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

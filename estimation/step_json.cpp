@@ -7,6 +7,7 @@
 
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
+#include "estimation/page_data.h"
 
 namespace hookeye {
 
@@ -171,18 +172,10 @@ std::string parameters_csv(const Fitted& fitted) {
   return csv;
 }
 
-/// Length that one pixel covers at the body: from the depth of its rest centroid.
-double length_per_px(const Scene& scene, const PhotoState& state) {
-  if (state.camera.projection == Camera::Projection::orthographic) return 1.0 / state.camera.fx;
-  return state.camera.depth(scene.body->mesh.X.rowwise().mean()) / state.camera.fx;
-}
-
 void write_photo(const std::filesystem::path& folder, const Scene& scene, const Model& model,
                  const PhotoEvaluation& photo) {
-  const auto& spec = scene.capture.examples[photo.example];
-  std::string name = spec.name + "-" + spec.photos[photo.photo].camera;
+  const std::string name = photo_name(scene, photo);
   const Photo& shown = scene.photos[photo.example][photo.photo];
-  if (shown.planes.size() > 1) name += fmt::format("-{}", "rgb"[photo.plane]);
   write_image(folder / "residuals" / (name + ".exr"), photo.residual);
   write_residual_png(folder / "residuals" / (name + ".png"), photo.residual);
   write_compare_picture(folder / "compare" / (name + ".png"), shown.planes[photo.plane], photo,
@@ -247,6 +240,7 @@ void write_step(const std::filesystem::path& folder, const Scene& scene, const S
         folder / "deformed" / (scene.capture.examples[example.example].name + ".vtu"), scene,
         model, example);
   }
+  write_page_data(folder / "page", scene, model, fitted);
 }
 
 }  // namespace hookeye

@@ -16,7 +16,8 @@ nlohmann::json timeline_entry(const Step& step);
 nlohmann::json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor);
 
 /// Fills a step's folder: model.yaml, metrics.json, diagnosis.json, parameters.csv,
-/// residuals/EXAMPLE-CAMERA.{exr,png}, compare/EXAMPLE-CAMERA.png, deformed/EXAMPLE.vtu.
+/// residuals/EXAMPLE-CAMERA.{exr,png}, compare/EXAMPLE-CAMERA.png, deformed/EXAMPLE.vtu, and what
+/// the page draws: page/ (page_data.h).
 void write_step(const std::filesystem::path& folder, const Scene& scene, const Step& step);
 
 }  // namespace hookeye

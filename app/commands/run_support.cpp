@@ -18,7 +18,7 @@ Bench open_capture(const std::filesystem::path& capture_path, Session& session) 
   return {scene, Workspace(scene)};
 }
 
-Step newest_step(const Run& run, Bench& bench) {
+Step newest_step(const Run& run, Bench& bench, const FitOptions& options) {
   const auto steps = run.steps();
   if (steps.empty())
     throw InputError({run.folder().string()}, "the run has no finished step",
@@ -28,7 +28,7 @@ Step newest_step(const Run& run, Bench& bench) {
   step.name = entry.at("name");
   if (!entry.at("added").is_null()) step.added = entry.at("added");
   auto [form, p] = read_model(steps.back() / "model.yaml", bench.scene);
-  step.fitted = value_or_fail(assess(bench.workspace, form, p, fit_options()));
+  step.fitted = value_or_fail(assess(bench.workspace, form, p, options));
   step.fitted.converged = entry.value("converged", true);
   step.fitted.iterations = entry.value("iterations", 0);
   return step;
@@ -52,8 +52,12 @@ DiscoverOptions discover_options() {
   return options;
 }
 
-std::filesystem::path record(Run& run, const Scene& scene, const Step& step) {
-  return run.add_step(step.name, timeline_entry(step), [&](const std::filesystem::path& folder) {
+std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
+                             const std::string& command) {
+  nlohmann::json entry = timeline_entry(step);
+  entry["command"] = command;
+  entry["made_by"] = versions();
+  return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {
     write_step(folder, scene, step);
   });
 }

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "app/invocation.h"
 #include "app/session.h"
 #include "capture_io/run.h"
 #include "estimation/discover.h"
@@ -23,15 +24,16 @@ T value_or_fail(std::variant<T, NumericalFailure> result) {
   return std::get<T>(std::move(result));
 }
 
-/// The newest step of a run, its model evaluated again (pictures and derivatives).
-Step newest_step(const Run& run, Bench& bench);
-
 /// Options with the progress bar and Ctrl-C wired in.
 FitOptions fit_options();
+/// The newest step of a run, its model evaluated again (pictures and derivatives).
+Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_options());
+
 DiscoverOptions discover_options();
 
-/// Writes the step's folder and the timeline's entry.
-std::filesystem::path record(Run& run, const Scene& scene, const Step& step);
+/// Writes the step's folder and the timeline's entry, which keeps the command that made it.
+std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
+                             const std::string& command = invocation());
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 

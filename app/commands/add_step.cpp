@@ -1,0 +1,81 @@
+#include "app/commands/add_step.h"
+
+#include <fmt/ranges.h>
+
+namespace hookeye {
+namespace {
+
+[[noreturn]] void unknown_effect(const std::string& wanted) {
+  std::vector<std::string> known;
+  for (const Effect* effect : catalogue()) known.push_back(effect->name());
+  const std::string near = nearest_name(wanted, known);
+  throw InputError({wanted}, "there is no such effect",
+                   near.empty() ? fmt::format("one of: {}", fmt::join(known, ", "))
+                                : fmt::format("did you mean '{}'?", near));
+}
+
+Step with_effect(Bench& bench, const Step& current, const std::string& name,
+                 const AddOptions& options) {
+  const Diagnosis diagnosis =
+      current.diagnosis.effects.empty()
+          ? value_or_fail(diagnose(bench.workspace, current.fitted, options.diagnosis))
+          : current.diagnosis;
+  for (const auto& score : diagnosis.effects) {
+    if (score.effect != name) continue;
+    if (!score.best)
+      throw InputError({name}, "cannot be added: " + score.why_not, "another effect");
+    if (options.note) {
+      if (!score.testable) options.note(name + ": " + score.why_not);
+      options.note(
+          fmt::format("predicted: removes {:.0f} % of the misfit", 100.0 * score.explains));
+    }
+    Step step;
+    step.name = step.added = name;
+    step.fitted = value_or_fail(add_effect(bench.workspace, current.fitted, score, options.fit));
+    return step;
+  }
+  unknown_effect(name);
+}
+
+Step without_effect(Bench& bench, const Step& current, const std::string& name,
+                    const FitOptions& wanted) {
+  ModelForm form = current.fitted.form;
+  std::vector<double> p;
+  int offset = 0;
+  bool found = false;
+  form.ingredients.clear();
+  for (const auto& ingredient : current.fitted.form.ingredients) {
+    const int n = static_cast<int>(ingredient->parameters().size());
+    if (ingredient->name() == name) {
+      found = true;
+    } else {
+      form.ingredients.push_back(ingredient);
+      for (int i = 0; i < n; ++i) p.push_back(current.fitted.p[offset + i]);
+    }
+    offset += n;
+  }
+  if (!found)
+    throw InputError({name}, "the newest step does not have this effect",
+                     "take back an effect that was added");
+  Step step;
+  step.name = "without-" + name;
+  FitOptions options = wanted;
+  options.coarse_to_fine = false;
+  step.fitted = value_or_fail(
+      fit(bench.workspace, form, Eigen::Map<const VectorXd>(p.data(), p.size()), options));
+  return step;
+}
+
+}  // namespace
+
+void check_effect(const std::string& name) {
+  if (!find_effect(name)) unknown_effect(name);
+}
+
+Step next_step(Bench& bench, const Step& current, const AddRequest& request,
+               const AddOptions& options) {
+  return request.take_back ? without_effect(bench, current, request.effect, options.fit)
+                           : with_effect(bench, current, request.effect, options);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,234 @@
+#include "app/report/run_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "app/report/encode_png.h"
+#include "app/report/facts.h"
+#include "capture_io/run.h"
+
+namespace hookeye {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+namespace {
+
+/// The parsed file, or null and a fault.
+json read_json(const fs::path& file, const std::string& called, json& faults) {
+  if (!fs::exists(file)) {
+    faults.push_back(called + " is not there");
+    return {};
+  }
+  try {
+    return json::parse(read_text(file));
+  } catch (const std::exception&) {
+    faults.push_back(called + " is damaged");
+    return {};
+  }
+}
+
+/// Steps in order: those on disk, whether the timeline knows them or not.
+std::vector<fs::path> step_folders(const fs::path& run) {
+  std::vector<fs::path> out;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(run / "steps", ignored))
+    if (entry.is_directory() && entry.path().filename().string()[0] != '.')
+      out.push_back(entry.path());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string at_factor(const std::string& name, int factor) {
+  return factor > 1 ? fmt::format("{}@{}", name, factor) : name;
+}
+
+/// "name@2" -> "name", 2.
+std::pair<std::string, int> split_factor(const std::string& name) {
+  const size_t at = name.rfind('@');
+  int factor = 1;
+  if (at == std::string::npos) return {name, 1};
+  const char* end = name.data() + name.size();
+  if (std::from_chars(name.data() + at + 1, end, factor).ptr != end || factor < 1 || factor > 16)
+    return {name, 1};
+  return {name.substr(0, at), factor};
+}
+
+json quantum_json(const Quantised& quantum) {
+  return {{"step", quantum.step}, {"zero", quantum.zero}};
+}
+
+/// Where the texture is a photo, its noise enters every residual too (photo_evaluation.cpp).
+double noise_factor(const Capture& capture) {
+  return capture.body.texture == BodySpec::Texture::rest ? std::sqrt(2.0) : 1.0;
+}
+
+/// A single file name, so that no part of a request can lead out of the run.
+bool plain(const std::string& name) {
+  return !name.empty() && name[0] != '.' && name.find_first_of("/\\") == std::string::npos &&
+         name.find('\0') == std::string::npos;
+}
+
+}  // namespace
+
+RunView::RunView(fs::path folder) : folder_(std::move(folder)) {
+  if (!fs::exists(folder_ / "run.json") && !fs::is_directory(folder_ / "steps"))
+    throw InputError({folder_.string()}, "there is no run in this folder",
+                     "make one with `hookeye fit CAPTURE -o RUN`");
+  folder_ = fs::canonical(folder_);
+  json ignored = json::array();
+  const json timeline = read_json(folder_ / "run.json", "run.json", ignored);
+  const std::string where =
+      timeline.is_object() && timeline.contains("capture") && timeline["capture"].is_string()
+          ? timeline["capture"].get<std::string>()
+          : "";
+  try {
+    if (where.empty()) throw std::runtime_error("run.json does not tell where it is");
+    capture_ = read_capture(where);
+  } catch (const std::exception& error) {
+    capture_fault_ = fmt::format("the capture cannot be read, so photos and its facts are not "
+                                 "here: {}", error.what());
+  }
+  if (!capture_) return;
+  for (const auto& example : capture_->examples)
+    for (const auto& photo : example.photos) {
+      const std::string name = example.name + "-" + photo.camera;
+      const int planes = photo.rgb ? read_image_header(photo.file).channels : 1;
+      for (int k = 0; k < planes; ++k)
+        planes_[planes > 1 ? name + "-" + "rgb"[k] : name] = {photo, capture_->camera(photo.camera),
+                                                              k};
+    }
+}
+
+json RunView::photos_json(json& faults, int factor) {
+  json all = json::array();
+  if (!capture_) {
+    faults.push_back(capture_fault_);
+    return all;
+  }
+  // Order of the capture, not of the alphabet.
+  for (const auto& example : capture_->examples)
+    for (const auto& spec : example.photos)
+      for (const auto& [name, plane] : planes_) {
+        if (name.rfind(example.name + "-" + spec.camera, 0) != 0 || plane.spec.file != spec.file)
+          continue;
+        json one = {{"name", name}, {"example", example.name}, {"camera", spec.camera},
+                    {"use", example.validate ? "validate" : "fit"},
+                    {"width", plane.camera.width}, {"height", plane.camera.height},
+                    {"file", spec.file.filename().string()}};
+        one["photo"] = {{"blob", at_factor("photo/" + name, factor)}, {"shrink", factor},
+                        {"quantum", quantum_json(intensity_quantum(1.25))}};
+        // Told noise of one channel is a function of its intensity; else it takes a picture.
+        const bool told = spec.noise && (spec.rgb || read_image_header(spec.file).channels == 1);
+        if (told)
+          one["noise"] = {{"read", spec.noise->read}, {"full_well", spec.noise->full_well},
+                          {"factor", noise_factor(*capture_)}};
+        else
+          one["sigma"] = {{"blob", at_factor("sigma/" + name, factor)}, {"shrink", factor},
+                          {"quantum", quantum_json(intensity_quantum(0.25))}};
+        all.push_back(std::move(one));
+      }
+  return all;
+}
+
+json RunView::step_json(const fs::path& step, json& faults, int factor) {
+  const std::string name = step.filename().string();
+  json out = {{"folder", name},
+              {"metrics", read_json(step / "metrics.json", name + "/metrics.json", faults)}};
+  json ignored = json::array();
+  out["diagnosis"] = read_json(step / "diagnosis.json", "", ignored);
+  out["residuals"] = json::object();
+  out["fields"] = json::object();
+  out["files"] = json::array();
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(step / "residuals", none))
+    if (entry.path().extension() == ".exr") {
+      const std::string photo = entry.path().stem().string();
+      out["residuals"][photo] = {{"blob", at_factor("residual/" + name + "/" + photo, factor)},
+                                 {"shrink", factor},
+                                 {"quantum", quantum_json(residual_quantum())}};
+    }
+  for (const auto& entry : fs::directory_iterator(step / "page", none))
+    if (entry.path().extension() == ".json")
+      out["fields"][entry.path().stem().string()] =
+          "field/" + name + "/" + entry.path().filename().string();
+  for (const auto& entry : fs::recursive_directory_iterator(step, none))
+    if (entry.is_regular_file() && entry.path().parent_path().filename() != "page")
+      out["files"].push_back(fs::relative(entry.path(), folder_).generic_string());
+  std::sort(out["files"].begin(), out["files"].end());
+  if (out["residuals"].empty()) faults.push_back(name + "/residuals is not there");
+  if (out["fields"].empty())
+    faults.push_back(name + "/page is not there, so its body and arrows cannot be drawn");
+  return out;
+}
+
+json RunView::document(int shrink_old, int shrink_new) {
+  const std::lock_guard lock(mutex_);
+  json faults = json::array();
+  json timeline = read_json(folder_ / "run.json", "run.json", faults);
+  if (!timeline.is_object()) timeline = json::object();
+  if (!timeline.contains("steps") || !timeline["steps"].is_array())
+    timeline["steps"] = json::array();
+  const auto folders = step_folders(folder_);
+  json steps = json::array();
+  for (size_t i = 0; i < folders.size(); ++i)
+    steps.push_back(
+        step_json(folders[i], faults, i + 1 < folders.size() ? shrink_old : shrink_new));
+  if (steps.empty()) faults.push_back("no step is finished yet");
+  if (timeline["steps"].size() != steps.size())
+    faults.push_back(fmt::format("run.json tells of {} steps, the folder holds {}",
+                                 timeline["steps"].size(), steps.size()));
+  json out = {{"hookeye", 1}, {"page", 1}, {"version", HOOKEYE_VERSION},
+              {"run", folder_.string()}, {"timeline", timeline}, {"steps", std::move(steps)},
+              {"photos", photos_json(faults, shrink_new)},
+              {"capture", capture_ ? capture_facts(*capture_) : json()},
+              {"practice", capture_ ? reporting_table(*capture_) : json::array()}};
+  out["faults"] = std::move(faults);
+  return out;
+}
+
+size_t RunView::step_count() const { return step_folders(folder_).size(); }
+
+std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const std::string& name,
+                                                 int factor) {
+  const auto found = planes_.find(name);
+  if (found == planes_.end()) return {};
+  Photo photo = read_photo(found->second.spec, found->second.camera);
+  if (kind == "photo")
+    return Blob{encode_png16(shrink(photo.planes[found->second.plane], factor),
+                             intensity_quantum(1.25)), "image/png"};
+  Image& sigma = photo.sigma[found->second.plane];
+  for (float& s : sigma.values) s *= static_cast<float>(noise_factor(*capture_));
+  return Blob{encode_png16(shrink(sigma, factor), intensity_quantum(0.25)), "image/png"};
+}
+
+std::optional<RunView::Blob> RunView::residual_blob(const std::string& step,
+                                                    const std::string& name, int factor) {
+  const fs::path file = folder_ / "steps" / step / "residuals" / (name + ".exr");
+  if (!fs::exists(file)) return {};
+  return Blob{encode_png16(shrink(read_image_with_holes(file), factor), residual_quantum()),
+              "image/png"};
+}
+
+std::optional<RunView::Blob> RunView::blob(const std::string& request) {
+  const auto [path, factor] = split_factor(request);
+  const size_t first = path.find('/');
+  if (first == std::string::npos) return {};
+  const std::string kind = path.substr(0, first), rest = path.substr(first + 1);
+  if (kind == "photo" || kind == "sigma")
+    return plain(rest) ? photo_blob(kind, rest, factor) : std::nullopt;
+  const size_t second = rest.find('/');
+  if (second == std::string::npos) return {};
+  const std::string step = rest.substr(0, second), name = rest.substr(second + 1);
+  if (!plain(step) || !plain(name)) return {};
+  if (kind == "residual") return residual_blob(step, name, factor);
+  if (kind != "field") return {};
+  const fs::path file = folder_ / "steps" / step / "page" / name;
+  if (!fs::is_regular_file(file)) return {};
+  return Blob{read_text(file), "application/json", true};
+}
+
+}  // namespace hookeye

@@ -1,0 +1,50 @@
+// One refit at a time, in the background: it goes on when the page is closed, and can be stopped.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "app/commands/add_step.h"
+
+namespace hookeye {
+
+class RefitJob {
+ public:
+  explicit RefitJob(std::filesystem::path run) : run_(std::move(run)) {}
+  ~RefitJob();
+
+  /// False: another one is running.
+  bool start(const AddRequest& request);
+  void stop() { cancel_ = true; }
+  /// {state: idle | running | done | failed | stopped, effect, take_back, stage, iteration, of, chi,
+  ///  seconds, seconds_left, message}
+  nlohmann::json state();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void work(const AddRequest& request);
+  void refit(const AddRequest& request);
+  void told(const FitProgress& progress);
+  void stage(const std::string& name);
+  void finish(const std::string& state, const std::string& message);
+  AddOptions options();
+
+  std::filesystem::path run_;
+  std::atomic<bool> cancel_{false};
+  std::thread thread_;
+  std::mutex mutex_;  ///< of what follows
+  bool running_ = false;
+  nlohmann::json state_ = {{"state", "idle"}};
+  Clock::time_point started_, stage_started_;
+  // Used by the thread alone: the capture stays open between refits.
+  Session session_;
+  std::optional<Bench> bench_;
+};
+
+}  // namespace hookeye

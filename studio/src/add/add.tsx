@@ -1,0 +1,115 @@
+// Verb 4: add an effect, watch the refit, take it back; steps side by side.
+import {figure, duration, spaced} from '../format';
+import {chosenStep, job, other, otherStep, run, step, stepIndex, timelineOf} from '../state';
+import {effectsNow} from '../missing/missing';
+import {add, stop} from './job';
+
+export function AddButton(props: {effect: string}) {
+  if (!run.value.live) return null;
+  const busy = job.value?.state === 'running';
+  return (
+    <button class="primary" disabled={busy} data-add={props.effect}
+            onClick={() => void add(props.effect)}>Add</button>
+  );
+}
+
+/** Progress of the refit, under the verdict on every tab. */
+export function JobLine() {
+  const now = job.value;
+  if (!now || now.state === 'idle') return null;
+  const what = now.effect ? `${now.take_back ? 'Taking back' : 'Adding'} ${spaced(now.effect)}` : 'Refit';
+  if (now.state !== 'running')
+    return (
+      <p class={`job ${now.state}`} role="status">
+        {now.state === 'done' ? `${what}: done. ${now.message ?? ''}` : now.state === 'stopped' ? `${what}: stopped; nothing was changed.` : now.message}
+      </p>
+    );
+  return (
+    <div class="job running" role="status">
+      <progress max={now.of || undefined} value={now.of ? now.iteration : undefined} aria-label={what} />
+      <span>{what}: {now.stage ?? 'starting'}
+        {now.of ? `, iteration ${now.iteration} of at most ${now.of}` : ''}
+        {now.chi ? `, χ ${figure(now.chi, 4)}` : ''}
+        {now.seconds !== undefined ? `, ${duration(now.seconds)}` : ''}
+        {now.seconds_left ? `, at most ${duration(now.seconds_left)} left` : ''}
+      </span>
+      <button onClick={() => void stop()}>Stop</button>
+    </div>
+  );
+}
+
+function Steps() {
+  const newest = run.value.steps.length - 1;
+  const added = new Set(run.value.timeline.steps.map((s) => s.added));
+  run.value.timeline.steps.forEach((s) => s.name.startsWith('without-') && added.delete(s.name.slice(8)));
+  return (
+    <table class="steps" aria-label="Steps of the run">
+      <thead><tr><th>step</th><th>χ fitted</th><th>χ held out</th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
+      <tbody>
+        {run.value.steps.map((entry, i) => {
+          const t = timelineOf(entry);
+          return (
+            <tr key={entry.folder} aria-selected={i === stepIndex.value}>
+              <td>{entry.folder}</td>
+              <td>{figure(t?.chi_fit, 4)}</td><td>{figure(t?.chi_validate, 4)}</td><td>{figure(t?.rms_px_fit)}</td>
+              <td><input type="radio" name="show" aria-label={`show ${entry.folder}`} checked={i === stepIndex.value}
+                onChange={() => (chosenStep.value = i === newest ? -1 : i)} /></td>
+              <td><input type="radio" name="against" aria-label={`compare with ${entry.folder}`} checked={i === otherStep.value}
+                onClick={() => (otherStep.value = otherStep.value === i ? -1 : i)} onChange={() => undefined} /></td>
+              <td>{run.value.live && t?.added && added.has(t.added) && (
+                <button disabled={job.value?.state === 'running'} onClick={() => void add(t.added!, true)}>Take back</button>
+              )}</td>
+            </tr>
+          );
+        })}
+      </tbody>
+    </table>
+  );
+}
+
+function Difference() {
+  const a = timelineOf(other.value), b = timelineOf(step.value);
+  if (!a || !b || a === b) return <p class="note">Choose a step under “against” to compare it with the shown one, here and in Compare.</p>;
+  const names = [...new Set([...a.parameters, ...b.parameters].map((p) => p.name))];
+  return (
+    <table aria-label="Parameters of the two steps">
+      <thead><tr><th>parameter</th><th>{other.value!.folder}</th><th>{step.value!.folder}</th><th>unit</th></tr></thead>
+      <tbody>
+        {names.map((name) => {
+          const [x, y] = [a, b].map((t) => t.parameters.find((p) => p.name === name));
+          return <tr key={name}><td>{name}</td><td>{figure(x?.value, 4)}</td><td>{figure(y?.value, 4)}</td><td>{x?.unit ?? y?.unit}</td></tr>;
+        })}
+      </tbody>
+    </table>
+  );
+}
+
+export function Add() {
+  const offered = effectsNow().filter((e) => e.testable !== false && e.evidence !== undefined).slice(0, 10);
+  return (
+    <div class="add">
+      <section>
+        <h3>Add an effect to the newest step</h3>
+        {!run.value.live && <p class="note">This is a report. To add with one click, run <code>hookeye studio {run.value.run}</code>; or copy a command.</p>}
+        {offered.length === 0 && <p class="empty">The newest step has not been diagnosed yet.</p>}
+        <ul class="offers">
+          {offered.map((e) => (
+            <li key={e.effect}>
+              <span class="name">{spaced(e.effect)}</span>
+              <span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, e.explains ?? 0))}%`}} /></span>
+              <span class="value">evidence {figure(e.evidence)}</span>
+              {run.value.live ? <AddButton effect={e.effect} /> : (
+                <button onClick={() => void navigator.clipboard?.writeText(`hookeye add ${run.value.run} ${e.effect}`)}>Copy command</button>
+              )}
+            </li>
+          ))}
+        </ul>
+      </section>
+      <section>
+        <h3>Steps</h3>
+        <Steps />
+        <Difference />
+      </section>
+    </div>
+  );
+}

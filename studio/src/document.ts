@@ -1,0 +1,169 @@
+// The document that the program puts into the page (app/report/run_view.cpp writes it).
+
+export interface Quantum {
+  step: number;
+  zero: number;
+}
+export interface Picture {
+  blob: string;
+  shrink: number;
+  quantum: Quantum;
+}
+export interface PhotoEntry {
+  name: string;
+  example: string;
+  camera: string;
+  use: 'fit' | 'validate';
+  width: number;
+  height: number;
+  file: string;
+  photo: Picture;
+  /** Standard deviation of the noise: as a picture, or from the intensity. */
+  sigma?: Picture;
+  noise?: {read: number; full_well: number; factor: number};
+}
+export interface ParameterValue {
+  name: string;
+  unit: string;
+  long_name?: string;
+  value: number;
+  low?: number;
+  high?: number;
+}
+export interface EffectScore {
+  effect: string;
+  testable?: boolean;
+  why_not?: string;
+  variant?: string;
+  explains?: number;
+  explains_held_out?: number;
+  dof?: number;
+  evidence?: number;
+  p_value?: number;
+  weight?: number;
+  confused_with?: string[];
+  confusion?: {effect: string; cosine: number}[];
+  why?: string;
+  predicted?: ParameterValue[];
+}
+export interface PhotoFigures {
+  example: string;
+  camera: string;
+  plane: number;
+  use: string;
+  chi: number;
+  rms_px: number;
+  pixels: number;
+  whiteness_p: number;
+  only_noise: boolean;
+}
+export interface Metrics {
+  chi_fit: number;
+  chi_validate: number;
+  rms_px_fit: number;
+  rms_px_validate: number;
+  floor: {chi: number; source: string};
+  photos: PhotoFigures[];
+  chi_by_example: Record<string, number>;
+  chi_by_camera: Record<string, number>;
+  measured: {
+    example: string;
+    kind: string;
+    region: string;
+    measured: number[];
+    predicted: number[];
+    sigma: number;
+    over_sigma: number[];
+  }[];
+  undetermined: string[];
+  converged: boolean;
+  iterations: number;
+  mesh: {nodes: number; elements: number; order: number; mean_edge: number};
+  energy?: EnergyCurve[];
+}
+export interface EnergyCurve {
+  name: string;
+  unit: string;
+  stretch: number[];
+  value: number[];
+  low: number[];
+  high: number[];
+  visited?: [number, number];
+}
+export interface TimelineStep {
+  name: string;
+  added: string | null;
+  chi_fit: number;
+  chi_validate: number | null;
+  rms_px_fit: number;
+  rms_px_validate: number | null;
+  converged?: boolean;
+  iterations?: number;
+  undetermined?: string[];
+  parameters: ParameterValue[];
+  diagnosis: EffectScore[];
+  gate?: number;
+  rivals?: {effect: string; score: number}[];
+  command?: string;
+  made_by?: Record<string, string>;
+}
+export interface StepEntry {
+  folder: string;
+  metrics: Metrics | null;
+  diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number} | null;
+  residuals: Record<string, Picture>;
+  fields: Record<string, string>;
+  files: string[];
+}
+export interface CaptureFacts {
+  title: string;
+  file: string;
+  units: {length: string; force: string; stress: string};
+  fit: string[];
+  texture: string;
+  laws: string[];
+  cameras: {name: string; width: number; height: number; projection: string}[];
+  examples: {
+    name: string;
+    use: string;
+    supports: string[];
+    loads: string[];
+    photos: number;
+    measured: number;
+  }[];
+}
+export interface PageDocument {
+  hookeye: 1;
+  page: 1;
+  version: string;
+  run: string;
+  live?: boolean;
+  timeline: {
+    verdict?: string;
+    sentence?: string;
+    tie?: string[];
+    floor?: {chi: number; source: string};
+    steps: TimelineStep[];
+    capture?: string;
+  };
+  steps: StepEntry[];
+  photos: PhotoEntry[];
+  capture: CaptureFacts | null;
+  practice: {name: string; value: string}[];
+  faults: string[];
+  reduction?: string;
+}
+
+export interface JobState {
+  state: 'idle' | 'running' | 'done' | 'failed' | 'stopped';
+  effect?: string;
+  take_back?: boolean;
+  stage?: string;
+  iteration?: number;
+  of?: number;
+  chi?: number;
+  seconds?: number;
+  seconds_left?: number | null;
+  message?: string;
+  steps: number;
+}

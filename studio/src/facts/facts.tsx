@@ -1,0 +1,58 @@
+// The reporting table, the capture's facts, and what made the run.
+import {saveCsv, saveText} from '../download';
+import {figure} from '../format';
+import {floor, run, step, stepIndex, timelineOf} from '../state';
+
+function practiceRows(): [string, string][] {
+  const metrics = step.value?.metrics;
+  const rows: [string, string][] = [
+    ['Noise floor', `χ = ${figure(floor.value.chi, 4)}, from ${floor.value.source}`],
+    ...run.value.practice.map((r): [string, string] => [r.name, r.value]),
+  ];
+  if (metrics)
+    rows.push(['Spatial resolution',
+      `${metrics.mesh.nodes} nodes, ${metrics.mesh.elements} tetrahedra of order ${metrics.mesh.order}, mean edge ${figure(metrics.mesh.mean_edge)} ${run.value.capture?.units.length ?? ''}`]);
+  return rows;
+}
+
+/** Files of the run, live only: a report cannot know where it was mailed to. */
+function Files() {
+  if (!run.value.live) return <p>All files of this run lie in <code>{run.value.run}</code>.</p>;
+  const files = ['run.json', ...(step.value?.files ?? [])].filter((f) => /\.(json|vtu|csv|yaml|exr)$/.test(f));
+  return <ul class="files">{files.map((f) => <li key={f}><a href={`file?name=${encodeURIComponent(f)}`} download>{f}</a></li>)}</ul>;
+}
+
+export function Facts() {
+  const rows = practiceRows();
+  const capture = run.value.capture;
+  const told = timelineOf(step.value);
+  return (
+    <div class="facts">
+      <section>
+        <h3>How it was measured <button class="quiet" onClick={() => saveCsv('reporting.csv', [['item', 'value'], ...rows])}>CSV</button></h3>
+        <table><tbody>{rows.map(([name, value]) => <tr key={name}><th scope="row">{name}</th><td>{value}</td></tr>)}</tbody></table>
+        <h3>What made it</h3>
+        <table><tbody>
+          <tr><th scope="row">Command of step {stepIndex.value}</th><td><code>{told?.command ?? 'not recorded'}</code></td></tr>
+          <tr><th scope="row">Versions</th><td>{Object.entries(told?.made_by ?? {hookeye: run.value.version}).map(([k, v]) => `${k} ${v}`).join(', ')}</td></tr>
+          <tr><th scope="row">This page</th><td>hookeye {run.value.version}</td></tr>
+        </tbody></table>
+      </section>
+      <section>
+        <h3>The capture{capture?.title ? `: ${capture.title}` : ''}</h3>
+        {capture ? <>
+          <table><thead><tr><th>example</th><th>use</th><th>supports and loads</th></tr></thead>
+            <tbody>{capture.examples.map((e) => (
+              <tr key={e.name}><td>{e.name}</td><td>{e.use === 'fit' ? 'fitted' : 'held out'}</td><td>{[...e.supports, ...e.loads].join('; ') || 'none'}</td></tr>
+            ))}</tbody></table>
+          <p>Material {capture.laws.join(', ')}, fitted: {capture.fit.join(', ') || 'nothing'}. Texture: {capture.texture}.
+            Cameras: {capture.cameras.map((c) => `${c.name} (${c.width} × ${c.height}, ${c.projection})`).join(', ')}.</p>
+          <p class="note">{capture.file}</p>
+        </> : <p class="empty">The capture could not be read.</p>}
+        <h3>Files</h3>
+        <p><button onClick={() => saveText('run.json', JSON.stringify(run.value.timeline, null, 2), 'application/json')}>run.json</button></p>
+        <Files />
+      </section>
+    </div>
+  );
+}

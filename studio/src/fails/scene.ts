@@ -1,0 +1,205 @@
+// Draws surfaces with three.js: one renderer for the large view and for the small multiples.
+import {
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group,
+  LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera,
+  Raycaster, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer, WireframeGeometry,
+} from 'three';
+import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import type {Rgb} from '../colours';
+import type {Surface} from './surface';
+
+export interface Look {
+  /** 0: rest, 1: deformed, more: exaggerated. */
+  amount: number;
+  colour: (node: number) => Rgb;
+  ghost: boolean;
+}
+
+export class BodyScene {
+  readonly camera = new PerspectiveCamera(35, 1, 0.1, 1e5);
+  private renderer: WebGLRenderer;
+  private scene = new Scene();
+  private group = new Group();
+  private mesh: Mesh | null = null;
+  private marker = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffd400, depthTest: false}));
+  private controls: OrbitControls;
+  private shown: Surface | null = null;
+  private radius = 1;
+  private waiting = false;
+  onMove: () => void = () => undefined;
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    const sun = new DirectionalLight(0xffffff, 1.6);
+    sun.position.set(-1, -2, 3);
+    this.camera.add(new DirectionalLight(0xffffff, 0.8));
+    this.scene.add(new AmbientLight(0xffffff, 1.3), sun, this.group, this.camera, this.marker);
+    this.marker.visible = false;
+    this.marker.renderOrder = 2;
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => {
+      this.draw();
+      this.onMove();
+    });
+  }
+
+  setBackground(colour: string): void {
+    this.scene.background = new Color(colour);
+  }
+
+  private positions(surface: Surface, amount: number): Float32Array {
+    return surface.rest.map((v, i) => v + amount * surface.displacement[i]);
+  }
+
+  private build(surface: Surface, look: Look): Mesh {
+    const geometry = new BufferGeometry();
+    const nodes = surface.rest.length / 3;
+    const colours = new Float32Array(3 * nodes);
+    const colour = new Color();
+    for (let i = 0; i < nodes; ++i) {
+      const [r, g, b] = look.colour(i);
+      colour.setRGB(r / 255, g / 255, b / 255, 'srgb');
+      colours.set([colour.r, colour.g, colour.b], 3 * i);
+    }
+    geometry.setAttribute('position', new BufferAttribute(this.positions(surface, look.amount), 3));
+    geometry.setAttribute('color', new BufferAttribute(colours, 3));
+    geometry.setIndex(new BufferAttribute(surface.triangles, 1));
+    geometry.computeVertexNormals();
+    return new Mesh(geometry, new MeshLambertMaterial({vertexColors: true, side: DoubleSide}));
+  }
+
+  private fill(surface: Surface, look: Look): void {
+    for (const child of [...this.group.children]) {
+      this.group.remove(child);
+      (child as Mesh).geometry.dispose();
+    }
+    this.mesh = this.build(surface, look);
+    this.group.add(this.mesh);
+    if (!look.ghost) return;
+    const rest = new BufferGeometry();
+    rest.setAttribute('position', new BufferAttribute(surface.rest, 3));
+    rest.setIndex(new BufferAttribute(surface.triangles, 1));
+    const lines = new LineSegments(new WireframeGeometry(rest),
+      new LineBasicMaterial({color: 0x888888, transparent: true, opacity: 0.16}));
+    this.group.add(lines);
+    rest.dispose();
+  }
+
+  show(surface: Surface, look: Look): void {
+    const first = !this.shown;
+    this.shown = surface;
+    this.fill(surface, look);
+    if (first) this.frame();
+    this.draw();
+  }
+
+  /** Looks at the whole body. */
+  frame(): void {
+    const surface = this.shown;
+    if (!surface) return;
+    const low = new Vector3(Infinity, Infinity, Infinity);
+    const high = low.clone().negate();
+    for (let i = 0; i < surface.rest.length; i += 3) {
+      const x = new Vector3(surface.rest[i], surface.rest[i + 1], surface.rest[i + 2]);
+      low.min(x);
+      high.max(x);
+    }
+    const middle = low.clone().add(high).multiplyScalar(0.5);
+    this.radius = 0.5 * high.distanceTo(low);
+    this.controls.target.copy(middle);
+    this.camera.position.copy(middle).add(new Vector3(1.6, -2.6, 1.3).multiplyScalar(1.25 * this.radius));
+    this.camera.near = 0.01 * this.radius;
+    this.camera.far = 100 * this.radius;
+    this.controls.update();
+    this.draw();
+  }
+
+  /** Turns about the body by the keyboard. */
+  turn(azimuth: number, polar: number, distance = 1): void {
+    const from = this.camera.position.clone().sub(this.controls.target);
+    from.applyAxisAngle(new Vector3(0, 0, 1), azimuth);
+    const side = new Vector3().crossVectors(new Vector3(0, 0, 1), from).normalize();
+    const tilted = from.clone().applyAxisAngle(side, polar);
+    if (Math.hypot(tilted.x, tilted.y) > 0.05 * tilted.length()) from.copy(tilted);
+    this.camera.position.copy(this.controls.target).add(from.multiplyScalar(distance));
+    this.controls.update();
+    this.draw();
+    this.onMove();
+  }
+
+  draw(): void {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.drawNow();
+    });
+  }
+
+  private drawNow(): void {
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    if (!width || !height) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  /** The same view of another surface, copied into a small canvas. */
+  thumbnail(surface: Surface, look: Look, into: HTMLCanvasElement): void {
+    const [kept, keptMarker] = [this.group.children.slice(), this.marker.visible];
+    this.group.clear();
+    this.marker.visible = false;
+    this.group.add(this.build(surface, look));
+    const ratio = this.renderer.getPixelRatio();
+    into.width = into.clientWidth * ratio;
+    into.height = into.clientHeight * ratio;
+    if (into.width && into.height) {
+      this.renderer.setSize(into.clientWidth, into.clientHeight, false);
+      this.camera.aspect = into.width / into.height;
+      this.camera.updateProjectionMatrix();
+      this.renderer.render(this.scene, this.camera);
+      into.getContext('2d')!.drawImage(this.canvas, 0, 0, into.width, into.height);
+    }
+    (this.group.children[0] as Mesh).geometry.dispose();
+    this.group.clear();
+    this.group.add(...kept);
+    this.marker.visible = keptMarker;
+    this.drawNow();
+  }
+
+  /** Node under a point of the canvas; -1: none. */
+  pick(left: number, top: number): number {
+    if (!this.mesh || !this.shown) return -1;
+    const ray = new Raycaster();
+    ray.setFromCamera(
+      new Vector2((2 * left) / this.canvas.clientWidth - 1, 1 - (2 * top) / this.canvas.clientHeight),
+      this.camera);
+    const hit = ray.intersectObject(this.mesh)[0];
+    if (!hit?.face) return -1;
+    const position = this.mesh.geometry.getAttribute('position');
+    let best = -1, nearest = Infinity;
+    for (const node of [hit.face.a, hit.face.b, hit.face.c]) {
+      const distance = new Vector3().fromBufferAttribute(position, node).distanceTo(hit.point);
+      if (distance < nearest) [best, nearest] = [node, distance];
+    }
+    return best;
+  }
+
+  mark(node: number): void {
+    this.marker.visible = node >= 0 && !!this.mesh;
+    if (this.marker.visible) {
+      const position = this.mesh!.geometry.getAttribute('position');
+      this.marker.position.fromBufferAttribute(position, node);
+      this.marker.scale.setScalar(0.02 * this.radius);
+    }
+    this.draw();
+  }
+
+  dispose(): void {
+    this.controls.dispose();
+    this.renderer.dispose();
+  }
+}

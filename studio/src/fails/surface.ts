@@ -1,0 +1,88 @@
+// The body's surface of one step and example, as the program wrote it (estimation/page_data.h).
+import type {StepEntry} from '../document';
+import {array, field, type StoredArray} from '../parts';
+
+interface StoredBody {
+  rest: StoredArray;
+  triangles: [number, number, number][];
+  regions: Record<string, number[]>;
+}
+interface StoredExample {
+  displacement: StoredArray;
+  residual: StoredArray;
+  gap: StoredArray;
+  strain: StoredArray;
+  von_mises: StoredArray;
+  views: {photo: string; pixel: StoredArray; seen: StoredArray}[];
+}
+export interface View {
+  photo: string;
+  pixel: Float32Array;
+  seen: Float32Array;
+}
+export interface Surface {
+  rest: Float32Array;
+  triangles: Uint32Array;
+  regions: Record<string, number[]>;
+  displacement: Float32Array;
+  /** By name; NaN where no photo tells. */
+  scalars: Record<Quantity, Float32Array>;
+  views: View[];
+}
+
+export const quantities = ['residual', 'gap', 'strain', 'von_mises', 'displacement'] as const;
+export type Quantity = (typeof quantities)[number];
+export const quantityNames: Record<Quantity, string> = {
+  residual: 'residual',
+  gap: 'residual displacement',
+  strain: 'strain',
+  von_mises: 'stress',
+  displacement: 'displacement',
+};
+
+function lengths(vectors: Float32Array): Float32Array {
+  const out = new Float32Array(vectors.length / 3);
+  for (let i = 0; i < out.length; ++i)
+    out[i] = Math.hypot(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]);
+  return out;
+}
+
+export function examplesOf(step: StepEntry | undefined): string[] {
+  return Object.keys(step?.fields ?? {})
+    .filter((key) => key.startsWith('example-'))
+    .map((key) => key.slice('example-'.length));
+}
+
+export async function surface(step: StepEntry, example: string): Promise<Surface> {
+  const [body, state] = await Promise.all([
+    field<StoredBody>(step.fields['body']),
+    field<StoredExample>(step.fields['example-' + example]),
+  ]);
+  const displacement = array(state.displacement);
+  return {
+    rest: array(body.rest),
+    triangles: new Uint32Array(body.triangles.flat()),
+    regions: body.regions,
+    displacement,
+    scalars: {
+      residual: array(state.residual),
+      gap: lengths(array(state.gap)),
+      strain: array(state.strain),
+      von_mises: array(state.von_mises),
+      displacement: lengths(displacement),
+    },
+    views: state.views.map((view) => ({
+      photo: view.photo,
+      pixel: array(view.pixel),
+      seen: array(view.seen),
+    })),
+  };
+}
+
+/** 99 % point of the absolute values: one bad node does not set the scale. */
+export function reach(values: Float32Array[]): number {
+  const all: number[] = [];
+  for (const list of values) for (const v of list) if (Number.isFinite(v)) all.push(Math.abs(v));
+  all.sort((a, b) => a - b);
+  return all.length ? all[Math.floor(0.99 * (all.length - 1))] || 1e-12 : 1;
+}

@@ -1,0 +1,154 @@
+// The page: verdict on top, the five verbs as tabs, one at a time.
+import {render} from 'preact';
+import {useEffect} from 'preact/hooks';
+import {Add, JobLine} from './add/add';
+import {follow} from './add/job';
+import {Compare} from './compare/compare';
+import {Facts} from './facts/facts';
+import {Fails} from './fails/fails';
+import {Falls} from './falls/falls';
+import {figure} from './format';
+import {Missing} from './missing/missing';
+import {setLive} from './parts';
+import {chosenPhoto, chosenStep, floor, help, otherStep, run, step, stepIndex, theme, timelineOf, verb, verbNames, verbs, type Verb} from './state';
+import './style.css';
+
+const views: Record<Verb, () => preact.JSX.Element> = {
+  compare: Compare, fails: Fails, missing: Missing, add: Add, falls: Falls, facts: Facts,
+};
+
+function Verdict() {
+  const {verdict, sentence} = run.value.timeline;
+  const now = timelineOf(step.value);
+  const over = now ? now.chi_fit / floor.value.chi : NaN;
+  const judged = sentence !== undefined;
+  return (
+    <p class="verdict">
+      <b class={judged ? verdict : 'open'}>{judged ? verdict : 'not judged yet'}</b>{' '}
+      {judged ? sentence : now
+        ? `χ ${figure(now.chi_fit)} on the fitted photos, ${figure(over)} times the floor`
+        : 'no step is finished'}
+    </p>
+  );
+}
+
+function StepChoice() {
+  const list = run.value.steps;
+  if (!list.length) return null;
+  return (
+    <span class="step-choice">
+      <label>step <select value={stepIndex.value} onChange={(e) => {
+        const i = Number(e.currentTarget.value);
+        chosenStep.value = i === list.length - 1 ? -1 : i;
+      }}>{list.map((s, i) => <option key={s.folder} value={i}>{s.folder}</option>)}</select></label>
+      <label>against <select value={otherStep.value} onChange={(e) => (otherStep.value = Number(e.currentTarget.value))}>
+        <option value={-1}>none</option>
+        {list.map((s, i) => <option key={s.folder} value={i}>{s.folder}</option>)}
+      </select></label>
+    </span>
+  );
+}
+
+function Tabs() {
+  const move = (event: KeyboardEvent): void => {
+    const by = {ArrowRight: 1, ArrowLeft: -1}[event.key];
+    if (!by) return;
+    event.preventDefault();
+    verb.value = verbs[(verbs.indexOf(verb.value) + by + verbs.length) % verbs.length];
+    document.getElementById('tab-' + verb.value)?.focus();
+  };
+  return (
+    <div class="tabs" role="tablist" aria-label="The five verbs" onKeyDown={move}>
+      {verbs.map((v, i) => (
+        <button key={v} id={'tab-' + v} role="tab" aria-selected={v === verb.value} aria-controls="view"
+                tabIndex={v === verb.value ? 0 : -1} onClick={() => (verb.value = v)}>
+          {i < 5 && <span class="number" aria-hidden="true">{i + 1}</span>} {verbNames[v]}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+const keyTable: [string, string][] = [
+  ['1 … 6', 'the five verbs, and the facts'],
+  ['← → ↑ ↓', 'photos: next and previous; pictures: move the cross (Shift: by ten); body: turn'],
+  ['+ − 0', 'zoom in, out, fit'],
+  ['n p', 'next, previous photo'],
+  ['[ ]', 'earlier, later step'],
+  ['Enter', 'body: pick the point in the middle'],
+  ['t', 'dark, light'],
+  ['?', 'this table'],
+];
+
+function Help() {
+  if (!help.value) return null;
+  return (
+    <div class="help" role="dialog" aria-label="Keys" onClick={() => (help.value = false)}>
+      <table><tbody>{keyTable.map(([k, what]) => <tr key={k}><th scope="row"><kbd>{k}</kbd></th><td>{what}</td></tr>)}</tbody></table>
+      <button onClick={() => (help.value = false)}>Close</button>
+    </div>
+  );
+}
+
+function turnTheme(): void {
+  const dark = matchMedia('(prefers-color-scheme: dark)').matches;
+  const isDark = theme.value === 'dark' || (theme.value === 'auto' && dark);
+  theme.value = isDark ? 'light' : 'dark';
+  document.documentElement.dataset.theme = theme.value;
+}
+
+function keys(event: KeyboardEvent): void {
+  const target = event.target as HTMLElement;
+  if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(target.tagName)) return;
+  const index = Number(event.key) - 1;
+  if (verbs[index]) verb.value = verbs[index];
+  else if (event.key === 't') turnTheme();
+  else if (event.key === '?') help.value = !help.value;
+  else if (event.key === 'Escape') help.value = false;
+  else if (event.key === '[' && stepIndex.value > 0) chosenStep.value = stepIndex.value - 1;
+  else if (event.key === ']' && stepIndex.value < run.value.steps.length - 1) chosenStep.value = stepIndex.value + 1;
+  else if (event.key === 'n' || event.key === 'p') nextPhoto(event.key === 'n' ? 1 : -1);
+}
+
+function Page() {
+  const View = views[verb.value];
+  useEffect(() => {
+    document.addEventListener('keydown', keys);
+    return () => document.removeEventListener('keydown', keys);
+  }, []);
+  useEffect(() => {
+    history.replaceState(null, '', '#' + verb.value);
+  }, [verb.value]);
+  const {faults, reduction, capture} = run.value;
+  return (
+    <>
+      <header>
+        <h1>Hookeye <small>{capture?.title ?? run.value.run.split('/').pop()}</small></h1>
+        <Verdict />
+        <StepChoice />
+        <span class="tools">
+          <button title="Dark or light (t)" aria-label="Dark or light" onClick={turnTheme}>◐</button>
+          <button title="Keys (?)" aria-label="Keys" onClick={() => (help.value = !help.value)}>?</button>
+        </span>
+      </header>
+      <JobLine />
+      {(faults.length > 0 || reduction) && (
+        <details class="faults"><summary>{faults.length ? `${faults.length} thing${faults.length > 1 ? 's' : ''} of this run ${faults.length > 1 ? 'are' : 'is'} not here` : 'Reduced'}</summary>
+          <ul>{faults.map((f) => <li key={f}>{f}</li>)}{reduction && <li>{reduction}</li>}</ul></details>
+      )}
+      <Tabs />
+      <main id="view" role="tabpanel" aria-labelledby={'tab-' + verb.value}><View /></main>
+      <Help />
+    </>
+  );
+}
+
+function nextPhoto(by: number): void {
+  const count = run.value.photos.length;
+  if (count) chosenPhoto.value = (chosenPhoto.value + by + count) % count;
+}
+
+setLive(run.value.live === true);
+document.title = `${run.value.capture?.title ?? 'Run'} – Hookeye`;
+render(<Page />, document.getElementById('page')!);
+if (run.value.live) follow();

@@ -1,0 +1,72 @@
+// Small parts of every view.
+import type {Signal} from '@preact/signals';
+import type {ComponentChildren} from 'preact';
+
+export function Toolbar(props: {children: ComponentChildren}) {
+  return <div class="toolbar">{props.children}</div>;
+}
+
+/** One of several, as a row of buttons. */
+export function Buttons<T extends string>(props: {
+  label: string;
+  values: readonly T[];
+  chosen: Signal<T>;
+  names?: Record<T, string>;
+}) {
+  return (
+    <div class="choice" role="group" aria-label={props.label}>
+      {props.values.map((value) => (
+        <button key={value} aria-pressed={props.chosen.value === value}
+                onClick={() => (props.chosen.value = value)}>
+          {props.names?.[value] ?? value}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+export function Legend(props: {
+  title: string;
+  from: string;
+  middle?: string;
+  to: string;
+  background: string;
+}) {
+  return (
+    <div class="legend">
+      <span>{props.title}</span>
+      <div class="ramp" style={{background: props.background}} />
+      <div class="ends"><span>{props.from}</span><span>{props.middle ?? ''}</span><span>{props.to}</span></div>
+    </div>
+  );
+}
+
+export interface Row {
+  name: string;
+  value: number;
+  note?: string;
+}
+/** Horizontal bars from zero; `mark` is drawn as a line (the floor). */
+export function Bars(props: {title: string; unit?: string; rows: Row[]; mark?: number; digits?: number;
+                             onSave?: () => void}) {
+  const most = Math.max(props.mark ?? 0, ...props.rows.map((r) => (Number.isFinite(r.value) ? r.value : 0)), 1e-12);
+  return (
+    <section class="bars">
+      <h3>{props.title}{props.onSave && <button class="quiet" onClick={props.onSave}>CSV</button>}</h3>
+      <dl>
+        {props.rows.map((row) => (
+          <div key={row.name}>
+            <dt title={row.note}>{row.name}</dt>
+            <dd>
+              <span class="track">
+                <span class="fill" style={{width: `${(100 * Math.max(0, row.value || 0)) / most}%`}} />
+                {props.mark !== undefined && <span class="mark" style={{left: `${(100 * props.mark) / most}%`}} />}
+              </span>
+              <span class="value">{Number.isFinite(row.value) ? row.value.toPrecision(props.digits ?? 3) : '–'}</span>
+            </dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}

@@ -1,0 +1,225 @@
+// Walks report and studio of a small real run in a real browser.
+//   node walk.mjs HOOKEYE [FOLDER]     exit status 77: not run, and why
+// With FOLDER, screenshots are kept there.
+import assert from 'node:assert/strict';
+import {execFileSync, spawn} from 'node:child_process';
+import {cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {createRequire} from 'node:module';
+import {chromium} from 'playwright-core';
+import {smallCapture} from './small_capture.mjs';
+
+const hookeye = process.argv[2];
+const shots = process.argv[3];
+const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
+if (!browserPath) {
+  console.log('NOT RUN: chromium is not there (packages.txt), so the page was not tried in a browser');
+  process.exit(77);
+}
+const axeSource = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const verbs = ['compare', 'fails', 'missing', 'add', 'falls', 'facts'];
+const folder = mkdtempSync(join(tmpdir(), 'hookeye-page-'));
+const run = join(folder, 'run');
+const tell = (...args) => execFileSync(hookeye, args, {stdio: ['ignore', 'pipe', 'pipe']}).toString();
+const runJson = () => JSON.parse(readFileSync(join(run, 'run.json'), 'utf8'));
+const say = (what) => console.log('ok', what);
+
+const browser = await chromium.launch({
+  executablePath: browserPath,
+  args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync'],
+});
+
+/** A page that notes every error and every request that is not allowed to leave. */
+async function open(url, size = {width: 1280, height: 800}, colorScheme = 'light') {
+  const context = await browser.newContext({viewport: size, colorScheme});
+  const page = await context.newPage();
+  const faults = [];
+  page.on('console', (m) => m.type() === 'error' && faults.push('console: ' + m.text()));
+  page.on('pageerror', (e) => faults.push('error: ' + e.message));
+  page.on('request', (r) => {
+    const to = new URL(r.url());
+    const stays = ['file:', 'data:', 'blob:'].includes(to.protocol) || to.hostname === '127.0.0.1';
+    if (!stays) faults.push('request to ' + r.url());
+  });
+  await page.goto(url);
+  await page.waitForSelector('[role=tab]');
+  return {page, faults, close: () => context.close()};
+}
+
+async function walk(page, name) {
+  for (const verb of verbs) {
+    await page.click('#tab-' + verb);
+    await page.waitForSelector(`#tab-${verb}[aria-selected=true]`);
+    await page.waitForTimeout(400);
+    if (shots) await page.screenshot({path: join(shots, `${name}-${verb}.png`)});
+  }
+}
+
+async function accessible(page) {
+  await page.evaluate(axeSource);
+  for (const verb of verbs) {
+    await page.click('#tab-' + verb);
+    await page.waitForTimeout(300);
+    const found = await page.evaluate(() => globalThis.axe.run(document, {
+      runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'],
+    }));
+    const serious = found.violations.filter((v) => ['serious', 'critical'].includes(v.impact));
+    assert.deepEqual(serious.map((v) => `${verb}: ${v.id}: ${v.nodes.map((n) => n.target + ' ' + (n.any[0]?.message ?? '')).join(' | ')}`), []);
+  }
+}
+
+/** Residual of the run's own EXR at a pixel, read by OpenImageIO's tool. */
+function residualOf(step, photo, x, y) {
+  const text = execFileSync('oiiotool', ['--dumpdata', join(run, 'steps', step, 'residuals', photo + '.exr')],
+    {maxBuffer: 1 << 28}).toString();
+  return Number(new RegExp(`Pixel \\(${x}, ${y}\\): (\\S+)`).exec(text)[1]);
+}
+
+async function pixelsAgree(page) {
+  await page.click('#tab-compare');
+  const name = 'push-front';
+  const index = await page.evaluate((n) => JSON.parse(document.getElementById('document').textContent)
+    .photos.findIndex((p) => p.name === n), name);
+  await page.click('#photo-' + index);
+  await page.waitForFunction(() => document.querySelectorAll('.panels canvas').length === 3);
+  await page.waitForTimeout(600);
+  const box = await page.locator('.panels canvas').nth(2).boundingBox();
+  let counted = 0;
+  for (const [u, v] of [[0.5, 0.5], [0.45, 0.6], [0.4, 0.7], [0.55, 0.4]]) {
+    await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
+    await page.waitForTimeout(60);
+    const said = (await page.textContent('#readout')).replaceAll('−', '-');
+    const [, x, y] = /\((\d+), (\d+)\)/.exec(said);
+    const shown = /= (-?[\d.]+) σ/.exec(said);
+    const stored = residualOf('00-base', name, x, y);
+    if (!shown) {
+      assert.ok(Number.isNaN(stored), said);
+      continue;
+    }
+    counted += 1;
+    assert.ok(Math.abs(Number(shown[1]) - stored) <= 1 / 64 + 0.0051, `${said}, but the EXR holds ${stored}`);
+    const photo = Number(/photo ([\d.]+)/.exec(said)[1]), model = Number(/model ([\d.-]+)/.exec(said)[1]);
+    assert.ok(Math.abs((model - photo) / 0.008 - stored) < 0.05, said);
+  }
+  assert.ok(counted >= 2, 'the pointer never met a pixel that counts');
+}
+
+async function keyboardOnly(page) {
+  await page.evaluate(() => document.activeElement?.blur());
+  for (const [key, verb] of [['2', 'fails'], ['3', 'missing'], ['5', 'falls'], ['1', 'compare']]) {
+    await page.keyboard.press(key);
+    await page.waitForSelector(`#tab-${verb}[aria-selected=true]`);
+  }
+  for (let i = 0; i < 60; ++i) {
+    await page.keyboard.press('Tab');
+    if (await page.evaluate(() => document.activeElement?.classList.contains('panels'))) break;
+  }
+  assert.ok(await page.evaluate(() => document.activeElement?.classList.contains('panels')), 'the pictures cannot be reached by Tab');
+  await page.keyboard.press('ArrowRight');
+  const before = /\((\d+), (\d+)\)/.exec(await page.textContent('#readout'));
+  await page.keyboard.press('Shift+ArrowRight');
+  await page.keyboard.press('ArrowDown');
+  const after = /\((\d+), (\d+)\)/.exec(await page.textContent('#readout'));
+  assert.deepEqual([after[1] - before[1], after[2] - before[2]], [10, 1]);
+  await page.keyboard.press('?');
+  await page.waitForSelector('[role=dialog]');
+  await page.keyboard.press('Escape');
+}
+
+async function report() {
+  const html = join(folder, 'report.html');
+  tell('report', run, '-o', html);
+  for (const scheme of ['light', 'dark']) {
+    const {page, faults, close} = await open('file://' + html, undefined, scheme);
+    const paint = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime);
+    console.log(`   first paint after ${Math.round(paint)} ms`);
+    await walk(page, 'report-' + scheme);
+    await accessible(page);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    assert.deepEqual(faults, []);
+    await close();
+  }
+  const phone = await open('file://' + html, {width: 390, height: 844});
+  await walk(phone.page, 'phone');
+  assert.ok(await phone.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'wider than a phone');
+  assert.deepEqual(phone.faults, []);
+  await phone.close();
+  say('the report: five verbs, light, dark and on a phone, no serious fault by axe');
+}
+
+async function studio() {
+  const program = spawn(hookeye, ['studio', run], {stdio: ['ignore', 'pipe', 'inherit']});
+  const ended = new Promise((resolve) => program.on('exit', resolve));
+  const address = await new Promise((resolve, reject) => {
+    let text = '';
+    program.stdout.on('data', (more) => {
+      text += more;
+      const found = /http:\/\/\S+/.exec(text);
+      if (found) resolve(found[0]);
+    });
+    program.on('exit', () => reject(new Error('the studio ended')));
+  });
+  assert.throws(() => tell('studio', run), /open on this run already/);
+  const bad = await fetch(new URL('/', address));
+  assert.equal(bad.status, 404);
+  assert.equal((await fetch(address + 'add', {method: 'POST', body: '{"effect":"gravity"}'})).status, 403);
+  assert.equal((await fetch(address + 'file?name=' + encodeURIComponent('../capture/capture.yaml'))).status, 404);
+  assert.equal((await fetch(address + 'part?name=' + encodeURIComponent('field/../../x'))).status, 404);
+
+  let {page, faults, close} = await open(address);
+  await pixelsAgree(page);
+  say('the pixel under the pointer is the EXR’s');
+  await keyboardOnly(page);
+  say('keyboard only');
+  await page.click('#tab-add');
+  await page.click('[data-add=gravity]');
+  await page.waitForSelector('.job.running');
+  assert.deepEqual(faults, []);
+  await close();  // the refit goes on without the page
+  ({page, faults, close} = await open(address));
+  await page.waitForFunction(() => document.querySelectorAll('.steps tbody tr').length === 2 ||
+    document.querySelector('.job.failed'), null, {timeout: 240000});
+  await page.click('#tab-add');
+  await page.waitForFunction(() => document.querySelectorAll('.steps tbody tr').length === 2, null, {timeout: 240000});
+  await page.waitForSelector('.job.done', {timeout: 240000});
+  const chis = await page.$$eval('.steps tbody tr', (rows) => rows.map((r) => Number(r.cells[1].textContent)));
+  const stored = runJson().steps.map((s) => s.chi_fit);
+  assert.ok(chis[1] < 0.7 * chis[0], `the error does not fall: ${chis}`);
+  chis.forEach((chi, i) => assert.ok(Math.abs(chi - stored[i]) < 1e-3 * stored[i] + 1e-3));
+  await walk(page, 'studio');
+  assert.deepEqual(faults, []);
+  await close();
+  program.kill('SIGINT');
+  assert.equal(await ended, 0);
+  assert.ok(!existsSync(join(run, '.studio')));
+  say(`Add gravity by one click: chi ${chis[0]} -> ${chis[1]}, in the page and in run.json; clean end`);
+}
+
+async function broken() {
+  const half = join(folder, 'half');
+  cpSync(run, half, {recursive: true});
+  writeFileSync(join(half, 'run.json'), readFileSync(join(half, 'run.json'), 'utf8').slice(0, 400));
+  rmSync(join(half, 'steps', '00-base', 'metrics.json'));
+  tell('report', half, '-o', join(folder, 'half.html'));
+  const {page, faults, close} = await open('file://' + join(folder, 'half.html'));
+  await page.waitForSelector('.faults');
+  assert.match(await page.textContent('.faults'), /run\.json is damaged/);
+  await walk(page, 'half');
+  assert.deepEqual(faults, []);
+  await close();
+  say('a broken run opens and says what is not there');
+}
+
+try {
+  const capture = smallCapture(hookeye, folder);
+  tell('fit', capture, '-o', run);
+  tell('diagnose', run);
+  await report();
+  await studio();
+  await broken();
+} finally {
+  await browser.close();
+  rmSync(folder, {recursive: true, force: true});
+}
