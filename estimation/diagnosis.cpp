@@ -68,7 +68,8 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
 /// covariance of the score under noise correlated as the residual is.
 struct Sums {
   EffectiveSums effective;
-  Eigen::MatrixXd noise;            ///< covariance of effective.s under the null
+  Eigen::MatrixXd noise;       ///< covariance of effective.s, correlated as this residual is
+  Eigen::MatrixXd null_noise;  ///< the same when only the floor is left
   NormalEquations fitted, held_out; ///< plain pixel sums
   double pixel_floor2 = 1.0;
   double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
@@ -83,6 +84,7 @@ Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
   out.effective.floor2 = floor.cell_variance;
   out.pixel_floor2 = floor.chi * floor.chi;
   out.noise.setZero(m, m);
+  out.null_noise.setZero(m, m);
   int photos = 0;
   for (const auto& example : evaluation.examples)
     for (const auto& photo : example.photos) {
@@ -99,6 +101,7 @@ Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
       out.effective.r2 += w * flow.variance * flow.count;
       out.effective.count += w * flow.count;
       out.noise += w * w * flow.inflation * photo.sums.JtJ;
+      out.null_noise += w * w * floor.cell_inflation * photo.sums.JtJ;
     }
   out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
   for (const auto& example : evaluation.examples) {
@@ -110,6 +113,7 @@ Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
       out.effective.r2 += measured.r.squaredNorm();
       out.effective.count += 3.0;
       out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
+      out.null_noise += JtJ;
     }
   }
   out.fitted = normal_equations(evaluation, false);
@@ -138,11 +142,13 @@ std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates
   return out;
 }
 
-/// Largest evidence over the catalogue when nothing is missing, sorted.
+/// Largest evidence over the catalogue when nothing is missing, sorted: scores drawn as the floor's
+/// errors (their variance and their correlation from cell to cell, rest photos) would give them.
 std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
                                   const std::vector<ProjectedHypothesis>& projected,
-                                  const Sums& sums, double r2, const DiagnosisOptions& options) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sums.noise);
+                                  const Sums& sums, const DiagnosisOptions& options) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sums.null_noise);
+  const double r2 = sums.effective.count * sums.effective.floor2;
   const Eigen::MatrixXd root =
       eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::mt19937 engine(options.seed);
@@ -327,7 +333,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
                                sums.effective.floor2);
   }
   const std::vector<double> null =
-      simulate_null(candidates, projected, sums, r2, options);
+      simulate_null(candidates, projected, sums, options);
   if (!null.empty()) out.gate = null[static_cast<size_t>(0.95 * (null.size() - 1))];
 
   const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};

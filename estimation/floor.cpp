@@ -39,11 +39,13 @@ void add_rough_part(const FlowField& flow, double& sum, double& count) {
 
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   Floor floor;
-  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0;
+  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0, inflation = 0.0, photos = 0.0;
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
     for (const auto& photo : example.photos) {
       add_rough_part(photo.aligned, cells, cell_count);
+      inflation += flow_statistics(photo.aligned).inflation;
+      photos += 1.0;
       for (const auto& cell : photo.aligned.cells) {
         r2 += cell.r2 - cell.explained;
         count += cell.pixels - 3.0;  // three numbers were fitted to each cell
@@ -54,6 +56,7 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   if (count < 1000.0) return floor;
   floor.chi = std::sqrt(r2 / count);
   floor.source = "rest photos";
+  floor.cell_inflation = std::max(1.0, inflation / photos);
   if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);
   return floor;
 }
