@@ -59,21 +59,20 @@ void read_texture(const YamlNode* node, Recipe& recipe) {
 }
 
 void read_body(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(node, "body",
-                            {"shape", "size", "taper", "bumps", "facet", "mesh", "density",
-                             "texture"});
+  const YamlSection section(
+      node, "body", {"shape", "size", "taper", "bumps", "facet", "mesh", "density", "texture"});
   ShapeRecipe& shape = recipe.shape;
   const std::vector<std::string> kinds = {"block", "cylinder", "blob"};
   const YamlNode& kind = section.need("shape", "shape: block, cylinder or blob");
   const std::string chosen = read_choice(kind, "shape of the body", kinds);
-  shape.kind = static_cast<ShapeRecipe::Kind>(
-      std::find(kinds.begin(), kinds.end(), chosen) - kinds.begin());
+  shape.kind =
+      static_cast<ShapeRecipe::Kind>(std::find(kinds.begin(), kinds.end(), chosen) - kinds.begin());
   const YamlNode& size = section.need("size", "size: [30, 24, 60]");
   shape.size = read_vector3(size, "size of the body");
   if (!(shape.size.minCoeff() > 0.0))
     throw InputError(size.place, "a side of the body is not positive", "size: [30, 24, 60]");
-  const YamlSection mesh(section.need("mesh", "mesh: {edge: 6} is what the capture tells"),
-                         "mesh", {"edge", "order"});
+  const YamlSection mesh(section.need("mesh", "mesh: {edge: 6} is what the capture tells"), "mesh",
+                         {"edge", "order"});
   recipe.edge = read_positive(mesh.need("edge", "mesh: {edge: 6}"), "edge of mesh");
   maybe(mesh, "order", recipe.order, 1, 2);
   shape.facet = recipe.edge;
@@ -130,9 +129,9 @@ void read_material(const YamlNode& node, Recipe& recipe) {
 }
 
 void read_cameras(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(node, "cameras",
-                            {"count", "size", "distance", "focal", "azimuth", "spread",
-                             "elevation", "look_at"});
+  const YamlSection section(
+      node, "cameras",
+      {"count", "size", "distance", "focal", "azimuth", "spread", "elevation", "look_at"});
   CameraRecipe& cameras = recipe.cameras;
   cameras.place = node.place;
   maybe(section, "count", cameras.count, 1, 16);
@@ -213,8 +212,7 @@ HiddenRecipe read_hidden(const YamlNode& node) {
     for (const YamlNode::Entry& entry : read_named(*values, "values"))
       hidden.values[entry.key] = {read_number(entry.value, entry.key), entry.place};
   }
-  if (const YamlNode* size = section.find("rms_px"))
-    hidden.rms_px = read_positive(*size, "rms_px");
+  if (const YamlNode* size = section.find("rms_px")) hidden.rms_px = read_positive(*size, "rms_px");
   return hidden;
 }
 

@@ -36,7 +36,7 @@ struct CameraRecipe {
   double distance = 5.0;          ///< from the point looked at, in body heights
   double focal = 0.0;             ///< [px]
   double azimuth = 20.0, spread = 70.0, elevation = 15.0;  ///< [degrees]
-  double look_at = 0.5;           ///< height of the point looked at, in body heights
+  double look_at = 0.5;  ///< height of the point looked at, in body heights
   Place place;
 };
 

@@ -17,7 +17,7 @@ void add_add(CLI::App& app, CommandBody& chosen);
 void add_discover(CLI::App& app, CommandBody& chosen);
 void add_synth(CLI::App& app, CommandBody& chosen);
 
-inline constexpr AddCommand kCommands[] = {add_check,    add_mesh, add_simulate, add_render,
+inline constexpr AddCommand kCommands[] = {add_check,    add_mesh,    add_simulate, add_render,
                                            add_fit,      add_compare, add_diagnose, add_add,
                                            add_discover, add_synth};
 

@@ -39,7 +39,8 @@ examples:
   pull: {force: [0, 0, 0.3]}
   twist: {rotate: 15}
   poke: {use: validate, region: side, force: [-0.05, 0, 0]}
-)" + hidden + truth;
+)" + hidden +
+         truth;
 }
 const char* const kSameAsFit = "truth: {edge_factor: 1, rays_per_axis: 3, visibility_rays: 64}\n";
 const char* const kFast = "truth: {edge_factor: 1, rays_per_axis: 2, visibility_rays: 8}\n";
@@ -186,8 +187,7 @@ TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
 }
 
 TEST_F(SynthTest, DrawsWhatTheRecipeLeavesOpenFromTheSeed) {
-  const std::string text =
-      recipe_text("hidden:\n  - {effect: anisotropy, rms_px: 0.4}\n", kFast);
+  const std::string text = recipe_text("hidden:\n  - {effect: anisotropy, rms_px: 0.4}\n", kFast);
   const Synthesis a = make(text, "a"), b = make(text, "b");
   EXPECT_NEAR(a.hidden.at(0).rms_px, 0.4, 0.02);
   EXPECT_EQ(bytes(a.truth), bytes(b.truth));
