@@ -47,10 +47,12 @@ void read_texture(const YamlNode* node, Recipe& recipe) {
   texture.texel = size.maxCoeff() / 500.0;
   texture.speckle = size.maxCoeff() / 35.0;
   if (!node) return;
-  const YamlSection section(*node, "texture", {"texel", "speckle", "cover", "dark", "bright"});
+  const YamlSection section(*node, "texture",
+                            {"texel", "speckle", "cover", "soft", "dark", "bright"});
   maybe(section, "texel", texture.texel);
   maybe(section, "speckle", texture.speckle);
   maybe(section, "cover", texture.cover, 0.01, 0.95);
+  maybe(section, "soft", texture.soft, 0.01, 1.0);
   maybe(section, "dark", texture.dark, 0.0, 1.0);
   maybe(section, "bright", texture.bright, 0.0, 1.0);
   if (texture.texel < size.maxCoeff() / 6000.0)

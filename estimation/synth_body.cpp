@@ -224,7 +224,7 @@ Image make_texture(const Recipe& recipe, const SynthBody& body) {
   // discs overlap: a share 1 - exp(-n a/A) is covered by n of them
   const int count =
       static_cast<int>(-std::log(1.0 - texture.cover) * body.atlas.prod() / mean_area);
-  const double soft = 1.5;  // width of a speckle's edge [texels]
+  const double soft = std::max(1.5, texture.soft * texture.speckle / texture.texel);  // [texels]
   for (int s = 0; s < count; ++s) {
     const double x = uniform(random, 0.0, width), y = uniform(random, 0.0, height);
     const double radius = 0.5 * texture.speckle * uniform(random, 0.6, 1.35) / texture.texel;
@@ -237,7 +237,8 @@ Image make_texture(const Recipe& recipe, const SynthBody& body) {
       for (int u = std::max(0, static_cast<int>(x) - reach);
            u <= std::min(width - 1, static_cast<int>(x) + reach); ++u) {
         const double inside = radius - std::hypot(u + 0.5 - x, v + 0.5 - y);
-        const double share = std::clamp(0.5 + inside / soft, 0.0, 1.0);
+        const double edge = std::clamp(0.5 + inside / soft, 0.0, 1.0);
+        const double share = edge * edge * (3.0 - 2.0 * edge);  // no kinks
         float& value = image.at(u, v);
         value = static_cast<float>((1.0 - share) * value + share * std::min<double>(value, grey));
       }
