@@ -47,10 +47,12 @@ void read_texture(const YamlNode* node, Recipe& recipe) {
   texture.texel = size.maxCoeff() / 500.0;
   texture.speckle = size.maxCoeff() / 35.0;
   if (!node) return;
-  const YamlSection section(*node, "texture", {"texel", "speckle", "cover", "dark", "bright"});
+  const YamlSection section(*node, "texture",
+                            {"texel", "speckle", "cover", "soft", "dark", "bright"});
   maybe(section, "texel", texture.texel);
   maybe(section, "speckle", texture.speckle);
   maybe(section, "cover", texture.cover, 0.01, 0.95);
+  maybe(section, "soft", texture.soft, 0.01, 1.0);
   maybe(section, "dark", texture.dark, 0.0, 1.0);
   maybe(section, "bright", texture.bright, 0.0, 1.0);
   if (texture.texel < size.maxCoeff() / 6000.0)
@@ -59,21 +61,20 @@ void read_texture(const YamlNode* node, Recipe& recipe) {
 }
 
 void read_body(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(node, "body",
-                            {"shape", "size", "taper", "bumps", "facet", "mesh", "density",
-                             "texture"});
+  const YamlSection section(
+      node, "body", {"shape", "size", "taper", "bumps", "facet", "mesh", "density", "texture"});
   ShapeRecipe& shape = recipe.shape;
   const std::vector<std::string> kinds = {"block", "cylinder", "blob"};
   const YamlNode& kind = section.need("shape", "shape: block, cylinder or blob");
   const std::string chosen = read_choice(kind, "shape of the body", kinds);
-  shape.kind = static_cast<ShapeRecipe::Kind>(
-      std::find(kinds.begin(), kinds.end(), chosen) - kinds.begin());
+  shape.kind =
+      static_cast<ShapeRecipe::Kind>(std::find(kinds.begin(), kinds.end(), chosen) - kinds.begin());
   const YamlNode& size = section.need("size", "size: [30, 24, 60]");
   shape.size = read_vector3(size, "size of the body");
   if (!(shape.size.minCoeff() > 0.0))
     throw InputError(size.place, "a side of the body is not positive", "size: [30, 24, 60]");
-  const YamlSection mesh(section.need("mesh", "mesh: {edge: 6} is what the capture tells"),
-                         "mesh", {"edge", "order"});
+  const YamlSection mesh(section.need("mesh", "mesh: {edge: 6} is what the capture tells"), "mesh",
+                         {"edge", "order"});
   recipe.edge = read_positive(mesh.need("edge", "mesh: {edge: 6}"), "edge of mesh");
   maybe(mesh, "order", recipe.order, 1, 2);
   shape.facet = recipe.edge;
@@ -130,9 +131,9 @@ void read_material(const YamlNode& node, Recipe& recipe) {
 }
 
 void read_cameras(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(node, "cameras",
-                            {"count", "size", "distance", "focal", "azimuth", "spread",
-                             "elevation", "look_at"});
+  const YamlSection section(
+      node, "cameras",
+      {"count", "size", "distance", "focal", "azimuth", "spread", "elevation", "look_at"});
   CameraRecipe& cameras = recipe.cameras;
   cameras.place = node.place;
   maybe(section, "count", cameras.count, 1, 16);
@@ -213,8 +214,7 @@ HiddenRecipe read_hidden(const YamlNode& node) {
     for (const YamlNode::Entry& entry : read_named(*values, "values"))
       hidden.values[entry.key] = {read_number(entry.value, entry.key), entry.place};
   }
-  if (const YamlNode* size = section.find("rms_px"))
-    hidden.rms_px = read_positive(*size, "rms_px");
+  if (const YamlNode* size = section.find("rms_px")) hidden.rms_px = read_positive(*size, "rms_px");
   return hidden;
 }
 

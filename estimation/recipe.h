@@ -27,7 +27,8 @@ struct TextureRecipe {
   double texel = 0.0;    ///< [length]
   double speckle = 0.0;  ///< mean diameter of a speckle [length]
   double cover = 0.5;    ///< share of the surface that speckles cover
-  double dark = 0.12, bright = 0.85;
+  double soft = 0.35;    ///< width of a speckle's edge over its mean diameter
+  double dark = 0.2, bright = 0.8;
 };
 
 struct CameraRecipe {
@@ -36,7 +37,7 @@ struct CameraRecipe {
   double distance = 5.0;          ///< from the point looked at, in body heights
   double focal = 0.0;             ///< [px]
   double azimuth = 20.0, spread = 70.0, elevation = 15.0;  ///< [degrees]
-  double look_at = 0.5;           ///< height of the point looked at, in body heights
+  double look_at = 0.5;  ///< height of the point looked at, in body heights
   Place place;
 };
 

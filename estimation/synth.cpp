@@ -132,8 +132,9 @@ void photograph(const Recipe& recipe, const detail::Truth& truth, const fs::path
       if (options.cancel && *options.cancel) return;
       const std::string& camera = example.photos[k].camera;
       if (options.progress) options.progress(fmt::format("{} by {}", example.name, camera));
-      Image image = comparer.render(truth.model, truth.states[e].q, nullptr, static_cast<int>(k), 0,
-                                    render).I;
+      Image image =
+          comparer.render(truth.model, truth.states[e].q, nullptr, static_cast<int>(k), 0, render)
+              .I;
       const std::string purpose = fmt::format("photo {} {}", example.name, camera);
       add_noise(recipe.noise, Normal(detail::random_of(recipe.seed, purpose)), image);
       write_image(folder / detail::photo_name(recipe, example.name, camera), image);
@@ -214,7 +215,8 @@ std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const
   const fs::path& folder = staging.folder();
   const SynthBody body = write_body(recipe, folder);
   if (options.progress) options.progress("equilibrium of every example");
-  const auto scene = load_scene(true_capture(recipe, body, folder), recipe.truth.edge_factor, false);
+  const auto scene =
+      load_scene(true_capture(recipe, body, folder), recipe.truth.edge_factor, false);
   auto found = detail::find_truth(recipe, scene, options.cancel);
   if (auto* failure = std::get_if<NumericalFailure>(&found)) return std::move(*failure);
   const auto& truth = std::get<detail::Truth>(found);

@@ -1,5 +1,6 @@
 // Captures made from a recipe: a body with a known model and a hidden effect, solved and
-// photographed otherwise than a fit will do it. The tests, the demo and the blind benchmark share it.
+// photographed otherwise than a fit will do it. The tests, the demo and the blind benchmark share
+// it.
 #pragma once
 
 #include <atomic>

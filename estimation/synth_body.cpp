@@ -58,8 +58,11 @@ class Bumps {
 class Grid {
  public:
   Grid(const Recipe& recipe)
-      : shape_(recipe.shape), bumps_(recipe.seed, shape_.kind), nx_(count(shape_.size.x())),
-        ny_(count(shape_.size.y())), nz_(count(shape_.size.z())) {
+      : shape_(recipe.shape),
+        bumps_(recipe.seed, shape_.kind),
+        nx_(count(shape_.size.x())),
+        ny_(count(shape_.size.y())),
+        nz_(count(shape_.size.z())) {
     for (int i = 0; i < nx_; ++i) rim_.push_back({i, 0});
     for (int j = 0; j < ny_; ++j) rim_.push_back({nx_, j});
     for (int i = nx_; i > 0; --i) rim_.push_back({i, ny_});
@@ -171,9 +174,9 @@ class Builder {
   }
 
   void cap(double height) {
-    const Vector2d corner_uv(along_.back() + gap_ + 0.5 * size_.x(),
-                             0.5 * gap_ + (height > 0.0 ? 1.5 * size_.y() + gap_
-                                                        : 0.5 * size_.y()));
+    const Vector2d corner_uv(
+        along_.back() + gap_ + 0.5 * size_.x(),
+        0.5 * gap_ + (height > 0.0 ? 1.5 * size_.y() + gap_ : 0.5 * size_.y()));
     const auto corner = [&](int i, int j) {
       return Corner{grid_.point(i, j, height), corner_uv + grid_.cap(i, j)};
     };
@@ -221,11 +224,12 @@ Image make_texture(const Recipe& recipe, const SynthBody& body) {
   // discs overlap: a share 1 - exp(-n a/A) is covered by n of them
   const int count =
       static_cast<int>(-std::log(1.0 - texture.cover) * body.atlas.prod() / mean_area);
-  const double soft = 1.5;  // width of a speckle's edge [texels]
+  const double soft = std::max(1.5, texture.soft * texture.speckle / texture.texel);  // [texels]
   for (int s = 0; s < count; ++s) {
     const double x = uniform(random, 0.0, width), y = uniform(random, 0.0, height);
     const double radius = 0.5 * texture.speckle * uniform(random, 0.6, 1.35) / texture.texel;
-    const double grey = texture.dark + 0.35 * uniform(random, 0.0, 1.0) * uniform(random, 0.0, 1.0) *
+    const double grey = texture.dark + 0.35 * uniform(random, 0.0, 1.0) *
+                                           uniform(random, 0.0, 1.0) *
                                            (texture.bright - texture.dark);
     const int reach = static_cast<int>(std::ceil(radius + soft));
     for (int v = std::max(0, static_cast<int>(y) - reach);
@@ -233,7 +237,8 @@ Image make_texture(const Recipe& recipe, const SynthBody& body) {
       for (int u = std::max(0, static_cast<int>(x) - reach);
            u <= std::min(width - 1, static_cast<int>(x) + reach); ++u) {
         const double inside = radius - std::hypot(u + 0.5 - x, v + 0.5 - y);
-        const double share = std::clamp(0.5 + inside / soft, 0.0, 1.0);
+        const double edge = std::clamp(0.5 + inside / soft, 0.0, 1.0);
+        const double share = edge * edge * (3.0 - 2.0 * edge);  // no kinks
         float& value = image.at(u, v);
         value = static_cast<float>((1.0 - share) * value + share * std::min<double>(value, grey));
       }

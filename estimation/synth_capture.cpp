@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -19,10 +21,23 @@ double rounded(double x) {
   const double value = std::stod(fmt::format("{:.6g}", x));
   return value == 0.0 ? 0.0 : value;
 }
-Vector3d rounded(const Vector3d& v) { return v.unaryExpr([](double x) { return rounded(x); }); }
+/// Components that rounding has left of a zero become one.
+Vector3d rounded(const Vector3d& v) {
+  const double dust = 1e-9 * v.cwiseAbs().maxCoeff();
+  return v.unaryExpr([dust](double x) { return std::abs(x) <= dust ? 0.0 : rounded(x); });
+}
 
 std::string list(const Vector3d& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
-std::string quoted(const std::string& text) { return nlohmann::json(text).dump(); }
+/// A name as yaml takes it: plain where it is one word of letters that no yaml reader takes for
+/// something else, else as a JSON string.
+std::string quoted(const std::string& text) {
+  const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '/' || c == '.' || c == '-';
+  });
+  const bool word = text.size() > 3 && std::isalpha(static_cast<unsigned char>(text[0]));
+  const bool taken = text == "true" || text == "True" || text == "null" || text == "false";
+  return plain && word && !taken ? text : nlohmann::json(text).dump();
+}
 
 std::string law_text(const MaterialSpec& material) {
   std::string out = "{law: " + material.law;
@@ -54,8 +69,7 @@ std::pair<double, Vector3d> patch(const SurfaceMesh& surface, const std::vector<
 
 std::string camera_text(const Camera& camera) {
   std::string rows;
-  for (int i = 0; i < 3; ++i)
-    rows += (i ? ", " : "") + list(camera.R.row(i).transpose());
+  for (int i = 0; i < 3; ++i) rows += (i ? ", " : "") + list(camera.R.row(i).transpose());
   return fmt::format(
       "  {}:\n    size: [{}, {}]\n    projection: perspective\n"
       "    intrinsics: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n"
@@ -65,7 +79,8 @@ std::string camera_text(const Camera& camera) {
 }
 
 std::string regions_text(const SynthBody& body, const SynthScale& scale) {
-  const Vector3d low = body.surface.X.rowwise().minCoeff(), high = body.surface.X.rowwise().maxCoeff();
+  const Vector3d low = body.surface.X.rowwise().minCoeff(),
+                 high = body.surface.X.rowwise().maxCoeff();
   const double margin = 0.1 * scale.height, thin = 0.0005 * scale.height;
   return fmt::format(
       "regions:\n  base:\n    box: [[{}, {}, {}], [{}, {}, {}]]\n"
@@ -193,7 +208,8 @@ std::string capture_text(const Recipe& recipe, const SynthBody& body, const Capt
   out += "cameras:\n";
   for (const Camera& camera : make_cameras(recipe)) out += camera_text(camera);
   const double strength = recipe.light.sun.norm();
-  const Vector3d toward = strength > 0.0 ? Vector3d(recipe.light.sun / strength) : Vector3d::UnitZ();
+  const Vector3d toward =
+      strength > 0.0 ? Vector3d(recipe.light.sun / strength) : Vector3d::UnitZ();
   fmt::format_to(to, "light:\n  ambient: {}\n  sun: {{toward: {}, strength: {}}}\n",
                  recipe.light.ambient, list(toward), strength);
   const NoiseModel noise = told_noise(recipe.noise);

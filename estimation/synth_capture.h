@@ -33,8 +33,8 @@ NoiseModel told_noise(const NoiseRecipe& noise);
 std::string photo_name(const Recipe& recipe, const std::string& example, const std::string& camera);
 
 struct CaptureText {
-  bool truth = false;   ///< with the true material instead of the told one
-  bool photos = false;  ///< with the photos of all examples by all cameras
+  bool truth = false;                    ///< with the true material instead of the told one
+  bool photos = false;                   ///< with the photos of all examples by all cameras
   std::vector<GripForce> measured = {};  ///< by example; empty: zeros
 };
 std::string capture_text(const Recipe& recipe, const SynthBody& body, const CaptureText& options);

@@ -29,8 +29,8 @@ std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::sol
   std::mutex mutex;
   tbb::parallel_for(size_t{0}, solvers_.size(), [&](size_t e) {
     const ExampleSpec& example = scene_->capture.examples[e];
-    auto solved = solvers_[e].solve(model.energy_of(static_cast<int>(e)),
-                                    model.examples[e].loading, options);
+    auto solved =
+        solvers_[e].solve(model.energy_of(static_cast<int>(e)), model.examples[e].loading, options);
     if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
       const std::lock_guard lock(mutex);
       failed = std::move(*failure);
@@ -60,8 +60,8 @@ std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effec
   std::string why;
   const auto all = effect.candidates(model, &why);
   if (all.empty())
-    throw InputError(hidden.place, fmt::format("`{}` cannot be hidden in this capture", hidden.effect),
-                     why);
+    throw InputError(hidden.place,
+                     fmt::format("`{}` cannot be hidden in this capture", hidden.effect), why);
   if (hidden.variant.empty() && all.size() == 1) return all.front();
   if (hidden.variant.empty() && hidden.drawn) return all[random() % all.size()];
   std::vector<std::string> known;
@@ -71,8 +71,8 @@ std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effec
       fmt::format("write `variant:` with one of the {} here: {}{}", all.size(),
                   fmt::join(known, ", "), known.size() < all.size() ? " ..." : "");
   if (hidden.variant.empty())
-    throw InputError(hidden.place, fmt::format("`{}` can be present in several ways", hidden.effect),
-                     right);
+    throw InputError(hidden.place,
+                     fmt::format("`{}` can be present in several ways", hidden.effect), right);
   throw InputError(hidden.variant_place,
                    fmt::format("`{}` has no variant `{}` here", hidden.effect, hidden.variant),
                    right);
@@ -81,7 +81,8 @@ std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effec
 void check_range(const Parameter& parameter, double value, const Place& place,
                  const std::string& wrong) {
   if (value >= parameter.low && value <= parameter.high) return;
-  throw InputError(place, fmt::format("{}: {} = {:.4g} is out of range", wrong, parameter.name, value),
+  throw InputError(place,
+                   fmt::format("{}: {} = {:.4g} is out of range", wrong, parameter.name, value),
                    fmt::format("between {:.4g} and {:.4g}", parameter.low, parameter.high));
 }
 
@@ -192,7 +193,8 @@ std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, unsigned seed
       return {};
     }
     if (still)
-      throw InputError(hidden.place, fmt::format("`{}` moves nothing in these pictures", hidden.effect),
+      throw InputError(hidden.place,
+                       fmt::format("`{}` moves nothing in these pictures", hidden.effect),
                        "leave rms_px out and give the values as they are");
     factor = std::min(factor * *hidden.rms_px / put.rms_px, largest);
   }

@@ -1,10 +1,11 @@
 // hookeye synth: synthetic photos with a hidden effect.
+#include "estimation/synth.h"
+
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
-#include "estimation/synth.h"
 
 namespace hookeye {
 namespace {

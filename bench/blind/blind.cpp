@@ -1,7 +1,8 @@
 // The blind benchmark: draws recipes, photographs them, lets `hookeye discover` look, scores.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <fmt/format.h>
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
@@ -54,10 +55,10 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   }
   if (!fs::exists(found)) {
     // discover works on the folder alone; the truth beside it is read below, after it has ended
-    const int status = run(fmt::format(
-        "{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
-        quoted(options.hookeye), quoted(capture), quoted(folder / "run"), quoted(found),
-        quoted(folder / "discover.log")));
+    const int status =
+        run(fmt::format("{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
+                        quoted(options.hookeye), quoted(capture), quoted(folder / "run"),
+                        quoted(found), quoted(folder / "discover.log")));
     if (status != 0) {
       failed.status = fmt::format("discover {}", status);
       return failed;

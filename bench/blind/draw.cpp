@@ -50,8 +50,9 @@ std::string draw_recipe(const std::string& effect, unsigned seed) {
       "spread: {:.1f}, elevation: {:.1f}, look_at: 0.52}}\n",
       turn, dice(60, 100), dice(8, 28));
   const double sun = (turn + dice(0, 60)) * 3.14159265358979 / 180.0;
-  out += fmt::format("light: {{ambient: {:.3f}, toward: [{:.3f}, {:.3f}, {:.3f}], strength: 0.6}}\n",
-                     dice(0.2, 0.38), std::cos(sun), std::sin(sun), dice(0.3, 0.9));
+  out +=
+      fmt::format("light: {{ambient: {:.3f}, toward: [{:.3f}, {:.3f}, {:.3f}], strength: 0.6}}\n",
+                  dice(0.2, 0.38), std::cos(sun), std::sin(sun), dice(0.3, 0.9));
   const double bend = 0.014, side = turn / 180.0 * 3.14159265358979;
   out += fmt::format(
       "examples:\n  rest: {{}}\n  pull: {{force: [0, 0, {:.3f}]}}\n"
@@ -59,9 +60,9 @@ std::string draw_recipe(const std::string& effect, unsigned seed) {
       "  press: {{move: [0, 0, {:.4f}]}}\n"
       "  val_oblique: {{use: validate, force: [{:.4f}, {:.4f}, {:.3f}]}}\n"
       "  val_poke: {{use: validate, region: side, force: [{:.4f}, 0, 0]}}\n",
-      dice(0.3, 0.45), bend * dice(0.8, 1.2) * std::cos(side), bend * dice(0.8, 1.2) * std::sin(side),
-      dice.sign() * dice(18, 32), -dice(0.06, 0.1), bend * dice(-1, 1), bend * dice(-1, 1),
-      dice(0.15, 0.3), -dice(0.03, 0.045));
+      dice(0.3, 0.45), bend * dice(0.8, 1.2) * std::cos(side),
+      bend * dice(0.8, 1.2) * std::sin(side), dice.sign() * dice(18, 32), -dice(0.06, 0.1),
+      bend * dice(-1, 1), bend * dice(-1, 1), dice(0.15, 0.3), -dice(0.03, 0.045));
   if (effect != "none")
     out += fmt::format("hidden:\n  - {{effect: {}, rms_px: {:.2f}}}\n", effect, dice(1.5, 3.5));
   return out;

@@ -54,11 +54,12 @@ std::string csv(const std::vector<Score>& scores) {
       "hidden,seed,status,first,right_first,right_or_tie,verdict,added,tie,hidden_px,floor,"
       "fit_before,fit_after,held_out_before,held_out_after,seconds\n";
   for (const Score& s : scores)
-    out += fmt::format("{},{},{},{},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
-                       "{:.0f}\n",
-                       s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(),
-                       s.verdict, fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px,
-                       s.floor, s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds);
+    out += fmt::format(
+        "{},{},{},{},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
+        "{:.0f}\n",
+        s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(), s.verdict,
+        fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px, s.floor, s.fit_before,
+        s.fit_after, s.held_before, s.held_after, s.seconds);
   return out;
 }
 
@@ -126,9 +127,10 @@ std::string confusion_svg(const std::vector<Score>& scores) {
       const int pale = static_cast<int>(255 - 190 * share);
       const std::string fill = hidden == first ? fmt::format("rgb({},{},255)", pale, pale)
                                                : fmt::format("rgb(255,{},{})", pale, pale);
-      out += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" "
-                         "stroke=\"#ccc\"/>\n",
-                         x, y, cell, cell, here ? fill : "#fff");
+      out += fmt::format(
+          "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" "
+          "stroke=\"#ccc\"/>\n",
+          x, y, cell, cell, here ? fill : "#fff");
       if (here)
         out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
                            x + cell / 2, y + cell / 2 + 4, here);

@@ -9,13 +9,13 @@
 namespace hookeye::blind {
 
 struct Score {
-  std::string hidden;         ///< the effect's name, "none"
+  std::string hidden;  ///< the effect's name, "none"
   unsigned seed = 0;
-  std::string status = "ok";  ///< else what went wrong: "synth 3", "discover 3"
-  std::string first = "none"; ///< first named effect
+  std::string status = "ok";   ///< else what went wrong: "synth 3", "discover 3"
+  std::string first = "none";  ///< first named effect
   std::vector<std::string> added, tie;
   std::string verdict;
-  double hidden_px = 0.0;     ///< size of the hidden effect
+  double hidden_px = 0.0;  ///< size of the hidden effect
   double floor = 0.0, fit_before = 0.0, fit_after = 0.0, held_before = 0.0, held_after = 0.0;
   double seconds = 0.0;
 
