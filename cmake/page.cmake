@@ -15,7 +15,7 @@ function(hookeye_page target)
   file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${source}/src/*)
   add_custom_command(
     OUTPUT ${source}/node_modules/.package-lock.json
-    COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error
+    COMMAND ${NPM} install --no-save --no-audit --no-fund --loglevel=error
     DEPENDS ${source}/package.json ${source}/package-lock.json
     WORKING_DIRECTORY ${source}
     COMMENT "Fetching what the page is built with")

@@ -86,7 +86,7 @@ Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
   int photos = 0;
   for (const auto& example : evaluation.examples)
     for (const auto& photo : example.photos) {
-      (example.held_out ? out.held_r2 : out.photo_r2) += photo.r2;
+      (example.held_out ? out.held_r2 : out.photo_r2) += photo.linear_r2;
       (example.held_out ? out.held_count : out.photo_count) += photo.count;
       if (example.held_out) continue;
       const FlowStatistics flow = flow_statistics(photo.flow);

@@ -7,6 +7,13 @@
 
 namespace hookeye {
 
+namespace {
+
+/// What texture and shading errors of another renderer leave over the floor of the rest photos.
+constexpr double kAtFloor = 1.3;
+
+}  // namespace
+
 const char* to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::explained: return "explained";
@@ -29,7 +36,8 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
   // The linear step is a direction more than a length: where even half of it has no equilibrium or
   // is worse than the null, the fit starts from the null.
   FitOptions warm = options;
-  warm.coarse_to_fine = false;
+  // A step from a misfit of more than a pixel may land a speckle away.
+  warm.coarse_to_fine = current.evaluation.rms_px(false) > 1.0;
   std::variant<Fitted, NumericalFailure> result = NumericalFailure{"", 0.0, "not started"};
   for (double share : {1.0, 0.3, 0.0}) {
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
@@ -93,9 +101,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   bool something = false;
   for (const auto& effect : diagnosis.effects)
     something |= effect.testable && effect.evidence >= std::max(kNameable, diagnosis.gate);
-  // A photo's cells carry the structure; 1.3 times the floor is what texture and shading errors of
-  // another renderer leave (docs: The floor).
-  const bool at_floor = chi <= 1.3 * diagnosis.floor.chi;
+  const bool at_floor = chi <= kAtFloor * diagnosis.floor.chi;
   if (why)
     *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
                        something ? ", and an effect of the catalogue still stands out" : "");
@@ -123,13 +129,24 @@ struct Refit {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
+/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
+bool at_floor(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
+}
+
 /// Refits the leaders and scores them on fitted and held-out photos with the correlation of the
 /// best of them. Best first.
 std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(
     Workspace& workspace, const Step& step, const DiscoverOptions& options,
     const DiscoverEvents& events) {
   std::vector<Refit> refits;
-  for (const EffectScore* leader : leaders(step.diagnosis, options.leaders)) {
+  const auto worth = leaders(step.diagnosis, options.leaders);
+  for (const EffectScore* leader : worth) {
+    // Nothing can do better than the floor; once it is reached only a tie in evidence is of use.
+    if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
+        leader->evidence < worth.front()->evidence - kTie)
+      continue;
     if (events.refitting) events.refitting(leader->effect);
     auto result = add_effect(workspace, step.fitted, *leader, options.fit);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {

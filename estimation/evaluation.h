@@ -33,7 +33,11 @@ struct PhotoEvaluation {
   double r2 = 0.0;           ///< plain sum of squared residuals over noise
   double count = 0.0;
   Image model, residual;     ///< pictures only: linear intensity; over noise, NaN = not counted
-  FlowField flow;            ///< pictures only
+  /// Pictures only: what motion would remove the residual (large motions included,
+  /// registration.h), what is left once the pictures are aligned, and the sum of squares of the
+  /// residual made linear, which `sums` hold too when pictures are on.
+  FlowField flow, aligned;
+  double linear_r2 = 0.0;
   double chi() const;
 };
 

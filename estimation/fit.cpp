@@ -110,8 +110,13 @@ class ReducedCost final : public ceres::CostFunction {
 class Reporter final : public ceres::IterationCallback {
  public:
   Reporter(const FitOptions& options, const ReducedCost& cost, std::string stage, double count,
-           int of)
-      : options_(options), cost_(cost), stage_(std::move(stage)), count_(count), of_(of) {}
+           double misfit, int of)
+      : options_(options),
+        cost_(cost),
+        stage_(std::move(stage)),
+        count_(count),
+        misfit_(misfit),
+        of_(of) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
@@ -125,17 +130,18 @@ class Reporter final : public ceres::IterationCallback {
   /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
   /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
   /// apart in a modulus differ by some 1e-5). A refused step that changed next to nothing has met
-  /// the same limit.
+  /// the same limit. A structured misfit moves the parameters by more than noise does: the limit
+  /// grows with its square.
   bool done(const ceres::IterationSummary& summary) const {
     if (summary.step_is_successful)
-      return cost_.promised() < std::max(0.01, 1e-6 * cost_.r2());
+      return cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2());
     return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
   }
 
   const FitOptions& options_;
   const ReducedCost& cost_;
   std::string stage_;
-  double count_;
+  double count_, misfit_;
   int of_;
 };
 
@@ -178,7 +184,8 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   const Evaluation& seen = std::get<Evaluation>(first);
   evaluation.derivatives = true;
   evaluation.pictures = false;
-  evaluation.huber = options.huber > 0.0 ? options.huber * misfit_scale(seen) : 0.0;
+  const double misfit = misfit_scale(seen);
+  evaluation.huber = options.huber > 0.0 ? options.huber * misfit : 0.0;
 
   const Scaling scaling{form.parameters()};
   VectorXd x = scaling.to_x(start);
@@ -203,7 +210,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.logging_type = ceres::SILENT;
   solver.max_num_consecutive_invalid_steps = 8;
   Reporter reporter(options, cost, level > 0 ? fmt::format("1/{} size", 1 << level) : "full size",
-                    photo_count(seen), solver.max_num_iterations);
+                    photo_count(seen), std::min(misfit, 30.0), solver.max_num_iterations);
   solver.callbacks.push_back(&reporter);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);

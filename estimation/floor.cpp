@@ -43,8 +43,8 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
     for (const auto& photo : example.photos) {
-      add_rough_part(photo.flow, cells, cell_count);
-      for (const auto& cell : photo.flow.cells) {
+      add_rough_part(photo.aligned, cells, cell_count);
+      for (const auto& cell : photo.aligned.cells) {
         r2 += cell.r2 - cell.explained;
         count += cell.pixels - 3.0;  // three numbers were fitted to each cell
       }

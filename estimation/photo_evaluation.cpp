@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "estimation/registration.h"
 
 namespace hookeye {
 
@@ -168,14 +171,14 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
 }
 
 /// Normal equations of the counted pixels; Huber weights by iteratively reweighted squares.
-NodeNormalEquations condense(const Rendering& rendering, const Comparison& comparison,
+NodeNormalEquations condense(const Rendering& rendering, const Image& residuals,
                              const Image& sigma, const SurfaceMesh& surface, double blur_variance,
                              double huber, bool normals, bool reference) {
   const auto& pixels = rendering.dI.pixel;
   VectorXd r = VectorXd::Zero(pixels.size()), w = r, Bt_r = r;
   Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
   for (size_t k = 0; k < pixels.size(); ++k) {
-    const double residual = comparison.residual.values[pixels[k]];
+    const double residual = residuals.values[pixels[k]];
     if (std::isnan(residual)) continue;
     const double weight =
         huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
@@ -267,17 +270,24 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       one.plane = static_cast<int>(plane);
       one.r2 = comparison.r2;
       one.count = comparison.count;
+      std::optional<Registration> registered;
+      if (options.pictures && !mask_photo)
+        registered = register_pictures(rendering.I, photo.I, comparison.residual, sigma);
+      const Image& residual = registered ? registered->linear : comparison.residual;
       if (columns) {
         S.photo = columns->dphoto[k];
         S.photo.row(kBlur) *= std::pow(0.25, options.level);  // px^2 of this level
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
-        one.sums = condense(rendering, comparison, sigma, surface.mesh, state.blur_variance,
+        one.sums = condense(rendering, residual, sigma, surface.mesh, state.blur_variance,
                             options.huber, has_light, reference.state != nullptr)
                        .reduce(S);
       }
       one.sums.r2 = comparison.cost;
       if (options.pictures) {
-        one.flow = residual_flow(rendering.I, comparison.residual, sigma);
+        one.flow = residual_flow(rendering.I, residual, sigma);
+        one.aligned = residual_flow(rendering.I, registered ? registered->residual : residual, sigma);
+        for (float r : residual.values)
+          if (!std::isnan(r)) one.linear_r2 += r * r;
         one.model = std::move(rendering.I);
         one.residual = comparison.residual;
       }

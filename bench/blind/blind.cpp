@@ -1,0 +1,113 @@
+// The blind benchmark: draws recipes, photographs them, lets `hookeye discover` look, scores.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <fmt/format.h>
+
+#include "bench/blind/draw.h"
+#include "bench/blind/score.h"
+#include "capture_io/run.h"
+#include "estimation/effect.h"
+#include "estimation/synth.h"
+
+namespace hookeye::blind {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string hookeye = "hookeye", out = "blind-out";
+  std::vector<std::string> effects;
+  unsigned first = 1;
+  int seeds = 3;
+};
+
+std::string quoted(const fs::path& path) {
+  std::string out = "'";
+  for (const char c : path.string()) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// Exit status of a shell command.
+int run(const std::string& command) {
+  const int status = std::system(command.c_str());
+  return status == -1 ? 1 : WEXITSTATUS(status);
+}
+
+/// One capture in a folder of its own. What is there already is not made again.
+Score one(const Options& options, const std::string& effect, unsigned seed) {
+  const fs::path folder = fs::path(options.out) / fmt::format("{}-{}", effect, seed);
+  const fs::path capture = folder / "capture", found = folder / "discover.json";
+  fs::create_directories(folder);
+  const auto start = std::chrono::steady_clock::now();
+  Score failed;
+  failed.hidden = effect;
+  failed.seed = seed;
+  if (!fs::exists(capture)) {
+    write_text(folder / "recipe.yaml", draw_recipe(effect, seed));
+    const int status = run(fmt::format("{} synth {} -o {} 2> {}", quoted(options.hookeye),
+                                       quoted(folder / "recipe.yaml"), quoted(capture),
+                                       quoted(folder / "synth.log")));
+    if (status != 0) {
+      failed.status = fmt::format("synth {}", status);
+      return failed;
+    }
+  }
+  if (!fs::exists(found)) {
+    // discover works on the folder alone; the truth beside it is read below, after it has ended
+    const int status = run(fmt::format(
+        "{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
+        quoted(options.hookeye), quoted(capture), quoted(folder / "run"), quoted(found),
+        quoted(folder / "discover.log")));
+    if (status != 0) {
+      failed.status = fmt::format("discover {}", status);
+      return failed;
+    }
+  }
+  Score done = score(nlohmann::json::parse(read_text(found)),
+                     nlohmann::json::parse(read_text(truth_file(capture))));
+  done.seed = seed;
+  done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return done;
+}
+
+int main_of(int argc, char** argv) {
+  Options options;
+  CLI::App app("Hidden effects drawn by seed: how often is the right one named?");
+  app.add_option("--hookeye", options.hookeye, "The program under test");
+  app.add_option("-o,--out", options.out, "Results; finished captures there are kept");
+  app.add_option("-n,--seeds", options.seeds, "Captures per effect");
+  app.add_option("--first-seed", options.first, "Seed of the first of them");
+  app.add_option("-e,--effects", options.effects,
+                 "Names; `none` hides nothing (default: none and the whole catalogue)")
+      ->delimiter(',');
+  CLI11_PARSE(app, argc, argv);
+  if (options.effects.empty()) {
+    options.effects = {"none"};
+    for (const Effect* effect : catalogue()) options.effects.push_back(effect->name());
+  }
+  std::vector<Score> scores;
+  for (unsigned seed = options.first; seed < options.first + options.seeds; ++seed)
+    for (const std::string& effect : options.effects) {
+      scores.push_back(one(options, effect, seed));
+      const Score& s = scores.back();
+      fmt::print("{} {}: {}, named {}, held out {:.2f} -> {:.2f}, floor {:.2f}\n", s.hidden, s.seed,
+                 s.status, s.first, s.held_before, s.held_after, s.floor);
+      std::fflush(stdout);
+      write_text(fs::path(options.out) / "results.csv", csv(scores));
+      write_text(fs::path(options.out) / "confusion.svg", confusion_svg(scores));
+    }
+  fmt::print("\n{}", summary(scores));
+  return 0;
+}
+
+}  // namespace
+}  // namespace hookeye::blind
+
+int main(int argc, char** argv) {
+  try {
+    return hookeye::blind::main_of(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,142 @@
+#include "bench/blind/score.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace hookeye::blind {
+
+using nlohmann::json;
+
+namespace {
+
+double number(const json& object, const char* key) {
+  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : 0.0;
+}
+
+/// Distance from the floor that is left, as a share of what there was.
+double left(double before, double after, double floor) {
+  return before > floor ? std::max(0.0, after - floor) / (before - floor) : 0.0;
+}
+
+}  // namespace
+
+bool Score::right_or_tie() const {
+  return right_first() || std::find(tie.begin(), tie.end(), hidden) != tie.end();
+}
+
+Score score(const json& run, const json& truth) {
+  Score out;
+  out.hidden = "none";
+  if (!truth["hidden"].empty()) {
+    out.hidden = truth["hidden"][0]["effect"];
+    out.hidden_px = truth["hidden"][0]["rms_px"];
+  }
+  out.verdict = run.value("verdict", "");
+  out.floor = number(run["floor"], "chi");
+  if (run.contains("tie")) out.tie = run["tie"].get<std::vector<std::string>>();
+  const json& steps = run["steps"];
+  for (const json& step : steps)
+    if (step["added"].is_string()) out.added.push_back(step["added"]);
+  if (!out.added.empty()) out.first = out.added.front();
+  out.fit_before = number(steps.front(), "chi_fit");
+  out.fit_after = number(steps.back(), "chi_fit");
+  out.held_before = number(steps.front(), "chi_validate");
+  out.held_after = number(steps.back(), "chi_validate");
+  return out;
+}
+
+std::string csv(const std::vector<Score>& scores) {
+  std::string out =
+      "hidden,seed,status,first,right_first,right_or_tie,verdict,added,tie,hidden_px,floor,"
+      "fit_before,fit_after,held_out_before,held_out_after,seconds\n";
+  for (const Score& s : scores)
+    out += fmt::format("{},{},{},{},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
+                       "{:.0f}\n",
+                       s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(),
+                       s.verdict, fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px,
+                       s.floor, s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds);
+  return out;
+}
+
+std::string summary(const std::vector<Score>& scores) {
+  int guilty = 0, right = 0, tie = 0, innocent = 0, alarms = 0, failed = 0;
+  std::vector<double> share;
+  for (const Score& s : scores) {
+    if (s.status != "ok") {
+      ++failed;
+    } else if (s.hidden == "none") {
+      ++innocent;
+      alarms += s.first != "none";
+    } else {
+      ++guilty;
+      right += s.right_first();
+      tie += s.right_or_tie();
+      share.push_back(left(s.held_before, s.held_after, s.floor));
+    }
+  }
+  std::string out = fmt::format(
+      "right name first      {} of {}\nright or declared tie {} of {}\n"
+      "false alarms          {} of {} captures that hide nothing\nfailed                {}\n",
+      right, guilty, tie, guilty, alarms, innocent, failed);
+  if (!share.empty()) {
+    std::nth_element(share.begin(), share.begin() + share.size() / 2, share.end());
+    out += fmt::format("held-out error over the floor that stays: {:.0f} % in the median\n",
+                       100.0 * share[share.size() / 2]);
+  }
+  return out;
+}
+
+std::string confusion_svg(const std::vector<Score>& scores) {
+  std::set<std::string> names;
+  std::map<std::pair<std::string, std::string>, int> count;
+  std::map<std::string, int> total;
+  for (const Score& s : scores) {
+    if (s.status != "ok") continue;
+    names.insert({s.hidden, s.first});
+    ++count[{s.hidden, s.first}];
+    ++total[s.hidden];
+  }
+  const int cell = 26, left_margin = 210, top = 200, n = static_cast<int>(names.size());
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" "
+      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
+      "fill=\"white\"/>\n<text x=\"8\" y=\"{}\">hidden (rows), named first (columns)</text>\n",
+      left_margin + n * cell + 60, top + n * cell + 40, top + n * cell + 28);
+  int i = 0;
+  for (const auto& name : names) {
+    const int at = i++ * cell + cell / 2 + 4;
+    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", left_margin - 8,
+                       top + at, name);
+    out += fmt::format("<text transform=\"translate({},{}) rotate(-60)\">{}</text>\n",
+                       left_margin + at, top - 8, name);
+  }
+  int row = 0;
+  for (const auto& hidden : names) {
+    int column = 0;
+    for (const auto& first : names) {
+      const auto found = count.find({hidden, first});
+      const int here = found == count.end() ? 0 : found->second;
+      const double share = here ? static_cast<double>(here) / total[hidden] : 0.0;
+      const int x = left_margin + column * cell, y = top + row * cell;
+      // right ones blue, wrong ones red; the paler the rarer
+      const int pale = static_cast<int>(255 - 190 * share);
+      const std::string fill = hidden == first ? fmt::format("rgb({},{},255)", pale, pale)
+                                               : fmt::format("rgb(255,{},{})", pale, pale);
+      out += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" "
+                         "stroke=\"#ccc\"/>\n",
+                         x, y, cell, cell, here ? fill : "#fff");
+      if (here)
+        out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
+                           x + cell / 2, y + cell / 2 + 4, here);
+      ++column;
+    }
+    ++row;
+  }
+  return out + "</svg>\n";
+}
+
+}  // namespace hookeye::blind

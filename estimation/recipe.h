@@ -1,0 +1,115 @@
+// What a synthetic capture is made from: docs/synth.md. Lengths, forces and motions of the examples
+// are told in units of the body, so that one list of examples serves every size and stiffness.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture_io/capture.h"
+
+namespace hookeye {
+
+/// A body that stands on z = 0: flat bottom and top, walls between them.
+struct ShapeRecipe {
+  enum class Kind { block, cylinder, blob } kind = Kind::block;
+  Vector3d size{30.0, 24.0, 60.0};  ///< [length]
+  double taper = 1.0;               ///< width at the top over width at the bottom
+  double bumps = 0.0;               ///< largest bump of the wall over the smaller width
+  double facet = 0.0;               ///< edge of the surface's triangles [length]
+};
+
+struct TextureRecipe {
+  double texel = 0.0;    ///< [length]
+  double speckle = 0.0;  ///< mean diameter of a speckle [length]
+  double cover = 0.5;    ///< share of the surface that speckles cover
+  double dark = 0.12, bright = 0.85;
+};
+
+struct CameraRecipe {
+  int count = 2;
+  int width = 480, height = 360;  ///< [px]
+  double distance = 5.0;          ///< from the point looked at, in body heights
+  double focal = 0.0;             ///< [px]
+  double azimuth = 20.0, spread = 70.0, elevation = 15.0;  ///< [degrees]
+  double look_at = 0.5;           ///< height of the point looked at, in body heights
+  Place place;
+};
+
+struct MaterialRecipe {
+  MaterialSpec truth, told;
+  std::vector<std::string> fit;
+};
+
+struct ExampleRecipe {
+  std::string name;
+  Place place;
+  bool validate = false;
+  std::string region = "grip";
+  std::optional<Vector3d> force;  ///< in shear modulus times area of the grip
+  std::optional<Vector3d> move;   ///< rigid, in body heights
+  double rotate_degrees = 0.0;    ///< rigid, about `axis` through the region's centroid
+  Vector3d axis = Vector3d::UnitZ();
+  bool moves() const { return move.has_value() || rotate_degrees != 0.0; }
+};
+
+/// One effect that the capture does not tell.
+struct HiddenRecipe {
+  struct Value {
+    double number;
+    Place place;
+  };
+  std::string effect, variant;
+  bool drawn = true;                    ///< `values` left out: drawn by the seed, like `variant`
+  std::map<std::string, Value> values;  ///< what is not named stays at its null
+  /// Values are scaled in common until they move the pictures by this much; empty: as they are.
+  std::optional<double> rms_px;
+  Place place, variant_place, values_place;
+};
+
+struct NoiseRecipe {
+  double full_well = 20000.0;  ///< electrons at full scale
+  double read = 0.001;         ///< [full scale]
+  int bits = 8;
+  double force = 0.003;   ///< sigma in shear modulus times area of the grip
+  double moment = 0.003;  ///< the same, times the body's height
+};
+
+/// How the truth is computed: never as the fit will.
+struct TruthRecipe {
+  double edge_factor = 0.7;  ///< edge of the truth's tetrahedra over the told one
+  int order = 2;
+  int rays_per_axis = 5;
+  int visibility_rays = 256;
+};
+
+struct Recipe {
+  std::filesystem::path file;
+  std::string text;  ///< the file's content: goes into the truth file
+  std::string title;
+  unsigned seed = 1;
+  Units units{"mm", "N"};
+  ShapeRecipe shape;
+  double density = 0.0;  ///< told; 0: not
+  double edge = 0.0;     ///< told `mesh:` [length]
+  int order = 2;
+  TextureRecipe texture;
+  MaterialRecipe material;
+  CameraRecipe cameras;
+  LightSpec light;
+  std::vector<ExampleRecipe> examples;
+  std::vector<HiddenRecipe> hidden;
+  NoiseRecipe noise;
+  TruthRecipe truth;
+};
+
+/// Throws InputError with the place of the first fault.
+Recipe read_recipe(const std::filesystem::path& file);
+/// The same from text; `name` stands in places.
+Recipe parse_recipe(const std::string& text, const std::string& name);
+
+}  // namespace hookeye

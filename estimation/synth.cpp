@@ -1,0 +1,238 @@
+#include "estimation/synth.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "capture_io/run.h"
+#include "capture_io/scope.h"
+#include "estimation/photo_evaluation.h"
+#include "estimation/synth_body.h"
+#include "estimation/synth_capture.h"
+#include "estimation/synth_truth.h"
+
+namespace hookeye {
+
+namespace fs = std::filesystem;
+using detail::GripForce;
+using detail::SynthBody;
+using Json = nlohmann::ordered_json;
+
+fs::path truth_file(const fs::path& capture) {
+  fs::path folder = fs::absolute(capture).lexically_normal();
+  if (folder.filename().empty()) folder = folder.parent_path();
+  folder += ".truth.json";
+  return folder;
+}
+
+namespace {
+
+/// A folder that goes away unless it is kept.
+class Staging {
+ public:
+  explicit Staging(const fs::path& out)
+      : folder_(out.parent_path() /
+                fmt::format(".{}.partial-{}", out.filename().string(), ::getpid())) {
+    fs::create_directories(folder_ / "photos");
+  }
+  ~Staging() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+  const fs::path& folder() const { return folder_; }
+  void become(const fs::path& out) { fs::rename(folder_, out); }
+
+ private:
+  fs::path folder_;
+};
+
+/// Normal deviates by Box and Muller: the same with every standard library.
+class Normal {
+ public:
+  explicit Normal(std::mt19937_64 random) : random_(std::move(random)) {}
+  double operator()() {
+    const double u = 1.0 - detail::uniform(random_, 0.0, 1.0);
+    return std::sqrt(-2.0 * std::log(u)) *
+           std::cos(2.0 * EIGEN_PI * detail::uniform(random_, 0.0, 1.0));
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+void write_triangles(const fs::path& file, const std::vector<int>& triangles) {
+  std::string text;
+  for (size_t i = 0; i < triangles.size(); ++i)
+    text += fmt::format("{}{}", triangles[i], i % 16 == 15 ? "\n" : " ");
+  write_text(file, text + "\n");
+}
+
+/// The capture with its true material, all cameras looking at all examples, without pixels.
+Capture true_capture(const Recipe& recipe, const SynthBody& body, const fs::path& folder) {
+  write_text(folder / "capture.yaml", detail::capture_text(recipe, body, {.truth = true}));
+  Capture capture = read_capture(folder);
+  capture.body.order = recipe.truth.order;
+  for (auto& example : capture.examples)
+    for (const Camera& camera : capture.cameras) {
+      PhotoSpec photo;
+      photo.camera = camera.name;
+      photo.place = example.place;
+      example.photos.push_back(photo);
+    }
+  return capture;
+}
+
+/// Refuses a rig that cuts the body off in some picture.
+void check_in_view(const Recipe& recipe, const detail::Truth& truth) {
+  const Scene& scene = *truth.model.scene;
+  for (size_t e = 0; e < truth.states.size(); ++e) {
+    const Matrix3Xd x = scene.body->surface.deformed(scene.body->mesh, truth.states[e].q);
+    for (const PhotoState& photo : truth.model.examples[e].photos) {
+      double beyond = -1e300;
+      for (Eigen::Index v = 0; v < x.cols(); ++v) {
+        const Eigen::Vector2d px = photo.camera.project(x.col(v));
+        beyond = std::max({beyond, -px.x(), -px.y(), px.x() - (photo.camera.width - 1),
+                           px.y() - (photo.camera.height - 1)});
+      }
+      if (!(beyond < 0.0))
+        throw InputError(recipe.cameras.place,
+                         fmt::format("in example {} the body leaves the picture of {} by {:.0f} px",
+                                     scene.capture.examples[e].name, photo.camera.name, beyond),
+                         "a shorter focal length, a longer distance or another look_at");
+    }
+  }
+}
+
+/// Photons as a normal deviate of their variance, read noise on top.
+void add_noise(const NoiseRecipe& noise, Normal normal, Image& image) {
+  for (float& value : image.values) {
+    const double photons = noise.full_well > 0.0 ? std::max(0.0f, value) / noise.full_well : 0.0;
+    value = static_cast<float>(value + std::sqrt(photons) * normal() + noise.read * normal());
+  }
+}
+
+void photograph(const Recipe& recipe, const detail::Truth& truth, const fs::path& folder,
+                const SynthOptions& options) {
+  const auto scene = truth.model.scene;
+  RenderOptions render = render_options(*scene);
+  render.derivatives = false;
+  render.rays_per_axis = recipe.truth.rays_per_axis;
+  render.visibility_rays = recipe.truth.visibility_rays;
+  tbb::parallel_for(size_t{0}, truth.states.size(), [&](size_t e) {
+    const ExampleSpec& example = scene->capture.examples[e];
+    const Scope scope("example " + example.name);
+    PhotoComparer comparer(scene, static_cast<int>(e));
+    for (size_t k = 0; k < example.photos.size(); ++k) {
+      if (options.cancel && *options.cancel) return;
+      const std::string& camera = example.photos[k].camera;
+      if (options.progress) options.progress(fmt::format("{} by {}", example.name, camera));
+      Image image = comparer.render(truth.model, truth.states[e].q, nullptr, static_cast<int>(k), 0,
+                                    render).I;
+      const std::string purpose = fmt::format("photo {} {}", example.name, camera);
+      add_noise(recipe.noise, Normal(detail::random_of(recipe.seed, purpose)), image);
+      write_image(folder / detail::photo_name(recipe, example.name, camera), image);
+    }
+  });
+}
+
+std::vector<GripForce> measure(const Recipe& recipe, const SynthBody& body,
+                               const detail::Truth& truth) {
+  const detail::SynthScale scale = detail::scale_of(recipe, body);
+  std::vector<GripForce> measured;
+  for (size_t e = 0; e < truth.states.size(); ++e) {
+    Normal normal(detail::random_of(recipe.seed, "forces " + recipe.examples[e].name));
+    GripForce grip = truth.states[e].grip;
+    for (int i = 0; i < 3; ++i) grip.force[i] += recipe.noise.force * scale.force * normal();
+    for (int i = 0; i < 3; ++i)
+      grip.moment[i] += recipe.noise.moment * scale.force * scale.height * normal();
+    measured.push_back(grip);
+  }
+  return measured;
+}
+
+Json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
+  const Scene& scene = *truth.model.scene;
+  Json out = {{"hookeye_truth", 1}, {"title", recipe.title}, {"seed", recipe.seed}};
+  for (const auto& [name, value] : recipe.material.truth.parameters)
+    out["material"][name] = value.numbers;
+  out["hidden"] = Json::array();
+  for (const detail::PutIn& put : truth.hidden) {
+    Json values = Json::object();
+    const auto parameters = put.ingredient->parameters();
+    for (size_t i = 0; i < parameters.size(); ++i) values[parameters[i].name] = put.values[i];
+    out["hidden"].push_back({{"effect", put.effect->name()},
+                             {"variant", put.ingredient->variant()},
+                             {"values", values},
+                             {"rms_px", put.rms_px},
+                             {"sentence", put.sentence}});
+  }
+  out["mesh"] = {{"nodes", scene.body->mesh.nodes()},
+                 {"elements", scene.body->mesh.size()},
+                 {"order", scene.body->mesh.order}};
+  for (size_t e = 0; e < truth.states.size(); ++e)
+    if (recipe.examples[e].moves())
+      out["measured"][recipe.examples[e].name] = {
+          {"force", vector_json(truth.states[e].grip.force)},
+          {"moment", vector_json(truth.states[e].grip.moment)}};
+  out["recipe"] = recipe.text;
+  return out;
+}
+
+/// What a capture needs before any example is solved.
+SynthBody write_body(const Recipe& recipe, const fs::path& folder) {
+  SynthBody body = detail::make_shape(recipe);
+  if (body.side.empty())
+    for (const ExampleRecipe& example : recipe.examples)
+      if (example.region == "side")
+        throw InputError(example.place, "the surface is too coarse for the region `side`",
+                         "a smaller `facet` of the body");
+  write_surface_obj(folder / "surface.obj", body.surface);
+  write_image(folder / "albedo.png", detail::make_texture(recipe, body));
+  write_triangles(folder / "grip_faces.txt", body.grip);
+  write_triangles(folder / "side_faces.txt", body.side);
+  return body;
+}
+
+}  // namespace
+
+std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const fs::path& given,
+                                                     const SynthOptions& options) {
+  fs::path out = fs::absolute(given).lexically_normal();
+  if (out.filename().empty()) out = out.parent_path();
+  if (fs::exists(out))
+    throw InputError({given.string()}, "this folder is there already",
+                     "name a new one, or remove it first");
+  Staging staging(out);
+  const fs::path& folder = staging.folder();
+  const SynthBody body = write_body(recipe, folder);
+  if (options.progress) options.progress("equilibrium of every example");
+  const auto scene = load_scene(true_capture(recipe, body, folder), recipe.truth.edge_factor, false);
+  auto found = detail::find_truth(recipe, scene, options.cancel);
+  if (auto* failure = std::get_if<NumericalFailure>(&found)) return std::move(*failure);
+  const auto& truth = std::get<detail::Truth>(found);
+  check_in_view(recipe, truth);
+  photograph(recipe, truth, folder, options);
+  if (options.cancel && *options.cancel) return NumericalFailure{"", 0.0, "cancelled"};
+  write_text(folder / "capture.yaml",
+             detail::capture_text(recipe, body,
+                                  {.photos = true, .measured = measure(recipe, body, truth)}));
+  read_capture(folder);
+  Synthesis result{out, truth_file(out), scene->body->mesh.nodes(), 0, {}};
+  for (const auto& example : scene->capture.examples)
+    result.photos += static_cast<int>(example.photos.size());
+  for (const auto& put : truth.hidden)
+    result.hidden.push_back({put.effect->name(), put.sentence, put.rms_px});
+  write_text(result.truth, truth_json(recipe, truth).dump(1) + "\n");
+  staging.become(out);
+  return result;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,220 @@
+#include "estimation/synth_truth.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "capture_io/yaml_section.h"
+
+namespace hookeye::detail {
+
+TruthSolver::TruthSolver(std::shared_ptr<const Scene> scene, const std::atomic<bool>* cancel)
+    : scene_(std::move(scene)), cancel_(cancel) {
+  for (size_t e = 0; e < scene_->capture.examples.size(); ++e)
+    solvers_.emplace_back(scene_->mesh());
+}
+
+std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::solve(
+    const Model& model) {
+  EquilibriumOptions options;
+  if (cancel_) options.cancelled = [this] { return cancel_->load(); };
+  std::vector<State> states(solvers_.size());
+  std::optional<NumericalFailure> failed;
+  std::mutex mutex;
+  tbb::parallel_for(size_t{0}, solvers_.size(), [&](size_t e) {
+    const ExampleSpec& example = scene_->capture.examples[e];
+    auto solved = solvers_[e].solve(model.energy_of(static_cast<int>(e)),
+                                    model.examples[e].loading, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
+      const std::lock_guard lock(mutex);
+      failed = std::move(*failure);
+      failed->example = example.name;
+      return;
+    }
+    const auto& equilibrium = std::get<Equilibrium>(solved);
+    states[e].q = equilibrium.q;
+    for (const MeasuredSpec& spec : example.measured) {
+      const Region& region = scene_->body->regions.at(spec.region);
+      if (spec.kind == MeasuredSpec::Kind::force)
+        states[e].grip.force = support_force(equilibrium, region) + model.examples[e].force_offset;
+      else
+        states[e].grip.moment = support_moment(equilibrium, region, spec.about);
+    }
+  });
+  if (failed) return std::move(*failed);
+  return states;
+}
+
+namespace {
+
+/// The variant that the recipe names; the only one; or, where values are drawn too, a drawn one.
+std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effect& effect,
+                                         const Model& model, std::mt19937_64& random) {
+  if (auto found = effect.candidate(model, hidden.variant)) return found;
+  std::string why;
+  const auto all = effect.candidates(model, &why);
+  if (all.empty())
+    throw InputError(hidden.place, fmt::format("`{}` cannot be hidden in this capture", hidden.effect),
+                     why);
+  if (hidden.variant.empty() && all.size() == 1) return all.front();
+  if (hidden.variant.empty() && hidden.drawn) return all[random() % all.size()];
+  std::vector<std::string> known;
+  for (const auto& one : all)
+    if (known.size() < 8) known.push_back(fmt::format("\"{}\"", one->variant()));
+  const std::string right =
+      fmt::format("write `variant:` with one of the {} here: {}{}", all.size(),
+                  fmt::join(known, ", "), known.size() < all.size() ? " ..." : "");
+  if (hidden.variant.empty())
+    throw InputError(hidden.place, fmt::format("`{}` can be present in several ways", hidden.effect),
+                     right);
+  throw InputError(hidden.variant_place,
+                   fmt::format("`{}` has no variant `{}` here", hidden.effect, hidden.variant),
+                   right);
+}
+
+void check_range(const Parameter& parameter, double value, const Place& place,
+                 const std::string& wrong) {
+  if (value >= parameter.low && value <= parameter.high) return;
+  throw InputError(place, fmt::format("{}: {} = {:.4g} is out of range", wrong, parameter.name, value),
+                   fmt::format("between {:.4g} and {:.4g}", parameter.low, parameter.high));
+}
+
+VectorXd told_values(const HiddenRecipe& hidden, const std::vector<Parameter>& parameters) {
+  std::vector<std::string> known;
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    values[i] = parameters[i].value;
+    known.push_back(parameters[i].name);
+    const auto given = hidden.values.find(parameters[i].name);
+    if (given == hidden.values.end()) continue;
+    values[i] = given->second.number;
+    check_range(parameters[i], values[i], given->second.place, "the value");
+  }
+  for (const auto& [name, value] : hidden.values)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw InputError(value.place, fmt::format("`{}` has no parameter `{}`", hidden.effect, name),
+                       suggest(name, known));
+  return values;
+}
+
+/// Each parameter one to two typical changes off its null, to a side that its bounds allow.
+VectorXd drawn_values(const std::vector<Parameter>& parameters, std::mt19937_64& random) {
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& p = parameters[i];
+    const double size = uniform(random, 1.0, 2.0) * p.typical;
+    const bool up = random() % 2 == 0;
+    values[i] = p.value + (up ? size : -size);
+    if (values[i] > p.high || values[i] < p.low) values[i] = p.value + (up ? -size : size);
+    values[i] = std::clamp(values[i], p.low, p.high);
+  }
+  return values;
+}
+
+/// Largest factor on values - null that stays within 90 % of the way to every bound.
+double largest_factor(const std::vector<Parameter>& parameters, const VectorXd& null,
+                      const VectorXd& values) {
+  double factor = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const double step = values[i] - null[i];
+    const double bound = step > 0.0 ? parameters[i].high : parameters[i].low;
+    if (step != 0.0) factor = std::min(factor, 0.9 * (bound - null[i]) / step);
+  }
+  return factor;
+}
+
+/// Root mean square of the motion of the surface's points in the fitted pictures.
+double rms_px(const Scene& scene, const Model& a, const std::vector<TruthSolver::State>& in_a,
+              const Model& b, const std::vector<TruthSolver::State>& in_b) {
+  const RenderSurface& surface = scene.body->surface;
+  double sum = 0.0, count = 0.0;
+  for (size_t e = 0; e < in_a.size(); ++e) {
+    if (scene.capture.examples[e].validate) continue;
+    const Matrix3Xd xa = surface.deformed(scene.body->mesh, in_a[e].q);
+    const Matrix3Xd xb = surface.deformed(scene.body->mesh, in_b[e].q);
+    for (size_t k = 0; k < a.examples[e].photos.size(); ++k)
+      for (Eigen::Index v = 0; v < xa.cols(); ++v) {
+        sum += (a.examples[e].photos[k].camera.project(xa.col(v)) -
+                b.examples[e].photos[k].camera.project(xb.col(v)))
+                   .squaredNorm();
+        count += 1.0;
+      }
+  }
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+/// Adds one hidden effect to the truth found so far.
+std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, unsigned seed,
+                                       TruthSolver& solver, Truth& truth) {
+  auto random = random_of(seed, "hidden " + hidden.effect);
+  PutIn put;
+  put.effect = find_effect(hidden.effect);
+  put.ingredient = choose(hidden, *put.effect, truth.model, random);
+  const auto parameters = put.ingredient->parameters();
+  const VectorXd told =
+      hidden.drawn ? drawn_values(parameters, random) : told_values(hidden, parameters);
+  VectorXd null(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) null[i] = parameters[i].value;
+  ModelForm form = truth.form;
+  form.ingredients.push_back(put.ingredient);
+  const Scene& scene = *truth.model.scene;
+  const double largest = hidden.drawn ? largest_factor(parameters, null, told) : 1e300;
+  double factor = std::min(1.0, largest);
+  const int most = hidden.rms_px ? 6 : 1;
+  for (int i = 0; i < most; ++i) {
+    put.values = null + factor * (told - null);
+    for (size_t k = 0; k < parameters.size(); ++k)
+      check_range(parameters[k], put.values[k], hidden.values_place,
+                  fmt::format("{} px cannot be reached", hidden.rms_px.value_or(0.0)));
+    VectorXd p(form.size());
+    p << truth.p, put.values;
+    Model model = form.realise(p);
+    auto solved = solver.solve(model);
+    if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
+    auto& states = std::get<std::vector<TruthSolver::State>>(solved);
+    put.rms_px = rms_px(scene, truth.model, truth.states, model, states);
+    const bool still = !(put.rms_px > 1e-9);  // light, exposure: there is nothing to scale
+    const bool reached = hidden.rms_px && std::abs(put.rms_px / *hidden.rms_px - 1.0) < 0.03;
+    const bool at_bound = factor == largest && put.rms_px < hidden.rms_px.value_or(0.0);
+    if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {
+      put.sentence = put.effect->sentence(truth.model, *put.ingredient, put.values);
+      truth.form = std::move(form);
+      truth.p = std::move(p);
+      truth.model = std::move(model);
+      truth.states = std::move(states);
+      truth.hidden.push_back(std::move(put));
+      return {};
+    }
+    if (still)
+      throw InputError(hidden.place, fmt::format("`{}` moves nothing in these pictures", hidden.effect),
+                       "leave rms_px out and give the values as they are");
+    factor = std::min(factor * *hidden.rms_px / put.rms_px, largest);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::variant<Truth, NumericalFailure> find_truth(const Recipe& recipe,
+                                                 std::shared_ptr<const Scene> scene,
+                                                 const std::atomic<bool>* cancel) {
+  Truth truth;
+  truth.form = base_form(scene);
+  truth.p = truth.form.initial();
+  truth.model = truth.form.realise(truth.p);
+  TruthSolver solver(scene, cancel);
+  auto solved = solver.solve(truth.model);
+  if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
+  truth.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
+  for (const HiddenRecipe& hidden : recipe.hidden)
+    if (auto failure = put_in(hidden, recipe.seed, solver, truth)) return std::move(*failure);
+  return truth;
+}
+
+}  // namespace hookeye::detail

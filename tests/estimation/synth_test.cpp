@@ -1,0 +1,220 @@
+#include "estimation/synth.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "estimation/evaluation.h"
+#include "meshing/surface_mesh.h"
+
+namespace hookeye {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A small block; `{hidden}` and `{truth}` are lines to put in.
+std::string recipe_text(const std::string& hidden = "", const std::string& truth = "") {
+  return R"(hookeye_recipe: 1
+title: small block
+seed: 3
+body:
+  shape: block
+  size: [20, 16, 30]
+  bumps: 0.05
+  facet: 7
+  mesh: {edge: 9}
+  density: 1.07e-9
+  texture: {texel: 0.25, speckle: 2.5}
+material:
+  law: neo-hookean
+  true: {mu: 0.02, kappa_over_mu: 10}
+  told: {mu: 0.02}
+  fit: [mu]
+cameras: {count: 2, size: [96, 120], distance: 6, focal: 420}
+examples:
+  rest: {}
+  pull: {force: [0, 0, 0.3]}
+  twist: {rotate: 15}
+  poke: {use: validate, region: side, force: [-0.05, 0, 0]}
+)" + hidden + truth;
+}
+const char* const kSameAsFit = "truth: {edge_factor: 1, rays_per_axis: 3, visibility_rays: 64}\n";
+const char* const kFast = "truth: {edge_factor: 1, rays_per_axis: 2, visibility_rays: 8}\n";
+const char* const kGravity = "hidden:\n  - {effect: gravity, values: {gravity.z: -9810}}\n";
+
+class SynthTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("hookeye_synth_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  Synthesis make(const std::string& text, const std::string& name) {
+    return std::get<Synthesis>(synthesize(parse_recipe(text, "recipe.yaml"), folder_ / name));
+  }
+  fs::path folder_;
+};
+
+std::string bytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::vector<std::string> files_of(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder).string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+std::string fault(const std::string& text) {
+  try {
+    parse_recipe(text, "recipe.yaml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no fault";
+}
+
+TEST(Recipe, FaultsNameTheirPlaceAndWhatIsRight) {
+  EXPECT_EQ(fault(recipe_text()), "no fault");
+  EXPECT_THAT(fault(replaced(recipe_text(), "bumps:", "bump:")),
+              testing::AllOf(testing::HasSubstr("recipe.yaml:7:3: body has no key `bump`"),
+                             testing::HasSubstr("did you mean `bumps`?")));
+  EXPECT_THAT(fault(replaced(recipe_text(), "shape: block", "shape: blok")),
+              testing::AllOf(testing::HasSubstr("recipe.yaml:5:10:"),
+                             testing::HasSubstr("did you mean `block`?")));
+  EXPECT_THAT(fault(replaced(recipe_text(), "fit: [mu]", "fit: [kappa]")),
+              testing::HasSubstr("recipe.yaml:16:9: the law has no parameter `kappa`"));
+  EXPECT_THAT(fault(replaced(recipe_text(), "rotate: 15", "rotate: 15, force: [0, 0, 1]")),
+              testing::HasSubstr("recipe.yaml:21:3: example twist has a force and a motion"));
+  EXPECT_THAT(fault(recipe_text("hidden:\n  - {effect: gravty, values: {}}\n")),
+              testing::AllOf(testing::HasSubstr("recipe.yaml:24:14: there is no effect `gravty`"),
+                             testing::HasSubstr("did you mean `gravity`?")));
+}
+
+TEST_F(SynthTest, HiddenEffectsMustBeInTheCatalogueAndInRange) {
+  const auto fault_of = [&](const std::string& hidden) -> std::string {
+    try {
+      make(recipe_text(hidden, kFast), "broken");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no fault";
+  };
+  EXPECT_THAT(fault_of("hidden:\n  - {effect: gravity, values: {gravity.w: 1}}\n"),
+              testing::HasSubstr("recipe.yaml:24:32: `gravity` has no parameter `gravity.w`"));
+  EXPECT_THAT(fault_of("hidden:\n  - {effect: anisotropy, values: {anisotropy.k: 0.1}}\n"),
+              testing::HasSubstr("`anisotropy` can be present in several ways"));
+  EXPECT_THAT(fault_of("hidden:\n  - {effect: anisotropy, variant: along (1, 0, 0), "
+                       "values: {anisotropy.k: -9}}\n"),
+              testing::HasSubstr("anisotropy.k = -9 is out of range"));
+  EXPECT_FALSE(fs::exists(folder_ / "broken"));
+  EXPECT_TRUE(fs::is_empty(folder_)) << "a failed synthesis leaves nothing behind";
+}
+
+TEST_F(SynthTest, SameSeedSameBytesAndOtherSeedOtherPhotos) {
+  const std::string text = recipe_text("", kFast);
+  make(text, "a");
+  make(text, "b");
+  make(replaced(text, "seed: 3", "seed: 4"), "c");
+  const auto files = files_of(folder_ / "a");
+  EXPECT_EQ(files, files_of(folder_ / "b"));
+  EXPECT_EQ(files.size(), 5u + 8u);  // yaml, obj, albedo, two face lists, 4 examples by 2 cameras
+  for (const auto& file : files)
+    EXPECT_EQ(bytes(folder_ / "a" / file), bytes(folder_ / "b" / file)) << file;
+  EXPECT_NE(bytes(folder_ / "a/photos/rest_cam0.png"), bytes(folder_ / "c/photos/rest_cam0.png"));
+  EXPECT_NE(bytes(folder_ / "a/albedo.png"), bytes(folder_ / "c/albedo.png"));
+}
+
+TEST_F(SynthTest, TheTruthStandsBesideTheCaptureAndTheCaptureDoesNotTellIt) {
+  const Synthesis made = make(recipe_text(kGravity, kFast), "hiding");
+  EXPECT_EQ(made.truth, folder_ / "hiding.truth.json");
+  EXPECT_THAT(bytes(made.truth), testing::HasSubstr("-9810"));
+  for (const auto& file : files_of(made.capture)) {
+    EXPECT_THAT(file, testing::Not(testing::HasSubstr("truth")));
+    if (fs::path(file).extension() == ".yaml") {
+      EXPECT_THAT(bytes(made.capture / file), testing::Not(testing::HasSubstr("gravity")));
+    }
+  }
+  ASSERT_EQ(made.hidden.size(), 1u);
+  EXPECT_GT(made.hidden[0].rms_px, 0.05);
+  EXPECT_THROW(make(recipe_text(kGravity, kFast), "hiding"), InputError);
+}
+
+TEST_F(SynthTest, ScalesAnEffectToTheAskedSize) {
+  const Synthesis made = make(
+      recipe_text("hidden:\n  - {effect: gravity, values: {gravity.z: -1}, rms_px: 0.5}\n", kFast),
+      "scaled");
+  EXPECT_NEAR(made.hidden.at(0).rms_px, 0.5, 0.02);
+}
+
+TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
+  for (const std::string shape : {"block", "cylinder", "blob"}) {
+    const Recipe recipe =
+        parse_recipe(replaced(recipe_text(), "shape: block", "shape: " + shape), "recipe.yaml");
+    const fs::path folder =
+        fs::temp_directory_path() / ("hookeye_shape_" + std::to_string(getpid()));
+    fs::remove_all(folder);
+    Recipe quick = recipe;
+    quick.truth = {1.0, 1, 1, 0};
+    quick.examples.resize(2);
+    std::get<Synthesis>(synthesize(quick, folder));
+    const SurfaceMesh surface = read_surface(folder / "surface.obj");
+    EXPECT_TRUE(inspect(surface).clean()) << shape << ": " << inspect(surface).describe(surface);
+    EXPECT_EQ(surface.X.row(2).minCoeff(), 0.0);
+    EXPECT_EQ(surface.X.row(2).maxCoeff(), 30.0);
+    for (const auto& corners : surface.uv)
+      for (const auto& uv : corners) {
+        EXPECT_GE(uv.minCoeff(), 0.0);
+        EXPECT_LE(uv.maxCoeff(), 1.0);
+      }
+    fs::remove_all(folder);
+    fs::remove(truth_file(folder));
+  }
+}
+
+TEST_F(SynthTest, DrawsWhatTheRecipeLeavesOpenFromTheSeed) {
+  const std::string text =
+      recipe_text("hidden:\n  - {effect: anisotropy, rms_px: 0.4}\n", kFast);
+  const Synthesis a = make(text, "a"), b = make(text, "b");
+  EXPECT_NEAR(a.hidden.at(0).rms_px, 0.4, 0.02);
+  EXPECT_EQ(bytes(a.truth), bytes(b.truth));
+  EXPECT_THAT(bytes(a.truth), testing::HasSubstr("along ("));
+}
+
+/// Photos and measurements of the truth differ from the true model by their noise alone, where mesh
+/// and sampling are those of the fit.
+TEST_F(SynthTest, PhotosOfTheTruthAgreeWithinNoise) {
+  const Synthesis made = make(recipe_text("", kSameAsFit), "plain");
+  const auto scene = load_scene(read_capture(made.capture));
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  EvaluationOptions options;
+  options.derivatives = false;
+  options.held_out = true;
+  const auto result = workspace.evaluate(form, form.initial(), options);
+  const auto& evaluation = std::get<Evaluation>(result);
+  for (const auto& example : evaluation.examples) {
+    for (const auto& photo : example.photos) {
+      EXPECT_GT(photo.count, 1500.0);
+      // chi^2 of n pixels has the relative standard deviation sqrt(2/n) < 0.037
+      EXPECT_NEAR(photo.chi(), 1.0, 0.06) << scene->capture.examples[example.example].name;
+    }
+    for (const auto& one : example.measured) EXPECT_LT(one.r.cwiseAbs().maxCoeff(), 4.0);
+  }
+}
+
+}  // namespace
+}  // namespace hookeye
