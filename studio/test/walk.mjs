@@ -23,6 +23,7 @@ const folder = mkdtempSync(join(tmpdir(), 'hookeye-page-'));
 const run = join(folder, 'run');
 const tell = (...args) => execFileSync(hookeye, args, {stdio: ['ignore', 'pipe', 'pipe']}).toString();
 const runJson = () => JSON.parse(readFileSync(join(run, 'run.json'), 'utf8'));
+let program;
 const say = (what) => console.log('ok', what);
 
 const browser = await chromium.launch({
@@ -46,6 +47,13 @@ async function open(url, size = {width: 1280, height: 800}, colorScheme = 'light
   await page.goto(url);
   await page.waitForSelector('[role=tab]');
   return {page, faults, close: () => context.close()};
+}
+
+/** Playwright's own waitForFunction needs eval, which the page's policy forbids. */
+async function until(page, what, seconds = 30) {
+  for (const end = Date.now() + 1000 * seconds; Date.now() < end; await page.waitForTimeout(300))
+    if (await page.evaluate(what)) return;
+  throw new Error(`not within ${seconds} s: ${what}`);
 }
 
 async function walk(page, name) {
@@ -83,7 +91,7 @@ async function pixelsAgree(page) {
   const index = await page.evaluate((n) => JSON.parse(document.getElementById('document').textContent)
     .photos.findIndex((p) => p.name === n), name);
   await page.click('#photo-' + index);
-  await page.waitForFunction(() => document.querySelectorAll('.panels canvas').length === 3);
+  await until(page, () => document.querySelectorAll('.panels canvas').length === 3);
   await page.waitForTimeout(600);
   const box = await page.locator('.panels canvas').nth(2).boundingBox();
   let counted = 0;
@@ -150,7 +158,7 @@ async function report() {
 }
 
 async function studio() {
-  const program = spawn(hookeye, ['studio', run], {stdio: ['ignore', 'pipe', 'inherit']});
+  program = spawn(hookeye, ['studio', run], {stdio: ['ignore', 'pipe', 'inherit']});
   const ended = new Promise((resolve) => program.on('exit', resolve));
   const address = await new Promise((resolve, reject) => {
     let text = '';
@@ -179,11 +187,10 @@ async function studio() {
   assert.deepEqual(faults, []);
   await close();  // the refit goes on without the page
   ({page, faults, close} = await open(address));
-  await page.waitForFunction(() => document.querySelectorAll('.steps tbody tr').length === 2 ||
-    document.querySelector('.job.failed'), null, {timeout: 240000});
   await page.click('#tab-add');
-  await page.waitForFunction(() => document.querySelectorAll('.steps tbody tr').length === 2, null, {timeout: 240000});
-  await page.waitForSelector('.job.done', {timeout: 240000});
+  await until(page, () => document.querySelector('.job.done, .job.failed'), 300);
+  assert.equal(await page.locator('.job.failed').count(), 0, await page.textContent('.job'));
+  await until(page, () => document.querySelectorAll('.steps tbody tr').length === 2);
   const chis = await page.$$eval('.steps tbody tr', (rows) => rows.map((r) => Number(r.cells[1].textContent)));
   const stored = runJson().steps.map((s) => s.chi_fit);
   assert.ok(chis[1] < 0.7 * chis[0], `the error does not fall: ${chis}`);
@@ -220,6 +227,7 @@ try {
   await studio();
   await broken();
 } finally {
+  if (program?.exitCode === null) program.kill('SIGTERM');
   await browser.close();
   rmSync(folder, {recursive: true, force: true});
 }
