@@ -241,6 +241,7 @@ EffectScore describe(const Context& context, const Candidate& candidate,
       joint_step(context.evaluation.columns, weighted, score, null_values);
   if (structured > 0.0)
     score.explains = std::clamp(plain.fall(context.sums.fitted.Jtr) / structured, 0.0, 1.0);
+  score.fall = plain.fall(context.sums.fitted.Jtr) / std::max(context.sums.photo_count, 1.0);
   if (held > 0.0)
     score.explains_held_out = std::clamp(
         -change(context.sums.held_out.JtJ, context.sums.held_out.Jtr, step) / held, -1.0, 1.0);
@@ -302,6 +303,15 @@ void weigh(std::vector<EffectScore>& scores) {
 }
 
 }  // namespace
+
+double least_fall(const Floor& floor) {
+  return 0.1 * std::max(0.0, floor.chi * floor.chi - 1.0);
+}
+
+bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
+  return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
+         score.fall >= least_fall(diagnosis.floor);
+}
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options) {

@@ -28,6 +28,7 @@ struct EffectScore {
   int dof = 0;
   double explains = 0.0;    ///< predicted share of (chi^2 - floor^2) removed, fitted photos
   double explains_held_out = 0.0;  ///< the same step on the held-out photos
+  double fall = 0.0;        ///< predicted fall of chi^2 on the fitted photos
   double evidence = 0.0;    ///< log marginal likelihood over the current model
   double p_value = 1.0;     ///< of the largest evidence in the catalogue under the simulated null
   double weight = 0.0;      ///< evidence among the tested effects, summing to one
@@ -57,5 +58,13 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
 /// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
 constexpr double kNameable = 5.0;
 constexpr double kTie = 3.0;
+
+/// Fall of chi^2 below which an effect is not named although noise alone would not give it: a tenth
+/// of what the rest photos keep over their noise after alignment. That part is texture and shading
+/// that the renderer gets wrong, the same way in every photo, so no null of independent noise
+/// covers it. Zero where the rest photos are explained to their noise.
+double least_fall(const Floor& floor);
+/// Testable, above the simulated gate, and above the renderer's own errors.
+bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 
 }  // namespace hookeye

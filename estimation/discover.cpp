@@ -100,7 +100,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   const double chi = fitted.evaluation.chi(false);
   bool something = false;
   for (const auto& effect : diagnosis.effects)
-    something |= effect.testable && effect.evidence >= std::max(kNameable, diagnosis.gate);
+    something |= nameable(effect, diagnosis);
   const bool at_floor = chi <= kAtFloor * diagnosis.floor.chi;
   if (why)
     *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
@@ -115,8 +115,7 @@ namespace {
 std::vector<const EffectScore*> leaders(const Diagnosis& diagnosis, int most) {
   std::vector<const EffectScore*> out;
   for (const auto& effect : diagnosis.effects)
-    if (effect.testable && effect.evidence >= std::max(kNameable, diagnosis.gate) &&
-        static_cast<int>(out.size()) < most)
+    if (nameable(effect, diagnosis) && static_cast<int>(out.size()) < most)
       out.push_back(&effect);
   return out;
 }
@@ -232,7 +231,11 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     const bool held = step.fitted.evaluation.chi(true) > 0.0;
     const bool pays_held_out =
         !held || winner.fitted.evaluation.chi(true) < step.fitted.evaluation.chi(true);
-    if (winner.score < before + kNameable || !pays_held_out) break;
+    const double fell = std::pow(step.fitted.evaluation.chi(false), 2) -
+                        std::pow(winner.fitted.evaluation.chi(false), 2);
+    if (winner.score < before + kNameable || !pays_held_out ||
+        fell < least_fall(step.diagnosis.floor))
+      break;
     Step next;
     next.name = next.added = winner.effect;
     for (const auto& rival : ranked) {

@@ -38,6 +38,7 @@ json effect_json(const EffectScore& score) {
   out["variant"] = score.best->variant();
   out["explains"] = score.explains;
   out["explains_held_out"] = score.explains_held_out;
+  out["fall"] = score.fall;
   out["dof"] = score.dof;
   out["evidence"] = score.evidence;
   out["p_value"] = score.p_value;

@@ -29,7 +29,7 @@ DiscoverEvents events(Run& run, Bench& bench, bool first_is_recorded) {
                  step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true),
                  step.diagnosis.floor.chi);
     for (const auto& effect : step.diagnosis.effects)
-      if (effect.testable && effect.evidence > kNameable)
+      if (nameable(effect, step.diagnosis))
         spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
   };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };

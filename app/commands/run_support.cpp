@@ -146,7 +146,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
     rows.push_back({effect.effect, bar(effect.explains), fmt::format("{:.1f}", effect.evidence),
                     fmt::format("{:.3f}", effect.p_value), fmt::format("{}", effect.dof),
                     confused});
-    if (rows.size() <= 4 && effect.evidence >= kNameable) sentences += "  " + effect.why + "\n";
+    if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += "  " + effect.why + "\n";
   }
   return table(rows) +
          fmt::format("  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
