@@ -17,7 +17,6 @@ void run_diagnose(const std::string& folder, Session& session) {
   options.cancel = &interrupted();
   step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
   record_diagnosis(run, step);
-  record_predictions(run, bench, step, options.cancel);
   session.document = to_json(step.diagnosis);
   session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name,
               step.fitted.evaluation.chi(false), step.diagnosis.floor.chi);

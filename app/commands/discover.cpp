@@ -4,7 +4,6 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
-#include "app/interrupt.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -15,7 +14,7 @@ struct DiscoverArguments {
   std::vector<std::string> without;
 };
 
-DiscoverEvents events(Run& run, Bench& bench, bool first_is_recorded) {
+DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
   auto recorded = std::make_shared<bool>(first_is_recorded);
   DiscoverEvents events;
   events.step = [&run, &bench, recorded](const Step& step) {
@@ -24,7 +23,6 @@ DiscoverEvents events(Run& run, Bench& bench, bool first_is_recorded) {
     else
       record(run, *bench.scene, step);
     *recorded = false;
-    record_predictions(run, bench, step, &interrupted());
     spdlog::info("{}: chi {:.3f} fitted, {:.3f} held out (floor {:.3f})", step.name,
                  step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true),
                  step.diagnosis.floor.chi);

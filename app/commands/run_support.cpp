@@ -7,7 +7,6 @@
 
 #include "app/interrupt.h"
 #include "app/progress.h"
-#include "estimation/effect_prediction.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -77,24 +76,6 @@ void record_diagnosis(Run& run, const Step& step) {
     if (entry.contains("gate")) timeline["steps"].back()["gate"] = entry["gate"];
     timeline["floor"] = to_json(step.diagnosis.floor);
   });
-}
-
-void record_predictions(Run& run, Bench& bench, const Step& step, const std::atomic<bool>* cancel) {
-  constexpr int kShown = 3;  // each costs an equilibrium of every example
-  const auto folder = run.steps().back() / "page";
-  if (!std::filesystem::is_directory(folder)) return;
-  int shown = 0;
-  for (const auto& score : step.diagnosis.effects) {
-    if (!score.testable || !score.best || shown == kShown) continue;
-    ++shown;
-    const auto predicted = predict_effect(bench.workspace, step.fitted, score, cancel);
-    if (cancel && cancel->load()) return;
-    const auto* cells = std::get_if<nlohmann::json>(&predicted);
-    if (!cells) continue;
-    run.add_file(
-        folder, "removes-" + score.effect + ".json",
-        [&](const std::filesystem::path& file) { write_text(file, cells->dump()); }, true);
-  }
 }
 
 std::string parameter_table(const Fitted& fitted) {

@@ -37,10 +37,6 @@ std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 
-/// For the page: what each of the leading effects of the newest step's diagnosis would remove, as
-/// page/removes-EFFECT.json. Effects whose step has no equilibrium are left out.
-void record_predictions(Run& run, Bench& bench, const Step& step, const std::atomic<bool>* cancel);
-
 /// For the terminal, within 100 columns.
 std::string parameter_table(const Fitted& fitted);
 std::string photo_table(const Scene& scene, const Fitted& fitted, const Floor& floor);

@@ -83,7 +83,6 @@ void RefitJob::refit(const AddRequest& request) {
   stage("diagnosing the new step");
   step.diagnosis = value_or_fail(diagnose(bench_->workspace, step.fitted, wanted.diagnosis));
   record_diagnosis(run, step);
-  record_predictions(run, *bench_, step, &cancel_);
   finish("done", fmt::format("χ {:.4g} → {:.4g} on the fitted photos",
                              current.fitted.evaluation.chi(false),
                              step.fitted.evaluation.chi(false)));

@@ -1,17 +1,18 @@
 // The residual that the chosen effect would remove, over the photo and on the body.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, notCounted} from '../colours';
+import {diverging, notCounted, sequential} from '../colours';
 import {figure, spaced} from '../format';
 import {array, field, type StoredArray} from '../parts';
 import {chosenPhoto, run, step} from '../state';
 import {residualScale} from '../compare/frames';
 
-/** Cells of a photo: column, row, root mean square residual now, and with the effect [sigma]. */
+/** photo-cells of every photo: column, row, residual now [sigma rms, signed by its change]. */
 interface Prediction {
   cell_px: number;
   photos: Record<string, {cells: StoredArray}>;
 }
 
+/** Cells: x, y of the corner [px], root mean square residual now, the same with the effect. */
 function draw(canvas: HTMLCanvasElement, prediction: Prediction, name: string): void {
   const entry = run.value.photos.find((p) => p.name === name);
   const told = prediction.photos[name];
@@ -28,6 +29,7 @@ function draw(canvas: HTMLCanvasElement, prediction: Prediction, name: string): 
     context.fillRect(cells[i], cells[i + 1], 1, 1);
   }
 }
+void sequential;
 
 export function Removed(props: {effect: string}) {
   const canvas = useRef<HTMLCanvasElement>(null);
