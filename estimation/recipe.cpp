@@ -77,7 +77,8 @@ void read_body(const YamlNode& node, Recipe& recipe) {
                          {"edge", "order"});
   recipe.edge = read_positive(mesh.need("edge", "mesh: {edge: 6}"), "edge of mesh");
   maybe(mesh, "order", recipe.order, 1, 2);
-  shape.facet = recipe.edge;
+  // coarser than the tetrahedra, so that both the truth and the fit divide it
+  shape.facet = 1.5 * recipe.edge;
   maybe(section, "taper", shape.taper, 0.3, 3.0);
   maybe(section, "bumps", shape.bumps, 0.0, 0.3);
   maybe(section, "facet", shape.facet);

@@ -22,7 +22,7 @@ struct Options {
   int seeds = 3;
 };
 
-std::string quoted(const fs::path& path) {
+std::string shell_quoted(const fs::path& path) {
   std::string out = "'";
   for (const char c : path.string()) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return out + "'";
@@ -45,9 +45,9 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   failed.seed = seed;
   if (!fs::exists(capture)) {
     write_text(folder / "recipe.yaml", draw_recipe(effect, seed));
-    const int status = run(fmt::format("{} synth {} -o {} 2> {}", quoted(options.hookeye),
-                                       quoted(folder / "recipe.yaml"), quoted(capture),
-                                       quoted(folder / "synth.log")));
+    const int status = run(fmt::format("{} synth {} -o {} 2> {}", shell_quoted(options.hookeye),
+                                       shell_quoted(folder / "recipe.yaml"), shell_quoted(capture),
+                                       shell_quoted(folder / "synth.log")));
     if (status != 0) {
       failed.status = fmt::format("synth {}", status);
       return failed;
@@ -57,8 +57,8 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
     // discover works on the folder alone; the truth beside it is read below, after it has ended
     const int status =
         run(fmt::format("{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
-                        quoted(options.hookeye), quoted(capture), quoted(folder / "run"),
-                        quoted(found), quoted(folder / "discover.log")));
+                        shell_quoted(options.hookeye), shell_quoted(capture), shell_quoted(folder / "run"),
+                        shell_quoted(found), shell_quoted(folder / "discover.log")));
     if (status != 0) {
       failed.status = fmt::format("discover {}", status);
       return failed;
