@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-
 namespace hookeye {
 namespace {
 
@@ -11,9 +10,9 @@ std::string command_line = "hookeye";
 }  // namespace
 
 std::string shell_word(const std::string& word) {
-  const bool plain =
-      !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                              "0123456789_-./=:,+@%") == std::string::npos;
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789_-./=:,+@%") == std::string::npos;
   if (plain) return word;
   std::string out = "'";
   for (const char c : word) {

@@ -70,7 +70,8 @@ struct Raw {
     const auto& free = e.factor->free();
     std::vector<int> index(e.K.cols(), -1);
     for (size_t i = 0; i < free.size(); ++i) index[free[i]] = static_cast<int>(i);
-    A = cholmod_allocate_sparse(free.size(), free.size(), e.K.nonZeros(), 1, 1, -1, CHOLMOD_REAL, &c);
+    A = cholmod_allocate_sparse(free.size(), free.size(), e.K.nonZeros(), 1, 1, -1, CHOLMOD_REAL,
+                                &c);
     int next = 0, column = 0;
     for (int u : free) {
       static_cast<int*>(A->p)[column++] = next;

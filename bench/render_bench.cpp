@@ -100,15 +100,16 @@ void one_view(benchmark::State& s) {
   options.visibility_rays = 0;
   options.threads = int(s.range(2));
   const Eigen::Index m = s.range(1), nv = 3 * b.surface.X.cols();
-  VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m), {},
+  VertexSensitivity S{Eigen::MatrixXd::Random(nv, m),
+                      Eigen::MatrixXd::Random(nv, m),
+                      {},
                       Eigen::MatrixXd::Random(kPhotoColumns, m)};
   double shift = 0;
   for (auto _ : s) {
     const Matrix3Xd x = b.surface.X.array() + (shift += 1e-3);  // new positions: a refit
     const Rendering r = b.renderer.render(x, nullptr, b.texture, b.state, options, true);
     VectorXd residual(Eigen::Index(r.dI.pixel.size()));
-    for (size_t i = 0; i < r.dI.pixel.size(); ++i)
-      residual[i] = 0.5 - r.I.values[r.dI.pixel[i]];
+    for (size_t i = 0; i < r.dI.pixel.size(); ++i) residual[i] = 0.5 - r.I.values[r.dI.pixel[i]];
     const VectorXd w = VectorXd::Ones(residual.size());
     const auto sums =
         NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, true, false);
@@ -120,8 +121,13 @@ void one_view(benchmark::State& s) {
 BENCHMARK(rays_of_the_library)->Unit(benchmark::kMillisecond);
 BENCHMARK(rays_of_the_product)->Unit(benchmark::kMillisecond);
 BENCHMARK(one_view)
-    ->Args({1, 10, 1})->Args({1, 100, 1})->Args({2, 10, 1})->Args({3, 10, 1})->Args({3, 10, 2})
-    ->Unit(benchmark::kMillisecond)->UseRealTime();
+    ->Args({1, 10, 1})
+    ->Args({1, 100, 1})
+    ->Args({2, 10, 1})
+    ->Args({3, 10, 1})
+    ->Args({3, 10, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace hookeye

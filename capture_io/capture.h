@@ -1,4 +1,5 @@
-// A capture as the user wrote it, validated; immutable after read_capture(). Format: docs/capture.md.
+// A capture as the user wrote it, validated; immutable after read_capture(). Format:
+// docs/capture.md.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,19 +22,31 @@ using Eigen::Vector3d;
 
 /// Names only; numbers in the capture are never converted.
 struct Units {
-  std::string length, force;    ///< "mm" | "m" | "cm" ..., "N" | "mN" | "kN"
-  std::string stress() const;   ///< "MPa" for mm and N, "Pa" for m and N, else "N/cm^2" style
+  std::string length, force;   ///< "mm" | "m" | "cm" ..., "N" | "mN" | "kN"
+  std::string stress() const;  ///< "MPa" for mm and N, "Pa" for m and N, else "N/cm^2" style
   std::string acceleration() const { return length + "/s^2"; }
   /// Factor from SI acceleration m/s^2 to length/s^2.
-  double metre() const;         ///< length units in one metre (1000 for mm)
+  double metre() const;  ///< length units in one metre (1000 for mm)
 };
 
 struct RegionSpec {
-  struct Box { Vector3d low, high; };
-  struct Faces { std::filesystem::path file; std::vector<int> triangles; };
-  struct Sphere { Vector3d center; double radius; };
-  struct Halfspace { Vector3d point, normal; };  ///< (x - point).normal >= 0
-  struct Group { std::string name; };
+  struct Box {
+    Vector3d low, high;
+  };
+  struct Faces {
+    std::filesystem::path file;
+    std::vector<int> triangles;
+  };
+  struct Sphere {
+    Vector3d center;
+    double radius;
+  };
+  struct Halfspace {
+    Vector3d point, normal;
+  };  ///< (x - point).normal >= 0
+  struct Group {
+    std::string name;
+  };
   std::string name;
   Place place;
   std::variant<Box, Faces, Sphere, Halfspace, Group> shape;
@@ -42,7 +55,10 @@ struct RegionSpec {
 /// `law: name` with its numbers; the simulation's registry checks names, counts and ranges and
 /// reports with these places.
 struct MaterialSpec {
-  struct Value { std::vector<double> numbers; Place place; };
+  struct Value {
+    std::vector<double> numbers;
+    Place place;
+  };
   std::string law;
   Place place;
   std::map<std::string, Value> parameters;  ///< "mu" -> {0.05}
@@ -52,17 +68,17 @@ struct MaterialSpec {
 struct BodySpec {
   std::filesystem::path surface, volume;  ///< absolute; either may be empty
   Place surface_place, volume_place;
-  double edge = 0.0;                      ///< target edge [length]; 0: not given
+  double edge = 0.0;  ///< target edge [length]; 0: not given
   int order = 2;
-  bool mesh_given = false;                ///< `mesh:` stands in the capture
-  double density = 0.0;                   ///< [force s^2 / length^4]; 0: not given
+  bool mesh_given = false;  ///< `mesh:` stands in the capture
+  double density = 0.0;     ///< [force s^2 / length^4]; 0: not given
   enum class Texture { none, image, rest, uniform } texture = Texture::none;
   std::filesystem::path texture_image;
   std::optional<Encoding> texture_encoding;
-  std::string texture_example;            ///< of `from: NAME`
-  std::optional<double> uniform_albedo;   ///< empty with Texture::uniform: fitted
+  std::string texture_example;           ///< of `from: NAME`
+  std::optional<double> uniform_albedo;  ///< empty with Texture::uniform: fitted
   bool fit_placement = false;
-  bool flat_shading = false;              ///< shading: flat (default smooth)
+  bool flat_shading = false;  ///< shading: flat (default smooth)
   Place place, texture_place;
 };
 
@@ -114,7 +130,7 @@ struct PhotoSpec {
 
 struct MeasuredSpec {
   enum class Kind { force, moment, position } kind;
-  std::string region;               ///< force_on, moment_on
+  std::string region;  ///< force_on, moment_on
   Vector3d about = Vector3d::Zero();
   Vector3d point = Vector3d::Zero();  ///< position_of: rest point
   Vector3d value;

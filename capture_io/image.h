@@ -1,4 +1,5 @@
-// Photos as linear intensities with a noise model. The only file that touches OpenImageIO is image.cpp.
+// Photos as linear intensities with a noise model. The only file that touches OpenImageIO is
+// image.cpp.
 #pragma once
 
 #include <filesystem>

@@ -11,8 +11,8 @@ struct Parameter {
   std::string unit;       ///< in the capture's units, "" if dimensionless: "MPa", "mm/s^2"
   std::string long_name;  ///< for people: "shear modulus"
   double value = 0.0;
-  double low = -std::numeric_limits<double>::infinity();   ///< bound, not interval
-  double high = std::numeric_limits<double>::infinity();   ///< bound, not interval
+  double low = -std::numeric_limits<double>::infinity();  ///< bound, not interval
+  double high = std::numeric_limits<double>::infinity();  ///< bound, not interval
   double typical = 1.0;   ///< > 0: a change of this size matters; scales steps and columns
   bool positive = false;  ///< fitted as its logarithm
 };

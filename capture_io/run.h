@@ -27,8 +27,8 @@ class Run {
   ~Run();
 
   const std::filesystem::path& folder() const;
-  std::filesystem::path capture() const;   ///< absolute path of the capture's yaml
-  const nlohmann::json& timeline() const;  ///< the content of run.json (product contract)
+  std::filesystem::path capture() const;             ///< absolute path of the capture's yaml
+  const nlohmann::json& timeline() const;            ///< the content of run.json (product contract)
   std::vector<std::filesystem::path> steps() const;  ///< folders of finished steps, in order
 
   /// `write` fills a temporary folder; it becomes steps/NN-NAME only when `write` returned, then

@@ -50,8 +50,7 @@ Model told_model(std::shared_ptr<const Scene> scene) {
   for (const auto& spec : capture.examples) {
     ExampleModel example;
     example.loading = make_loading(capture, spec, mesh, scene->body->regions);
-    for (const auto& photo : spec.photos)
-      example.photos.push_back(told_photo(capture, photo));
+    for (const auto& photo : spec.photos) example.photos.push_back(told_photo(capture, photo));
     model.examples.push_back(std::move(example));
   }
   return model;

@@ -70,9 +70,9 @@ class RigidSupports final : public Ingredient {
         parameter.name =
             fmt::format("{}.{}.{}{}", names_[s], slots_[s].region, turn ? "r" : "t", "xyz"[i % 3]);
         parameter.unit = turn ? "rad" : length_;
-        parameter.long_name = fmt::format("{} of '{}' in '{}' {} {}", turn ? "rotation" : "motion",
-                                          slots_[s].region, names_[s], turn ? "about" : "along",
-                                          "xyz"[i % 3]);
+        parameter.long_name =
+            fmt::format("{} of '{}' in '{}' {} {}", turn ? "rotation" : "motion", slots_[s].region,
+                        names_[s], turn ? "about" : "along", "xyz"[i % 3]);
         parameter.typical = turn ? 0.01 : 0.01 * slots_[s].size;
         all.push_back(parameter);
       }
@@ -144,8 +144,8 @@ class Background final : public Ingredient {
   std::vector<Parameter> parameters() const override {
     std::vector<Parameter> all;
     for (const auto& camera : cameras_)
-      all.push_back({"background." + camera, "", "background level of camera '" + camera + "'",
-                     0.0, -1.0, 10.0, 0.1, false});
+      all.push_back({"background." + camera, "", "background level of camera '" + camera + "'", 0.0,
+                     -1.0, 10.0, 0.1, false});
     return all;
   }
   Touches touches() const override { return {.photos = true}; }
@@ -172,9 +172,8 @@ class Placement final : public Ingredient {
       Parameter parameter;
       parameter.name = fmt::format("placement.{}{}", turn ? "r" : "t", "xyz"[i % 3]);
       parameter.unit = turn ? "rad" : length_;
-      parameter.long_name =
-          fmt::format("{} of the set-up {} {}", turn ? "rotation" : "translation",
-                      turn ? "about" : "along", "xyz"[i % 3]);
+      parameter.long_name = fmt::format("{} of the set-up {} {}", turn ? "rotation" : "translation",
+                                        turn ? "about" : "along", "xyz"[i % 3]);
       parameter.typical = turn ? 0.01 : 0.01 * size_;
       all.push_back(parameter);
     }
@@ -200,8 +199,8 @@ class SelfWeight final : public Ingredient {
   Touches touches() const override { return {.loading = true}; }
   void apply(const Eigen::VectorXd&, Model& model) const override {
     const Vector3d in_body = model.placement.linear().transpose() * gravity_;
-    const auto weight = self_weight(model.scene->body->mesh,
-                                    density_or_one(model.scene->capture), in_body);
+    const auto weight =
+        self_weight(model.scene->body->mesh, density_or_one(model.scene->capture), in_body);
     for (auto& example : model.examples) example.loading.forces.push_back(weight);
     model.gravity += gravity_;
   }
@@ -214,8 +213,7 @@ class SelfWeight final : public Ingredient {
                                     const std::vector<std::string>& known) {
   const std::string& wanted = capture.fit[i];
   const std::string near = nearest_name(wanted, known);
-  throw InputError(capture.fit_places[i],
-                   fmt::format("the material has no parameter '{}'", wanted),
+  throw InputError(capture.fit_places[i], fmt::format("the material has no parameter '{}'", wanted),
                    near.empty() ? fmt::format("one of: {}", fmt::join(known, ", "))
                                 : fmt::format("did you mean '{}'?", near));
 }
@@ -233,8 +231,8 @@ std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
       const auto declared = energy.parts[part].term->parameters(capture.units);
       const std::string& region = capture.materials[part].region;
       for (size_t k = 0; k < declared.size(); ++k) {
-        const std::string qualified = region.empty() ? declared[k].name
-                                                     : region + "." + declared[k].name;
+        const std::string qualified =
+            region.empty() ? declared[k].name : region + "." + declared[k].name;
         known.push_back(qualified);
         if (capture.fit[i] != qualified && capture.fit[i] != declared[k].name) continue;
         Parameter parameter = declared[k];
@@ -305,8 +303,7 @@ Eigen::Isometry3d pose_about(const Vector3d& centre, const Vector3d& rotation,
                              const Vector3d& translation) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   const double angle = rotation.norm();
-  if (angle > 0.0)
-    pose.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+  if (angle > 0.0) pose.linear() = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
   pose.translation() = centre - pose.linear() * centre + translation;
   return pose;
 }

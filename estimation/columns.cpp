@@ -15,19 +15,17 @@ Vector3d rotation_vector(const Eigen::Matrix3d& R) {
 /// Second order everywhere; one-sided where a bound leaves no room.
 Stencil make_stencil(const Parameter& parameter, double value) {
   // A step of 1e-4 of what matters: round-off 1e-16/1e-4, truncation 1e-8 of the third derivative.
-  const double h = 1e-4 * (parameter.positive ? std::max(std::abs(value), 1e-300)
-                                              : parameter.typical);
-  if (value - h < parameter.low)
-    return {{0.0, h, 2 * h}, {-1.5 / h, 2.0 / h, -0.5 / h}};
-  if (value + h > parameter.high)
-    return {{0.0, -h, -2 * h}, {1.5 / h, -2.0 / h, 0.5 / h}};
+  const double h =
+      1e-4 * (parameter.positive ? std::max(std::abs(value), 1e-300) : parameter.typical);
+  if (value - h < parameter.low) return {{0.0, h, 2 * h}, {-1.5 / h, 2.0 / h, -0.5 / h}};
+  if (value + h > parameter.high) return {{0.0, -h, -2 * h}, {1.5 / h, -2.0 / h, 0.5 / h}};
   return {{h, -h}, {0.5 / h, -0.5 / h}};
 }
 
 VectorXd placement_numbers(const Model& model) {
   VectorXd numbers(12);
-  numbers.head<9>() = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(
-      model.placement.linear().eval().data());
+  numbers.head<9>() =
+      Eigen::Map<const Eigen::Matrix<double, 9, 1>>(model.placement.linear().eval().data());
   numbers.tail<3>() = model.placement.translation();
   return numbers;
 }
@@ -98,8 +96,9 @@ void difference_mechanics(const Model& neighbour, double weight, bool energy, in
   const TetMesh& mesh = neighbour.scene->body->mesh;
   const Loading& shifted = neighbour.examples[example].loading;
   if (shifted.prescribed != loading.prescribed)
-    throw std::logic_error("a parameter changes which unknowns are prescribed; its ingredient "
-                           "must give mechanics_derivative()");
+    throw std::logic_error(
+        "a parameter changes which unknowns are prescribed; its ingredient "
+        "must give mechanics_derivative()");
   // Without a touch of the energy only the forces differ: an empty energy spares the elements.
   const EnergyModel shifted_energy = energy ? neighbour.energy_of(example) : EnergyModel{};
   dR += weight * residual(mesh, shifted_energy, shifted, equilibrium.q);
@@ -121,10 +120,9 @@ ExampleColumns ColumnSet::of_example(const Model& model, int example,
   for (int j = 0; j < m; ++j) {
     const Column& column = columns_[j];
     MechanicsDerivative own;
-    const bool known =
-        (column.touches.energy || column.touches.loading) &&
-        column.ingredient->mechanics_derivative(column.values, model, example, equilibrium,
-                                                column.local, own);
+    const bool known = (column.touches.energy || column.touches.loading) &&
+                       column.ingredient->mechanics_derivative(column.values, model, example,
+                                                               equilibrium, column.local, own);
     if (known && own.dR_dt.size() != 0) out.dR.col(j) = own.dR_dt;
     if (known && own.dqc_dt.size() != 0) out.dqc.col(j) = own.dqc_dt;
     for (size_t i = 0; i < column.neighbours.size(); ++i) {

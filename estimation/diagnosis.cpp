@@ -53,10 +53,9 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
       one.hypothesis.count = static_cast<int>(parameters.size());
       one.hypothesis.typical.resize(parameters.size());
       for (size_t i = 0; i < parameters.size(); ++i)
-        one.hypothesis.typical[i] = parameters[i].positive ? std::abs(parameters[i].value)
-                                                           : parameters[i].typical;
-      one.hypothesis.one_sided =
-          parameters.size() == 1 && parameters[0].low >= parameters[0].value;
+        one.hypothesis.typical[i] =
+            parameters[i].positive ? std::abs(parameters[i].value) : parameters[i].typical;
+      one.hypothesis.one_sided = parameters.size() == 1 && parameters[0].low >= parameters[0].value;
       column += one.hypothesis.count;
       all.push_back(std::move(one));
     }
@@ -68,9 +67,9 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
 /// covariance of the score under noise correlated as the residual is.
 struct Sums {
   EffectiveSums effective;
-  Eigen::MatrixXd noise;       ///< covariance of effective.s, correlated as this residual is
-  Eigen::MatrixXd null_noise;  ///< the same when only the floor is left
-  NormalEquations fitted, held_out; ///< plain pixel sums
+  Eigen::MatrixXd noise;             ///< covariance of effective.s, correlated as this residual is
+  Eigen::MatrixXd null_noise;        ///< the same when only the floor is left
+  NormalEquations fitted, held_out;  ///< plain pixel sums
   double pixel_floor2 = 1.0;
   double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
   double whiteness_p = 1.0;
@@ -160,8 +159,7 @@ std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
     const VectorXd s = root * white;
     VectorXd evidence(candidates.size());
     for (size_t i = 0; i < candidates.size(); ++i)
-      evidence[i] =
-          log_evidence(projected[i], s, r2, sums.effective.count, sums.effective.floor2);
+      evidence[i] = log_evidence(projected[i], s, r2, sums.effective.count, sums.effective.floor2);
     double most = 0.0;
     for (const auto& [name, value] : by_effect(candidates, evidence)) most = std::max(most, value);
     largest.push_back(most);
@@ -235,25 +233,22 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   score.base_step = -plain.to_base * t;
   const double structured =
       context.sums.photo_r2 - context.sums.photo_count * context.sums.pixel_floor2;
-  const double held =
-      context.sums.held_r2 - context.sums.held_count * context.sums.pixel_floor2;
-  const VectorXd step =
-      joint_step(context.evaluation.columns, weighted, score, null_values);
+  const double held = context.sums.held_r2 - context.sums.held_count * context.sums.pixel_floor2;
+  const VectorXd step = joint_step(context.evaluation.columns, weighted, score, null_values);
   if (structured > 0.0)
     score.explains = std::clamp(plain.fall(context.sums.fitted.Jtr) / structured, 0.0, 1.0);
   score.fall = plain.fall(context.sums.fitted.Jtr) / std::max(context.sums.photo_count, 1.0);
   if (held > 0.0)
     score.explains_held_out = std::clamp(
         -change(context.sums.held_out.JtJ, context.sums.held_out.Jtr, step) / held, -1.0, 1.0);
-  const Eigen::MatrixXd V = context.sums.noise.block(candidate.hypothesis.first,
-                                                     candidate.hypothesis.first, score.dof,
-                                                     score.dof);
+  const Eigen::MatrixXd V = context.sums.noise.block(
+      candidate.hypothesis.first, candidate.hypothesis.first, score.dof, score.dof);
   const Eigen::MatrixXd inverse = weighted.M.completeOrthogonalDecomposition().pseudoInverse();
   score.standard_error = (inverse * V * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
-  score.why = fmt::format(
-      "{} would remove {:.0f} % of the misfit{}",
-      candidate.effect->sentence(context.model, *candidate.ingredient, score.values),
-      100.0 * score.explains, where_seen(context.scene, context.evaluation, step));
+  score.why =
+      fmt::format("{} would remove {:.0f} % of the misfit{}",
+                  candidate.effect->sentence(context.model, *candidate.ingredient, score.values),
+                  100.0 * score.explains, where_seen(context.scene, context.evaluation, step));
   return score;
 }
 
@@ -281,8 +276,8 @@ void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candi
       if (!other.testable || other.effect == score.effect || other.evidence <= 0.0) continue;
       const Hypothesis& theirs = candidates[best.at(other.effect)].hypothesis;
       const VectorXd projection = block(theirs, mine) * t;
-      const double imitated = projection.dot(
-          block(theirs, theirs).completeOrthogonalDecomposition().solve(projection));
+      const double imitated =
+          projection.dot(block(theirs, theirs).completeOrthogonalDecomposition().solve(projection));
       const double cosine = std::sqrt(std::clamp(imitated / length, 0.0, 1.0));
       // A wrong cause at cosine 0.9 still removes 80 % of the removable error.
       if (cosine > 0.9) score.confused_with.push_back({other.effect, cosine});
@@ -304,9 +299,7 @@ void weigh(std::vector<EffectScore>& scores) {
 
 }  // namespace
 
-double least_fall(const Floor& floor) {
-  return 0.1 * std::max(0.0, floor.chi * floor.chi - 1.0);
-}
+double least_fall(const Floor& floor) { return 0.1 * std::max(0.0, floor.chi * floor.chi - 1.0); }
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
@@ -342,8 +335,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     evidence[i] = log_evidence(projected[i], sums.effective.s, r2, sums.effective.count,
                                sums.effective.floor2);
   }
-  const std::vector<double> null =
-      simulate_null(candidates, projected, sums, options);
+  const std::vector<double> null = simulate_null(candidates, projected, sums, options);
   if (!null.empty()) out.gate = null[static_cast<size_t>(0.95 * (null.size() - 1))];
 
   const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
@@ -359,8 +351,9 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     score.p_value = (1.0 + above) / (1.0 + null.size());
     if (projected[best[name]].best_signal() < 4.0) {
       score.testable = false;
-      score.why_not = "untestable with these photos: a change that would matter moves them by "
-                      "less than two standard deviations";
+      score.why_not =
+          "untestable with these photos: a change that would matter moves them by "
+          "less than two standard deviations";
     }
     out.effects.push_back(std::move(score));
   }

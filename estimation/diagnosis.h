@@ -20,27 +20,27 @@ struct Confusion {
 struct EffectScore {
   std::string effect;
   bool testable = true;
-  std::string why_not;      ///< not applicable, already in the model, or untestable, and why
+  std::string why_not;  ///< not applicable, already in the model, or untestable, and why
   std::shared_ptr<const Ingredient> best;  ///< best candidate
-  VectorXd values;          ///< its parameters after one linear step from the null
-  VectorXd base_step;       ///< what the fitted parameters would do at the same time
-  VectorXd standard_error;  ///< of values, correlated residuals counted
+  VectorXd values;                         ///< its parameters after one linear step from the null
+  VectorXd base_step;                      ///< what the fitted parameters would do at the same time
+  VectorXd standard_error;                 ///< of values, correlated residuals counted
   int dof = 0;
-  double explains = 0.0;    ///< predicted share of (chi^2 - floor^2) removed, fitted photos
+  double explains = 0.0;           ///< predicted share of (chi^2 - floor^2) removed, fitted photos
   double explains_held_out = 0.0;  ///< the same step on the held-out photos
-  double fall = 0.0;        ///< predicted fall of chi^2 on the fitted photos
-  double evidence = 0.0;    ///< log marginal likelihood over the current model
-  double p_value = 1.0;     ///< of the largest evidence in the catalogue under the simulated null
-  double weight = 0.0;      ///< evidence among the tested effects, summing to one
+  double fall = 0.0;               ///< predicted fall of chi^2 on the fitted photos
+  double evidence = 0.0;           ///< log marginal likelihood over the current model
+  double p_value = 1.0;  ///< of the largest evidence in the catalogue under the simulated null
+  double weight = 0.0;   ///< evidence among the tested effects, summing to one
   std::vector<Confusion> confused_with;
-  std::string why;          ///< one plain sentence
+  std::string why;  ///< one plain sentence
 };
 
 struct Diagnosis {
   std::vector<EffectScore> effects;  ///< by falling evidence; untestable ones last
-  double gate = 0.0;          ///< 95 % point of the largest evidence when nothing is missing
+  double gate = 0.0;                 ///< 95 % point of the largest evidence when nothing is missing
   double effective_count = 0.0;
-  double whiteness_p = 1.0;   ///< smallest photo p-value, Bonferroni
+  double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
 };
 

@@ -16,9 +16,12 @@ constexpr double kAtFloor = 1.3;
 
 const char* to_string(Verdict verdict) {
   switch (verdict) {
-    case Verdict::explained: return "explained";
-    case Verdict::ambiguous: return "ambiguous";
-    default: return "unexplained";
+    case Verdict::explained:
+      return "explained";
+    case Verdict::ambiguous:
+      return "ambiguous";
+    default:
+      return "unexplained";
   }
 }
 
@@ -44,10 +47,10 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
     start.head(current.p.size()) = current.p;
     for (int i = 0; i < values.size(); ++i) {
       // the refit form may have other parameters than the scored one: then its own start counts
-      const double from = parameters.size() == static_cast<size_t>(score.values.size()) &&
-                                  ingredient == score.best
-                              ? parameters[i].value
-                              : values[i];
+      const double from =
+          parameters.size() == static_cast<size_t>(score.values.size()) && ingredient == score.best
+              ? parameters[i].value
+              : values[i];
       const double v = from + share * (values[i] - from);
       start[current.p.size() + i] = std::clamp(v, parameters[i].low, parameters[i].high);
     }
@@ -99,8 +102,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
               std::string* why) {
   const double chi = fitted.evaluation.chi(false);
   bool something = false;
-  for (const auto& effect : diagnosis.effects)
-    something |= nameable(effect, diagnosis);
+  for (const auto& effect : diagnosis.effects) something |= nameable(effect, diagnosis);
   const bool at_floor = chi <= kAtFloor * diagnosis.floor.chi;
   if (why)
     *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
@@ -115,8 +117,7 @@ namespace {
 std::vector<const EffectScore*> leaders(const Diagnosis& diagnosis, int most) {
   std::vector<const EffectScore*> out;
   for (const auto& effect : diagnosis.effects)
-    if (nameable(effect, diagnosis) && static_cast<int>(out.size()) < most)
-      out.push_back(&effect);
+    if (nameable(effect, diagnosis) && static_cast<int>(out.size()) < most) out.push_back(&effect);
   return out;
 }
 
@@ -136,9 +137,10 @@ bool at_floor(const Fitted& fitted, const Floor& floor) {
 
 /// Refits the leaders and scores them on fitted and held-out photos with the correlation of the
 /// best of them. Best first.
-std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(
-    Workspace& workspace, const Step& step, const DiscoverOptions& options,
-    const DiscoverEvents& events) {
+std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& workspace,
+                                                                 const Step& step,
+                                                                 const DiscoverOptions& options,
+                                                                 const DiscoverEvents& events) {
   std::vector<Refit> refits;
   const auto worth = leaders(step.diagnosis, options.leaders);
   for (const EffectScore* leader : worth) {
@@ -212,7 +214,8 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
                                                         const DiscoverOptions& options,
                                                         const DiscoverEvents& events) {
   Discovery out;
-  const size_t base_ingredients = base_form(workspace.scene().shared_from_this()).ingredients.size();
+  const size_t base_ingredients =
+      base_form(workspace.scene().shared_from_this()).ingredients.size();
   out.steps.push_back(std::move(first));
   for (int added = 0;; ++added) {
     Step& step = out.steps.back();

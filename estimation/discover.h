@@ -23,17 +23,17 @@ double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& f
 struct DiscoverOptions {
   FitOptions fit;
   DiagnosisOptions diagnosis;
-  int leaders = 3;       ///< effects refitted at each step
+  int leaders = 3;  ///< effects refitted at each step
   int max_effects = 4;
   const std::atomic<bool>* cancel = nullptr;
 };
 
 /// One step of a run.
 struct Step {
-  std::string name;               ///< "base" or the added effect
-  std::string added;              ///< "" for the base
+  std::string name;   ///< "base" or the added effect
+  std::string added;  ///< "" for the base
   Fitted fitted;
-  Diagnosis diagnosis;            ///< of this step's model
+  Diagnosis diagnosis;                                 ///< of this step's model
   std::vector<std::pair<std::string, double>> rivals;  ///< refitted, with score minus the winner's
 };
 
@@ -43,8 +43,8 @@ const char* to_string(Verdict verdict);
 struct Discovery {
   std::vector<Step> steps;
   Verdict verdict = Verdict::unexplained;
-  std::string sentence;           ///< one line: what was missing, how sure, what else
-  std::vector<std::string> tie;   ///< effects that could not be told apart
+  std::string sentence;          ///< one line: what was missing, how sure, what else
+  std::vector<std::string> tie;  ///< effects that could not be told apart
   Floor floor;
 };
 

@@ -21,7 +21,7 @@ class Effect {
   virtual ~Effect() = default;
   virtual std::string name() const = 0;
   virtual EffectGroup group() const = 0;
-  virtual std::string title() const = 0;     ///< "self-weight", for people
+  virtual std::string title() const = 0;  ///< "self-weight", for people
   /// What it is, what it is easily taken for: two sentences for the manual.
   virtual std::string manual() const = 0;
   /// The ways in which the effect can be present in this model (which camera, from which example

@@ -53,8 +53,8 @@ Camera camera_at_level(const Camera& camera, int level) {
 
 struct Workspace::Impl {
   std::shared_ptr<const Scene> scene;
-  std::vector<EquilibriumSolver> solvers;    ///< one per example
-  std::vector<PhotoComparer> comparers;      ///< one per example
+  std::vector<EquilibriumSolver> solvers;  ///< one per example
+  std::vector<PhotoComparer> comparers;    ///< one per example
 
   explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
     for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
@@ -87,8 +87,8 @@ struct Workspace::Impl {
     out.equilibrium = std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved)));
     if (!columns) return {};
     derivative = columns->of_example(model, e, *out.equilibrium);
-    out.S = sensitivities(*out.equilibrium, model.examples[e].loading, derivative.dR,
-                          derivative.dqc);
+    out.S =
+        sensitivities(*out.equilibrium, model.examples[e].loading, derivative.dR, derivative.dqc);
     return {};
   }
 };
@@ -127,8 +127,7 @@ std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model
       for (int a = 0; a < N.size(); ++a) {
         const int node = scene.body->mesh.elements(a, point.element);
         x += N[a] * equilibrium.q.segment<3>(3 * node);
-        if (columns)
-          one.J += N[a] * model.placement.linear() * example.S.middleRows(3 * node, 3);
+        if (columns) one.J += N[a] * model.placement.linear() * example.S.middleRows(3 * node, 3);
       }
       one.predicted = model.placement * x;
       if (columns)
@@ -176,8 +175,8 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   tbb::parallel_for(size_t{0}, to_solve.size(), [&](size_t i) {
     const int e = to_solve[i];
     if (cancelled()) return;
-    failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options, solved[e],
-                               derivative[e]);
+    failures[e] =
+        impl_->solve(model, columns ? &*columns : nullptr, e, options, solved[e], derivative[e]);
   });
   for (int e : to_solve)
     if (failures[e]) return *failures[e];

@@ -18,10 +18,10 @@ namespace hookeye {
 
 struct EvaluationOptions {
   bool derivatives = true;
-  bool pictures = false;   ///< keep model, residual and flow
-  bool fitted = true;      ///< examples with use: fit
-  bool held_out = false;   ///< examples with use: validate
-  int level = 0;           ///< pyramid level: 0 = full size, each level halves
+  bool pictures = false;  ///< keep model, residual and flow
+  bool fitted = true;     ///< examples with use: fit
+  bool held_out = false;  ///< examples with use: validate
+  int level = 0;          ///< pyramid level: 0 = full size, each level halves
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
   const std::atomic<bool>* cancel = nullptr;
@@ -29,10 +29,10 @@ struct EvaluationOptions {
 
 struct PhotoEvaluation {
   int example = 0, photo = 0, plane = 0;
-  CondensedPhoto sums;       ///< over all columns; r2 is the Huber cost when that is on
-  double r2 = 0.0;           ///< plain sum of squared residuals over noise
+  CondensedPhoto sums;  ///< over all columns; r2 is the Huber cost when that is on
+  double r2 = 0.0;      ///< plain sum of squared residuals over noise
   double count = 0.0;
-  Image model, residual;     ///< pictures only: linear intensity; over noise, NaN = not counted
+  Image model, residual;  ///< pictures only: linear intensity; over noise, NaN = not counted
   /// Pictures only: what motion would remove the residual (large motions included,
   /// registration.h), what is left once the pictures are aligned, and the sum of squares of the
   /// residual made linear, which `sums` hold too when pictures are on.

@@ -10,8 +10,7 @@ namespace {
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
   if (H.size() == 0) return H;
   // scaled, because columns of different units differ by many powers of ten
-  const Eigen::VectorXd scale =
-      H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * H *
                                                              scale.asDiagonal());
   Eigen::VectorXd inverse = eigen.eigenvalues();

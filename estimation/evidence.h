@@ -9,26 +9,26 @@ namespace hookeye {
 
 /// Sums over the effective residuals, in units of noise.
 struct EffectiveSums {
-  Eigen::MatrixXd H;   ///< J^T J over all columns, weighted
-  Eigen::VectorXd s;   ///< J^T r, weighted
-  double r2 = 0.0;     ///< |r|^2, weighted
-  double count = 0.0;  ///< N_eff
-  double floor2 = 1.0; ///< least noise variance
+  Eigen::MatrixXd H;    ///< J^T J over all columns, weighted
+  Eigen::VectorXd s;    ///< J^T r, weighted
+  double r2 = 0.0;      ///< |r|^2, weighted
+  double count = 0.0;   ///< N_eff
+  double floor2 = 1.0;  ///< least noise variance
 };
 
 /// A hypothesis: columns of the sums, projected against the first `base` columns.
 struct Hypothesis {
   int first = 0, count = 0;
-  Eigen::VectorXd typical;   ///< prior scale of each parameter
-  bool one_sided = false;    ///< one parameter that may only grow from its null
+  Eigen::VectorXd typical;  ///< prior scale of each parameter
+  bool one_sided = false;   ///< one parameter that may only grow from its null
 };
 
 /// Quadratic form left after the base columns: M = H_cc - H_ca H_aa^+ H_ac, eigen-decomposed in
 /// units of `typical`.
 struct ProjectedHypothesis {
-  Eigen::MatrixXd M;            ///< count x count, parameter units
-  Eigen::MatrixXd to_base;      ///< H_aa^+ H_ac: base x count
-  Eigen::MatrixXd modes;        ///< columns: eigenvectors of D M D
+  Eigen::MatrixXd M;        ///< count x count, parameter units
+  Eigen::MatrixXd to_base;  ///< H_aa^+ H_ac: base x count
+  Eigen::MatrixXd modes;    ///< columns: eigenvectors of D M D
   Eigen::VectorXd eigenvalues;
   Eigen::VectorXd typical;
   int first = 0, base = 0;

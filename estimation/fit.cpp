@@ -31,8 +31,7 @@ struct Scaling {
   }
   VectorXd dp_dx(const VectorXd& p) const {
     VectorXd d(p.size());
-    for (int i = 0; i < p.size(); ++i)
-      d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
+    for (int i = 0; i < p.size(); ++i) d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
     return d;
   }
 };
@@ -121,8 +120,8 @@ class Reporter final : public ceres::IterationCallback {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (options_.progress)
-      options_.progress({stage_, summary.iteration, of_,
-                         std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
+      options_.progress(
+          {stage_, summary.iteration, of_, std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
     return ceres::SOLVER_CONTINUE;
   }
 
@@ -217,10 +216,10 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
   if (summary.termination_type == ceres::FAILURE)
     return cost.failure().value_or(NumericalFailure{"", 0.0, summary.message});
-  return StageResult{scaling.to_p(x), summary.termination_type == ceres::CONVERGENCE ||
+  return StageResult{scaling.to_p(x),
+                     summary.termination_type == ceres::CONVERGENCE ||
                          summary.termination_type == ceres::USER_SUCCESS,
-                     false,
-                     static_cast<int>(summary.iterations.size())};
+                     false, static_cast<int>(summary.iterations.size())};
 }
 
 }  // namespace

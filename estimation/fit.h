@@ -30,9 +30,9 @@ struct FitOptions {
 struct Fitted {
   ModelForm form;
   VectorXd p;
-  VectorXd low, high;         ///< 95 % intervals, not fooled by correlated residuals
+  VectorXd low, high;                     ///< 95 % intervals, not fooled by correlated residuals
   std::vector<std::string> undetermined;  ///< sentences: what these data cannot fix
-  Evaluation evaluation;      ///< fitted and held-out, pictures and derivatives
+  Evaluation evaluation;                  ///< fitted and held-out, pictures and derivatives
   int iterations = 0;
   bool converged = false;
 };

@@ -24,8 +24,7 @@ void add_rough_part(const FlowField& flow, double& sum, double& count) {
   for (const auto& cell : flow.cells) {
     const auto phi = quadratic(flow, cell);
     Eigen::Matrix<double, 3, 18> basis = Eigen::Matrix<double, 3, 18>::Zero();
-    for (int k = 0; k < 6; ++k)
-      basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
+    for (int k = 0; k < 6; ++k) basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
     A += basis.transpose() * cell.information * basis;
     b += basis.transpose() * (cell.information * cell.estimate);
     z2 += cell.z.squaredNorm();

@@ -12,15 +12,15 @@ namespace hookeye {
 
 /// One square cell of a photo. Within it, model - photo = grad(I) . u + I a + noise.
 struct FlowCell {
-  int column, row;                ///< cell indices
-  Eigen::Vector2d centre_px;      ///< mean position of its pixels
+  int column, row;            ///< cell indices
+  Eigen::Vector2d centre_px;  ///< mean position of its pixels
   int pixels;
-  Eigen::Vector3d estimate;       ///< (u_x px, u_y px, a): motion the model lacks, relative gain
-  Eigen::Matrix3d information;    ///< inverse covariance of estimate under white noise
-  Eigen::Vector3d z;              ///< information^(1/2) estimate: N(0, I) when only noise is left
-  double explained;               ///< fall of sum r^2 in this cell by the estimate
-  double r2;                      ///< sum r^2 in this cell
-  bool reliable;                  ///< both directions of u known to better than 1 px
+  Eigen::Vector3d estimate;     ///< (u_x px, u_y px, a): motion the model lacks, relative gain
+  Eigen::Matrix3d information;  ///< inverse covariance of estimate under white noise
+  Eigen::Vector3d z;            ///< information^(1/2) estimate: N(0, I) when only noise is left
+  double explained;             ///< fall of sum r^2 in this cell by the estimate
+  double r2;                    ///< sum r^2 in this cell
+  bool reliable;                ///< both directions of u known to better than 1 px
 };
 
 struct FlowField {
@@ -36,11 +36,13 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
 
 /// Correlation of z over the cells of one photo.
 struct FlowStatistics {
-  double count = 0;       ///< components of z
-  double variance = 0;    ///< mean z^2: 1 when only noise is left
-  double inflation = 1;   ///< sum over lags of cov(z): variance of smooth signatures over white noise
-  double effective = 0;   ///< N_eff = count / sum over lags of rho^2
-  double whiteness_p = 1; ///< p-value of "neighbouring cells are uncorrelated and of unit variance"
+  double count = 0;     ///< components of z
+  double variance = 0;  ///< mean z^2: 1 when only noise is left
+  double inflation =
+      1;  ///< sum over lags of cov(z): variance of smooth signatures over white noise
+  double effective = 0;  ///< N_eff = count / sum over lags of rho^2
+  double whiteness_p =
+      1;  ///< p-value of "neighbouring cells are uncorrelated and of unit variance"
 };
 FlowStatistics flow_statistics(const FlowField& flow);
 

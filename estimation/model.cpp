@@ -15,8 +15,8 @@ EnergyModel Model::energy_of(int example) const {
   return scaled;
 }
 
-bool Ingredient::mechanics_derivative(const Eigen::VectorXd&, const Model&, int,
-                                      const Equilibrium&, int, MechanicsDerivative&) const {
+bool Ingredient::mechanics_derivative(const Eigen::VectorXd&, const Model&, int, const Equilibrium&,
+                                      int, MechanicsDerivative&) const {
   return false;
 }
 

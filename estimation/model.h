@@ -23,16 +23,16 @@ struct Scene : std::enable_shared_from_this<Scene> {
   std::vector<std::vector<Photo>> photos;  ///< [example][photo], order of the capture
   /// Planes of the texture image (1 or 3), each at full size, half, quarter (coarse levels).
   std::vector<std::vector<std::shared_ptr<const Image>>> albedo;
-  std::vector<Image> backgrounds;                    ///< of background: {photo}, else empty
+  std::vector<Image> backgrounds;  ///< of background: {photo}, else empty
   std::shared_ptr<const TetMesh> mesh() const { return {body, &body->mesh}; }
   int example_index(const std::string& name) const;  ///< -1: none
 };
 
 /// One example under the present parameter values.
 struct ExampleModel {
-  double stiffness = 1.0;     ///< factor on the whole energy (history effects)
-  Loading loading;            ///< supports and forces; gravity included
-  std::vector<PhotoState> photos;  ///< order of the example's photos
+  double stiffness = 1.0;                    ///< factor on the whole energy (history effects)
+  Loading loading;                           ///< supports and forces; gravity included
+  std::vector<PhotoState> photos;            ///< order of the example's photos
   Vector3d force_offset = Vector3d::Zero();  ///< added to predicted measured forces (force_zero)
 };
 
@@ -59,8 +59,8 @@ struct Touches {
 /// Derivative of one example by one parameter at fixed q, where an ingredient knows it better than
 /// central differences of apply(): empty vectors mean zero.
 struct MechanicsDerivative {
-  VectorXd dR_dt;    ///< 3n
-  VectorXd dqc_dt;   ///< by loading.prescribed
+  VectorXd dR_dt;   ///< 3n
+  VectorXd dqc_dt;  ///< by loading.prescribed
 };
 struct Equilibrium;
 

@@ -19,7 +19,8 @@ std::string base64(const void* bytes, size_t size) {
   out.reserve((size + 2) / 3 * 4);
   for (size_t i = 0; i < size; i += 3) {
     const unsigned have = static_cast<unsigned>(std::min<size_t>(3, size - i));
-    const unsigned word = in[i] << 16 | (have > 1 ? in[i + 1] << 8 : 0) | (have > 2 ? in[i + 2] : 0);
+    const unsigned word =
+        in[i] << 16 | (have > 1 ? in[i + 1] << 8 : 0) | (have > 2 ? in[i + 2] : 0);
     out += kDigits[word >> 18];
     out += kDigits[word >> 12 & 63];
     out += have > 1 ? kDigits[word >> 6 & 63] : '=';
@@ -52,8 +53,8 @@ json array_json(const Eigen::MatrixXd& values) {
 
 /// The boundary as flat triangles over its own, densely numbered nodes.
 struct Shell {
-  std::vector<int> nodes;      ///< node of the mesh of each shell node
-  std::vector<int> shell_of;   ///< the inverse, -1: inside
+  std::vector<int> nodes;     ///< node of the mesh of each shell node
+  std::vector<int> shell_of;  ///< the inverse, -1: inside
   std::vector<std::array<int, 3>> triangles;
 };
 
@@ -224,10 +225,11 @@ json flow_json(const Scene& scene, const Model& model, const PhotoEvaluation& ph
     const FlowCell& cell = flow.cells[c];
     cells.col(c) << cell.centre_px, cell.estimate.head<2>(), cell.reliable ? 1.0 : 0.0;
   }
-  return {{"cell_px", flow.cell_px},
-          {"rms_px", flow.rms_px()},
-          {"length_per_px", length_per_px(scene, model.examples[photo.example].photos[photo.photo])},
-          {"cells", array_json(cells)}};
+  return {
+      {"cell_px", flow.cell_px},
+      {"rms_px", flow.rms_px()},
+      {"length_per_px", length_per_px(scene, model.examples[photo.example].photos[photo.photo])},
+      {"cells", array_json(cells)}};
 }
 
 json example_json(const Scene& scene, const Model& model, const Shell& shell,
@@ -243,22 +245,20 @@ json example_json(const Scene& scene, const Model& model, const Shell& shell,
   json views = json::array();
   for (const auto& photo : example.photos) {
     const PhotoState& state = model.examples[example.example].photos[photo.photo];
-    sights.push_back(
-        look(shell, q, state.camera, depth_picture(renderer, state, x), 0.01 * size));
+    sights.push_back(look(shell, q, state.camera, depth_picture(renderer, state, x), 0.01 * size));
     views.push_back({{"photo", photo_name(scene, photo)},
                      {"pixel", array_json(sights.back().pixel)},
                      {"seen", array_json(sights.back().seen.transpose())}});
   }
   const ShellFields fields = photo_fields(example.photos, sights, shell.nodes.size());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
-  return {
-      {"displacement", array_json(u)},
-      {"residual", array_json(fields.residual.transpose())},
-      {"gap", array_json(fields.gap)},
-      {"strain",
-       array_json(on_shell(scene, shell, largest_principal(state.green_strain)).transpose())},
-      {"von_mises", array_json(on_shell(scene, shell, state.von_mises).transpose())},
-      {"views", std::move(views)}};
+  return {{"displacement", array_json(u)},
+          {"residual", array_json(fields.residual.transpose())},
+          {"gap", array_json(fields.gap)},
+          {"strain",
+           array_json(on_shell(scene, shell, largest_principal(state.green_strain)).transpose())},
+          {"von_mises", array_json(on_shell(scene, shell, state.von_mises).transpose())},
+          {"views", std::move(views)}};
 }
 
 }  // namespace

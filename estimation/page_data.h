@@ -17,7 +17,8 @@ namespace hookeye {
 ///                         would remove the residual) [length], strain (largest principal Green
 ///                         strain), von_mises [stress]; per photo the node's pixel and whether it
 ///                         is seen
-///   photo-EXAMPLE-CAMERA.json  residual displacement of the photo's cells [px], length of one pixel
+///   photo-EXAMPLE-CAMERA.json  residual displacement of the photo's cells [px], length of one
+///   pixel
 /// Arrays are base64 of little-endian float32 (`{"components": 3, "float32": "..."}`).
 void write_page_data(const std::filesystem::path& folder, const Scene& scene, const Model& model,
                      const Fitted& fitted);

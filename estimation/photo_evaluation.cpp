@@ -91,7 +91,8 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
     return true;
   }
   const int reference = scene.example_index(body.texture_example);
-  const int k = reference_photo(scene, reference, scene.capture.examples[example].photos[photo].camera);
+  const int k =
+      reference_photo(scene, reference, scene.capture.examples[example].photos[photo].camera);
   if (k < 0 || reference == example) return false;
   const Photo& source = scene.photos[reference][k];
   texture.source = Texture::Source::photo;
@@ -138,7 +139,7 @@ bool shows_body(const PhotoPlane& photo, size_t i, double background) {
 }
 
 struct Comparison {
-  Image residual;      ///< NaN: does not count
+  Image residual;  ///< NaN: does not count
   double r2 = 0.0, cost = 0.0, count = 0.0;
 };
 
@@ -158,8 +159,8 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
   for (size_t i = 0; i < photo.I.pixels(); ++i) {
     if (!photo.valid.empty() && !photo.valid[i]) continue;
     const double coverage = rendering.coverage.values[i];
-    const bool counts = silhouette ? coverage > 0.0 || shows_body(photo, i, background)
-                                   : coverage > 1.0 - 1e-6;
+    const bool counts =
+        silhouette ? coverage > 0.0 || shows_body(photo, i, background) : coverage > 1.0 - 1e-6;
     if (!counts) continue;
     const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
     out.residual.values[i] = static_cast<float>(r);
@@ -171,9 +172,9 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
 }
 
 /// Normal equations of the counted pixels; Huber weights by iteratively reweighted squares.
-NodeNormalEquations condense(const Rendering& rendering, const Image& residuals,
-                             const Image& sigma, const SurfaceMesh& surface, double blur_variance,
-                             double huber, bool normals, bool reference) {
+NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
+                             const SurfaceMesh& surface, double blur_variance, double huber,
+                             bool normals, bool reference) {
   const auto& pixels = rendering.dI.pixel;
   VectorXd r = VectorXd::Zero(pixels.size()), w = r, Bt_r = r;
   Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
@@ -262,8 +263,8 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
                                  render_options, silhouette, &photo.valid);
       composite_background(scene, rendering);
       const Image sigma = compared_sigma(photo, texture);
-      const Comparison comparison = compare_pixels(rendering, photo, sigma, silhouette,
-                                                   state.background, options.huber);
+      const Comparison comparison =
+          compare_pixels(rendering, photo, sigma, silhouette, state.background, options.huber);
       PhotoEvaluation one;
       one.example = e;
       one.photo = static_cast<int>(k);
@@ -285,7 +286,8 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       one.sums.r2 = comparison.cost;
       if (options.pictures) {
         one.flow = residual_flow(rendering.I, residual, sigma);
-        one.aligned = residual_flow(rendering.I, registered ? registered->residual : residual, sigma);
+        one.aligned =
+            residual_flow(rendering.I, registered ? registered->residual : residual, sigma);
         for (float r : residual.values)
           if (!std::isnan(r)) one.linear_r2 += r * r;
         one.model = std::move(rendering.I);

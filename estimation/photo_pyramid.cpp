@@ -8,8 +8,7 @@ namespace hookeye {
 Image halved(const Image& image) {
   Image half{image.width / 2, image.height / 2, 1, {}};
   half.values.resize(half.pixels());
-  const cv::Mat source(image.height, image.width, CV_32F,
-                       const_cast<float*>(image.values.data()));
+  const cv::Mat source(image.height, image.width, CV_32F, const_cast<float*>(image.values.data()));
   cv::Mat target(half.height, half.width, CV_32F, half.values.data());
   cv::resize(source(cv::Rect(0, 0, 2 * half.width, 2 * half.height)), target, target.size(), 0, 0,
              cv::INTER_AREA);

@@ -13,7 +13,9 @@ namespace hookeye {
 
 using nlohmann::json;
 
-json to_json(const Floor& floor) { return {{"chi", floor.chi}, {"cell_variance", floor.cell_variance}, {"source", floor.source}}; }
+json to_json(const Floor& floor) {
+  return {{"chi", floor.chi}, {"cell_variance", floor.cell_variance}, {"source", floor.source}};
+}
 
 namespace {
 
@@ -71,19 +73,18 @@ json to_json(const Diagnosis& diagnosis) {
 json timeline_entry(const Step& step) {
   const Fitted& fitted = step.fitted;
   const double held = fitted.evaluation.chi(true);
-  json entry = {
-      {"name", step.name},
-      {"added", step.added.empty() ? json() : json(step.added)},
-      {"chi_fit", fitted.evaluation.chi(false)},
-      {"chi_validate", held > 0.0 ? json(held) : json()},
-      {"rms_px_fit", fitted.evaluation.rms_px(false)},
-      {"rms_px_validate", held > 0.0 ? json(fitted.evaluation.rms_px(true)) : json()},
-      {"converged", fitted.converged},
-      {"iterations", fitted.iterations},
-      {"undetermined", fitted.undetermined},
-      {"parameters",
-       parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high)},
-      {"diagnosis", json::array()}};
+  json entry = {{"name", step.name},
+                {"added", step.added.empty() ? json() : json(step.added)},
+                {"chi_fit", fitted.evaluation.chi(false)},
+                {"chi_validate", held > 0.0 ? json(held) : json()},
+                {"rms_px_fit", fitted.evaluation.rms_px(false)},
+                {"rms_px_validate", held > 0.0 ? json(fitted.evaluation.rms_px(true)) : json()},
+                {"converged", fitted.converged},
+                {"iterations", fitted.iterations},
+                {"undetermined", fitted.undetermined},
+                {"parameters",
+                 parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high)},
+                {"diagnosis", json::array()}};
   if (!step.diagnosis.effects.empty()) {
     const json diagnosis = to_json(step.diagnosis);
     entry["gate"] = diagnosis["gate"];
@@ -114,9 +115,13 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
                          : told.kind == MeasuredSpec::Kind::moment ? "moment_on"
                                                                    : "position_of";
       auto list = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
-      all.push_back({{"example", spec.name}, {"kind", kind}, {"region", told.region},
-                     {"measured", list(told.value)}, {"predicted", list(one.predicted)},
-                     {"sigma", told.sigma}, {"over_sigma", list(one.r)}});
+      all.push_back({{"example", spec.name},
+                     {"kind", kind},
+                     {"region", told.region},
+                     {"measured", list(told.value)},
+                     {"predicted", list(one.predicted)},
+                     {"sigma", told.sigma},
+                     {"over_sigma", list(one.r)}});
     }
   return all;
 }
@@ -157,8 +162,11 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
           {"undetermined", fitted.undetermined},
           {"converged", fitted.converged},
           {"iterations", fitted.iterations},
-          {"mesh", {{"nodes", mesh.nodes}, {"elements", mesh.elements},
-                    {"order", scene.body->mesh.order}, {"mean_edge", mesh.mean_edge}}}};
+          {"mesh",
+           {{"nodes", mesh.nodes},
+            {"elements", mesh.elements},
+            {"order", scene.body->mesh.order},
+            {"mean_edge", mesh.mean_edge}}}};
 }
 
 namespace {
@@ -167,9 +175,9 @@ std::string parameters_csv(const Fitted& fitted) {
   std::string csv = "name,unit,long_name,value,low,high\n";
   const auto parameters = fitted.form.parameters();
   for (size_t i = 0; i < parameters.size(); ++i)
-    csv += fmt::format("{},{},\"{}\",{:.9g},{:.9g},{:.9g}\n", parameters[i].name,
-                       parameters[i].unit, parameters[i].long_name, fitted.p[i], fitted.low[i],
-                       fitted.high[i]);
+    csv +=
+        fmt::format("{},{},\"{}\",{:.9g},{:.9g},{:.9g}\n", parameters[i].name, parameters[i].unit,
+                    parameters[i].long_name, fitted.p[i], fitted.low[i], fitted.high[i]);
   return csv;
 }
 
@@ -180,7 +188,8 @@ void write_photo(const std::filesystem::path& folder, const Scene& scene, const 
   write_image(folder / "residuals" / (name + ".exr"), photo.residual);
   write_residual_png(folder / "residuals" / (name + ".png"), photo.residual);
   write_compare_picture(folder / "compare" / (name + ".png"), shown.planes[photo.plane], photo,
-                        name, length_per_px(scene, model.examples[photo.example].photos[photo.photo]),
+                        name,
+                        length_per_px(scene, model.examples[photo.example].photos[photo.photo]),
                         scene.capture.units.length);
 }
 
@@ -195,7 +204,8 @@ VectorXd nodal_residual(const Scene& scene, const Model& model, const ExampleEva
     for (int a = 0; a < n; ++a) {
       const Eigen::Vector2d px = camera.project(example.equilibrium->q.segment<3>(3 * a));
       if (!px.allFinite()) continue;
-      const int cx = static_cast<int>(std::lround(px.x())), cy = static_cast<int>(std::lround(px.y()));
+      const int cx = static_cast<int>(std::lround(px.x())),
+                cy = static_cast<int>(std::lround(px.y()));
       for (int y = std::max(0, cy - 4); y <= std::min(r.height - 1, cy + 4); ++y)
         for (int x = std::max(0, cx - 4); x <= std::min(r.width - 1, cx + 4); ++x)
           if (!std::isnan(r.at(x, y))) sum[a] += r.at(x, y) * r.at(x, y), count[a] += 1.0;
@@ -237,9 +247,8 @@ void write_step(const std::filesystem::path& folder, const Scene& scene, const S
   write_text(folder / "parameters.csv", parameters_csv(fitted));
   for (const auto& example : fitted.evaluation.examples) {
     for (const auto& photo : example.photos) write_photo(folder, scene, model, photo);
-    write_deformed(
-        folder / "deformed" / (scene.capture.examples[example.example].name + ".vtu"), scene,
-        model, example);
+    write_deformed(folder / "deformed" / (scene.capture.examples[example.example].name + ".vtu"),
+                   scene, model, example);
   }
   write_page_data(folder / "page", scene, model, fitted);
 }

@@ -27,7 +27,7 @@ struct TriangleSoup {
 struct RawVolume {
   Matrix3Xd X;
   Eigen::MatrixXi elements;
-  int lost = 0;  ///< loose nodes that the reader itself left out
+  int lost = 0;                            ///< loose nodes that the reader itself left out
   std::vector<std::string> element_names;  ///< number of each element in the file; empty: 1-based
   std::map<std::string, std::vector<int>> volume_groups;
   std::map<std::string, std::vector<std::array<int, 3>>> face_groups;  ///< corner nodes

@@ -1,4 +1,5 @@
-#define EIGEN_USE_BLAS  // OpenBLAS picks the processor's vectors at run time; Eigen is portable code
+#define EIGEN_USE_BLAS  // OpenBLAS picks the processor's vectors at run time; Eigen is portable
+                        // code
 #include "render/condensed.h"
 
 #include <algorithm>
@@ -60,8 +61,8 @@ struct NodeNormalEquations::Impl {
   int vertices = 0, fields = 1;
   bool has_normals = false, has_reference = false;
   int block() const { return 3 * fields; }
-  std::vector<int> seen;                  ///< vertices that any pixel depends on
-  std::vector<int> slot;                  ///< vertex -> position in `seen`, -1
+  std::vector<int> seen;  ///< vertices that any pixel depends on
+  std::vector<int> slot;  ///< vertex -> position in `seen`, -1
   struct Neighbour {
     int slot;
     size_t at;  ///< of its block in `values`
@@ -71,9 +72,8 @@ struct NodeNormalEquations::Impl {
   MatrixXd with_photo;                      ///< block()*seen x kPhotoColumns
   Eigen::Matrix<double, kPhotoColumns, kPhotoColumns> photo =
       Eigen::Matrix<double, kPhotoColumns, kPhotoColumns>::Zero();
-  VectorXd b;                               ///< block()*seen
-  Eigen::Matrix<double, kPhotoColumns, 1> b_photo =
-      Eigen::Matrix<double, kPhotoColumns, 1>::Zero();
+  VectorXd b;  ///< block()*seen
+  Eigen::Matrix<double, kPhotoColumns, 1> b_photo = Eigen::Matrix<double, kPhotoColumns, 1>::Zero();
   double r2 = 0;
   size_t count = 0;
 
@@ -128,8 +128,7 @@ void fill_row(const SurfaceMesh& surface, const ImageDerivative& dI, const Group
 }  // namespace
 
 void NodeNormalEquations::Impl::add_group(const SurfaceMesh& surface, const ImageDerivative& dI,
-                                          const Group& g, const VectorXd& w,
-                                          const VectorXd& Bt_r) {
+                                          const Group& g, const VectorXd& w, const VectorXd& Bt_r) {
   const int n = block(), nv = static_cast<int>(g.vertices.size()), size = nv * n + kPhotoColumns;
   MatrixXf rows = MatrixXf::Zero(size, static_cast<Eigen::Index>(g.pixels.size()));
   VectorXd gradient = VectorXd::Zero(size);

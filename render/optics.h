@@ -30,14 +30,14 @@ struct PhotoState {
 
 /// Order of the photo-side derivative columns.
 enum PhotoColumn {
-  kRotate = 0,      ///< 3: w of Camera::moved [1/rad]
-  kMove = 3,        ///< 3: v of Camera::moved [1/length]
-  kZoom = 6,        ///< log focal length
-  kLogGain = 7,     ///< log gain
+  kRotate = 0,   ///< 3: w of Camera::moved [1/rad]
+  kMove = 3,     ///< 3: v of Camera::moved [1/length]
+  kZoom = 6,     ///< log focal length
+  kLogGain = 7,  ///< log gain
   kAmbient = 8,
-  kSun = 9,         ///< 3
+  kSun = 9,  ///< 3
   kSpecular = 12,
-  kBlur = 13,       ///< blur variance [1/px^2]
+  kBlur = 13,  ///< blur variance [1/px^2]
   kBackground = 14,
   kPhotoColumns = 15
 };

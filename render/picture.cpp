@@ -51,8 +51,7 @@ class Band {
     Vector2d h[16];
     Sample sample[16];
     const int w = std::min(4, columns_ - x), rows = std::min(4, rows_ - y);
-    for (int i = 0; i < w * rows; ++i)
-      h[i] = task_.grid.h(column0_ + x + i % w, row0_ + y + i / w);
+    for (int i = 0; i < w * rows; ++i) h[i] = task_.grid.h(column0_ + x + i % w, row0_ + y + i / w);
     trace(task_.frame, h, w * rows, sample);
     for (int i = 0; i < w * rows; ++i)
       look(sample[i], &rays_[static_cast<size_t>(y + i / w) * columns_ + x + i % w]);
@@ -197,7 +196,8 @@ void mark_centres(const BandTask& task, const Band& band, int y, Rendering* out)
     const int half = filter.n / 2;  // the mean of the four middle rays is the centre
     for (int i = 0; i < count; ++i)
       h[i] = (task.grid.h((x + i) * filter.n + half - 1, y * filter.n + half - 1) +
-              task.grid.h((x + i) * filter.n + half, y * filter.n + half)) / 2;
+              task.grid.h((x + i) * filter.n + half, y * filter.n + half)) /
+             2;
     trace(task.frame, h, count, sample);
     for (int i = 0; i < count; ++i)
       mark(x + i, sample[i].triangle, float(sample[i].bary[1]), float(sample[i].bary[2]));
@@ -227,8 +227,8 @@ void add_edge(const EdgeSegment& e, size_t begin, ImageDerivative* out) {
       out->segments[s].d_position += e.d_position.cast<float>();
       return;
     }
-  out->segments.push_back({e.triangle, e.d_position.cast<float>(), Eigen::Matrix3f::Zero(),
-                           Eigen::Matrix3f::Zero()});
+  out->segments.push_back(
+      {e.triangle, e.d_position.cast<float>(), Eigen::Matrix3f::Zero(), Eigen::Matrix3f::Zero()});
 }
 
 }  // namespace

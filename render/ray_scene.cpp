@@ -67,14 +67,15 @@ RayScene::RayScene(const std::vector<std::array<int, 3>>& triangles, const Eigen
   epsilon_ = 1e-5 * (high - low).norm();
   Impl& m = *impl_;
   m.scene = rtcNewScene(device());
-  // A LOW quality dynamic scene really refits; a MEDIUM one silently rebuilds at ten times the cost.
+  // A LOW quality dynamic scene really refits; a MEDIUM one silently rebuilds at ten times the
+  // cost.
   rtcSetSceneFlags(m.scene, RTCSceneFlags(RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_ROBUST));
   rtcSetSceneBuildQuality(m.scene, RTC_BUILD_QUALITY_LOW);
   m.geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetGeometryBuildQuality(m.geometry, RTC_BUILD_QUALITY_REFIT);
-  m.vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(m.geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), std::max<size_t>(1, x.cols())));
+  m.vertices = static_cast<float*>(rtcSetNewGeometryBuffer(m.geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                           RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                           std::max<size_t>(1, x.cols())));
   auto* index = static_cast<unsigned*>(
       rtcSetNewGeometryBuffer(m.geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                               3 * sizeof(unsigned), std::max<size_t>(1, triangles.size())));

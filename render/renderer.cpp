@@ -132,10 +132,10 @@ Rendering empty_rendering(const PhotoState& photo) {
 void set_blur_column(const Image& I, ImageDerivative* d) {
   for (size_t i = 0; i < d->pixel.size(); ++i) {
     const int x = d->pixel[i] % I.width, y = d->pixel[i] / I.width;
-    const double sum = double(I.at(std::max(x - 1, 0), y)) +
-                       I.at(std::min(x + 1, I.width - 1), y) + I.at(x, std::max(y - 1, 0)) +
-                       I.at(x, std::min(y + 1, I.height - 1));
-    d->d_photo(kBlur, static_cast<Eigen::Index>(i)) = static_cast<float>(sum / 2 - 2.0 * I.at(x, y));
+    const double sum = double(I.at(std::max(x - 1, 0), y)) + I.at(std::min(x + 1, I.width - 1), y) +
+                       I.at(x, std::max(y - 1, 0)) + I.at(x, std::min(y + 1, I.height - 1));
+    d->d_photo(kBlur, static_cast<Eigen::Index>(i)) =
+        static_cast<float>(sum / 2 - 2.0 * I.at(x, y));
   }
 }
 
@@ -145,8 +145,8 @@ std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
   const int tasks = static_cast<int>((edges.size() + kEdges - 1) / kEdges);
   std::vector<std::vector<EdgeSegment>> part(tasks);
   for_each_task(tasks, threads, [&](int i) {
-    silhouette_segments(frame, filter, edges, i * kEdges,
-                        std::min(edges.size(), (i + 1) * kEdges), &part[i]);
+    silhouette_segments(frame, filter, edges, i * kEdges, std::min(edges.size(), (i + 1) * kEdges),
+                        &part[i]);
   });
   std::vector<EdgeSegment> out;
   for (const auto& p : part) out.insert(out.end(), p.begin(), p.end());
@@ -155,9 +155,8 @@ std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
 
 }  // namespace
 
-Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference,
-                           const Texture& texture, const PhotoState& photo,
-                           const RenderOptions& options, bool silhouette,
+Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
+                           const PhotoState& photo, const RenderOptions& options, bool silhouette,
                            const std::vector<unsigned char>* count) {
   Impl& m = *impl_;
   if (x.cols() != m.surface.X.cols()) throw std::invalid_argument("render: wrong vertex count");
@@ -165,8 +164,8 @@ Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference,
   m.set_state(x, photo.shaded ? options.visibility_rays : 0);
   const View view(photo.camera, x, m.surface.triangles);
   const PixelFilter filter(options.rays_per_axis, options.filter_width_px);
-  Frame frame{m.surface, x, view, m.scene, m.seen_normals, m.seen_facets, m.seen_visibility, texture, photo,
-              options};
+  Frame frame{m.surface,         x,       view,  m.scene, m.seen_normals, m.seen_facets,
+              m.seen_visibility, texture, photo, options};
   std::optional<View> reference_view;
   if (from_photo) {
     if (!x_reference) throw std::invalid_argument("render: photo texture without reference state");

@@ -14,12 +14,12 @@
 namespace hookeye {
 
 struct RenderOptions {
-  int rays_per_axis = 3;        ///< fixed pattern of rays_per_axis^2 rays per pixel
-  double filter_width_px = 3.0; ///< whole Blackman-Harris window over which the rays are weighted;
-                                ///< renderers that state half of it (Cycles) call this 1.5
-  bool smooth_normals = true;   ///< vertex normals: face normals weighted by the corner's angle
+  int rays_per_axis = 3;         ///< fixed pattern of rays_per_axis^2 rays per pixel
+  double filter_width_px = 3.0;  ///< whole Blackman-Harris window over which the rays are weighted;
+                                 ///< renderers that state half of it (Cycles) call this 1.5
+  bool smooth_normals = true;    ///< vertex normals: face normals weighted by the corner's angle
   bool cast_shadows = true;
-  int visibility_rays = 64;     ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
+  int visibility_rays = 64;  ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
   bool derivatives = true;
   int threads = 1;
 };
@@ -36,18 +36,18 @@ struct DerivativeSegment {
 /// Pixels that count, with their derivatives. Compressed rows: the segments of active pixel i are
 /// segments[first[i] .. first[i+1]).
 struct ImageDerivative {
-  std::vector<int> pixel;                                   ///< y*width + x, ascending
-  std::vector<int> first;                                   ///< pixel.size() + 1
+  std::vector<int> pixel;  ///< y*width + x, ascending
+  std::vector<int> first;  ///< pixel.size() + 1
   std::vector<DerivativeSegment> segments;
   Eigen::Matrix<float, kPhotoColumns, Eigen::Dynamic> d_photo;  ///< one column per active pixel
 };
 
 struct Rendering {
-  Image I;                      ///< 1 channel, linear
-  Image coverage;               ///< filtered fraction of the pixel that the body covers, 0..1
-  std::vector<int> triangle;    ///< triangle under the pixel centre, -1: none
+  Image I;                          ///< 1 channel, linear
+  Image coverage;                   ///< filtered fraction of the pixel that the body covers, 0..1
+  std::vector<int> triangle;        ///< triangle under the pixel centre, -1: none
   std::vector<Eigen::Vector2f> uv;  ///< barycentric (of corners 1, 2) there
-  ImageDerivative dI;           ///< of the *unblurred* picture times gain; see below
+  ImageDerivative dI;               ///< of the *unblurred* picture times gain; see below
 };
 
 /// Blur and derivatives: with blur operator B (discrete Gaussian of the variance, Lindeberg 1990),

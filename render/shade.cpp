@@ -19,8 +19,8 @@ Albedo albedo(const Frame& f, const Sample& s, bool derivatives) {
     out.value = texture.albedo;
   } else if (texture.source == Texture::Source::image) {
     const auto& uv = f.surface.uv[s.triangle];
-    const Lookup at = sample_bilinear(
-        *texture.image, s.bary[0] * uv[0] + s.bary[1] * uv[1] + s.bary[2] * uv[2]);
+    const Lookup at =
+        sample_bilinear(*texture.image, s.bary[0] * uv[0] + s.bary[1] * uv[1] + s.bary[2] * uv[2]);
     out.value = at.value;
     for (int k = 0; k < 3; ++k) out.by_bary[k] = at.gradient.dot(uv[k]);
   } else {
@@ -44,7 +44,7 @@ Albedo albedo(const Frame& f, const Sample& s, bool derivatives) {
 
 /// Intensity before gain of a point with normal n (unit), and its derivatives at fixed albedo.
 struct Light {
-  double diffuse = 1, gloss = 0;        ///< I = albedo*diffuse + gloss
+  double diffuse = 1, gloss = 0;  ///< I = albedo*diffuse + gloss
   Vector3d diffuse_by_n = Vector3d::Zero(), gloss_by_n = Vector3d::Zero();
   Vector3d diffuse_by_sun = Vector3d::Zero(), gloss_by_sun = Vector3d::Zero();
   double gloss_by_specular = 0;

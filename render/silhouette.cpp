@@ -28,13 +28,13 @@ constexpr double kStepPx = 0.02;  ///< how far beside an edge its two sides are 
 struct EdgePoint {
   int inside;  ///< triangle
   int a, b;
-  double s;          ///< position between the edge's ends
-  double length_px;  ///< of the edge that this point stands for
+  double s;             ///< position between the edge's ends
+  double length_px;     ///< of the edge that this point stands for
   Vector2d px, normal;  ///< in the picture; normal away from the triangle
   double depth;         ///< as Sample::depth
   double facet_size;    ///< longest edge of the triangle [length]
   Vector2d h, step_h;   ///< ray through the point, and the change of h for kStepPx along the normal
-  Eigen::Matrix<double, 1, 3> n_by_point;   ///< normal motion [px] by camera-space position
+  Eigen::Matrix<double, 1, 3> n_by_point;  ///< normal motion [px] by camera-space position
   Eigen::Matrix<double, 1, 7> n_by_camera;
 };
 

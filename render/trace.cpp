@@ -26,7 +26,8 @@ void set_lane(RayPacket& rays, int lane, const Vector3d& from, const Vector3d& d
 /// Where the shadow ray of a point of the faceted surface starts. Interpolated normals belong to a
 /// curved surface; near the terminator the point is lifted onto it (Hanika 2021, Hacking the shadow
 /// terminator), fully where the facet turns away from the sun, not at all above 0.1 of cosine.
-Vector3d shadow_origin(const Frame& f, const Sample& s, const Vector3d& facet, const Vector3d& sun) {
+Vector3d shadow_origin(const Frame& f, const Sample& s, const Vector3d& facet,
+                       const Vector3d& sun) {
   const auto& t = f.surface.triangles[s.triangle];
   const Vector3d point = interpolate(f.x, t, s.bary);
   const double cosine = facet.dot(sun), margin = 10 * f.scene.epsilon();
@@ -83,8 +84,8 @@ void drop_unseen(const Frame& f, int count, Sample* samples) {
     const bool inside = px.x() >= 0 && px.y() >= 0 && px.x() <= photo.width - 1 &&
                         px.y() <= photo.height - 1;  // false for NaN
     if (!inside || view.front[s.triangle] <= 0 ||
-        (valid && !(*valid)[static_cast<size_t>(std::lround(px.y())) * photo.width +
-                            std::lround(px.x())])) {
+        (valid &&
+         !(*valid)[static_cast<size_t>(std::lround(px.y())) * photo.width + std::lround(px.x())])) {
       s.triangle = -1;
       continue;
     }

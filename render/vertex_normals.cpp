@@ -38,10 +38,10 @@ VertexNormals::VertexNormals(const std::vector<std::array<int, 3>>& triangles, i
     auto& p = position_.emplace_back();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        p[3 * i + j] = static_cast<int>(std::lower_bound(neighbour_.begin() + first_[t[i]],
-                                                         neighbour_.begin() + first_[t[i] + 1],
-                                                         t[j]) -
-                                        neighbour_.begin());
+        p[3 * i + j] =
+            static_cast<int>(std::lower_bound(neighbour_.begin() + first_[t[i]],
+                                              neighbour_.begin() + first_[t[i] + 1], t[j]) -
+                             neighbour_.begin());
   }
 }
 
@@ -85,10 +85,10 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> VertexNormals::derivative(const Mat
       // dc = de1 x e2 + e1 x de2
       const Matrix3d dc_de1 = -cross_matrix(e2), dc_de2 = cross_matrix(e1);
       const Matrix3d spin = angle / s * (Matrix3d::Identity() - n * n.transpose());
-      const Matrix3d d1 = n * (scale * (d * n.transpose() * dc_de1 - s * e2.transpose())) +
-                          spin * dc_de1;
-      const Matrix3d d2 = n * (scale * (d * n.transpose() * dc_de2 - s * e1.transpose())) +
-                          spin * dc_de2;
+      const Matrix3d d1 =
+          n * (scale * (d * n.transpose() * dc_de1 - s * e2.transpose())) + spin * dc_de1;
+      const Matrix3d d2 =
+          n * (scale * (d * n.transpose() * dc_de2 - s * e1.transpose())) + spin * dc_de2;
       block[position_[f][3 * i + j]] += d1;
       block[position_[f][3 * i + k]] += d2;
       block[position_[f][3 * i + i]] -= d1 + d2;
@@ -103,8 +103,8 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> VertexNormals::derivative(const Mat
     for (int r = 0; r < 3; ++r) out.outerIndexPtr()[3 * v + r] = 9 * first_[v] + 3 * r * blocks;
     Matrix3d project = Matrix3d::Zero();
     if (length > 0)
-      project = (Matrix3d::Identity() - sum.col(v) * sum.col(v).transpose() / (length * length)) /
-                length;
+      project =
+          (Matrix3d::Identity() - sum.col(v) * sum.col(v).transpose() / (length * length)) / length;
     for (int b = 0; b < blocks; ++b) {
       const Matrix3d d = project * block[first_[v] + b];
       for (int r = 0; r < 3; ++r)

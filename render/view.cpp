@@ -23,7 +23,9 @@ bool is_distorted(const Camera& camera) {
 }  // namespace
 
 RayGrid::RayGrid(const Camera& camera, const PixelFilter& filter)
-    : camera_(at_origin(camera)), n_(filter.n), margin_(filter.margin),
+    : camera_(at_origin(camera)),
+      n_(filter.n),
+      margin_(filter.margin),
       columns_(camera.width * filter.n + 2 * filter.margin) {
   if (!is_distorted(camera)) return;
   const int rows = camera.height * n_ + 2 * margin_;
@@ -46,9 +48,12 @@ bool RayGrid::serves(const Camera& c, const PixelFilter& filter) const {
 }
 
 View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int, 3>>& triangles)
-    : camera(c), local(at_origin(c)),
-      perspective(c.projection == Camera::Projection::perspective), distorted(is_distorted(c)),
-      eye(c.centre()), p((c.R * x).colwise() + c.t) {
+    : camera(c),
+      local(at_origin(c)),
+      perspective(c.projection == Camera::Projection::perspective),
+      distorted(is_distorted(c)),
+      eye(c.centre()),
+      p((c.R * x).colwise() + c.t) {
   start = p.row(2).minCoeff();
   start -= 0.01 * (p.row(2).maxCoeff() - start) + 1e-6;
   Q.resize(triangles.size());

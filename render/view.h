@@ -40,14 +40,13 @@ class RayGrid {
 };
 
 struct View {
-  View(const Camera& camera, const Matrix3Xd& x,
-       const std::vector<std::array<int, 3>>& triangles);
+  View(const Camera& camera, const Matrix3Xd& x, const std::vector<std::array<int, 3>>& triangles);
 
-  Camera camera, local;   ///< local: the same camera at the origin
+  Camera camera, local;  ///< local: the same camera at the origin
   bool perspective, distorted;
-  Vector3d eye;           ///< perspective [length]
-  double start = 0;       ///< orthographic: depth where rays start
-  Matrix3Xd p;            ///< vertices in camera axes
+  Vector3d eye;      ///< perspective [length]
+  double start = 0;  ///< orthographic: depth where rays start
+  Matrix3Xd p;       ///< vertices in camera axes
   /// Barycentric coordinates under the ray h are Q (h,1)/sum: Q inverts the corners' matrix (with
   /// an orthographic camera their third row is 1).
   std::vector<Matrix3d> Q;

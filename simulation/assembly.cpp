@@ -95,12 +95,13 @@ struct Assembly::Kernel {
     Eigen::Matrix<double, 9, 3 * N> T;
     for (int b = 0; b < N; ++b)
       T.template middleCols<3>(3 * b).noalias() = G(b, 0) * D.template leftCols<3>() +
-                                                   G(b, 1) * D.template middleCols<3>(3) +
-                                                   G(b, 2) * D.template rightCols<3>();
+                                                  G(b, 1) * D.template middleCols<3>(3) +
+                                                  G(b, 2) * D.template rightCols<3>();
     for (int j = 0; j < 3 * N; ++j) {
       const Matrix3d t = Eigen::Map<const Matrix3d>(T.data() + 9 * j);
       for (int b = j / 3; b < N; ++b)
-        K.template block<3, 1>(3 * b, j) += t.col(0) * G(b, 0) + t.col(1) * G(b, 1) + t.col(2) * G(b, 2);
+        K.template block<3, 1>(3 * b, j) +=
+            t.col(0) * G(b, 0) + t.col(1) * G(b, 1) + t.col(2) * G(b, 2);
     }
   }
 
@@ -209,12 +210,11 @@ VectorXd Assembly::dR_dtheta(const EnergyModel& model, const VectorXd& q, int pa
     for (int e = 0; e < elements(); ++e) {
       const double g = swelling_of(model, e), w = weight_of(chosen, e) * g * g;
       if (w == 0) continue;
-      kernel.scatter(
-          kernel.force(q, e,
-                       [&](const Matrix3d& F) -> Matrix3d {
-                         return w * chosen.term->dP_dtheta(F / g, k);
-                       }),
-          e, R);
+      kernel.scatter(kernel.force(q, e,
+                                  [&](const Matrix3d& F) -> Matrix3d {
+                                    return w * chosen.term->dP_dtheta(F / g, k);
+                                  }),
+                     e, R);
     }
     return 0;
   });

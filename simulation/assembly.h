@@ -3,11 +3,10 @@
 
 #include "simulation/equilibrium.h"
 
-
 namespace hookeye {
 
-/// Shape gradients of one mesh at its quadrature points and corners, and the sparsity pattern of its
-/// tangent. Costs about one assembly; keep it. Holds no reference to the mesh.
+/// Shape gradients of one mesh at its quadrature points and corners, and the sparsity pattern of
+/// its tangent. Costs about one assembly; keep it. Holds no reference to the mesh.
 using Eigen::MatrixXd;
 
 class Assembly {
@@ -43,12 +42,12 @@ class Assembly {
   void build_pattern();
 
   int npe_, points_, corners_, n_;
-  Eigen::MatrixXi nodes_;           ///< npe x m
-  std::vector<double> gradients_;   ///< dN/dX, npe x 3 column-major; points_ then corners_ a piece
-  std::vector<double> volume_;      ///< weight * rest volume, per element and point
+  Eigen::MatrixXi nodes_;          ///< npe x m
+  std::vector<double> gradients_;  ///< dN/dX, npe x 3 column-major; points_ then corners_ a piece
+  std::vector<double> volume_;     ///< weight * rest volume, per element and point
   SparseMatrix pattern_;
-  std::vector<int> block_;          ///< per element, a + npe b: first value of block (a, b)
-  std::vector<int> stride_;         ///< per node: nonzeros of one of its columns
+  std::vector<int> block_;   ///< per element, a + npe b: first value of block (a, b)
+  std::vector<int> stride_;  ///< per node: nonzeros of one of its columns
 };
 
 }  // namespace hookeye

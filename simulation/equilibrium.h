@@ -20,13 +20,15 @@ VectorXd residual(const TetMesh& mesh, const EnergyModel& energy, const Loading&
                   const VectorXd& q, double load_fraction = 1.0);
 SparseMatrix tangent(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
                      const VectorXd& q, double load_fraction = 1.0);
-/// Internal forces element by element: (3*nodes per element) x m; residual = their sum minus forces.
+/// Internal forces element by element: (3*nodes per element) x m; residual = their sum minus
+/// forces.
 Eigen::MatrixXd element_forces(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
 /// d(internal force)/dtheta_k of part `part`'s term at fixed q (3n).
 VectorXd dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q, int part,
                    int k);
 
-/// State of the elements for pictures and vtu: at the centroid, 6 x m in the order xx yy zz xy yz xz.
+/// State of the elements for pictures and vtu: at the centroid, 6 x m in the order xx yy zz xy yz
+/// xz.
 struct ElementState {
   Eigen::MatrixXd green_strain, cauchy_stress;
   VectorXd von_mises, J, energy_density;
@@ -37,20 +39,20 @@ ElementState element_state(const TetMesh& mesh, const EnergyModel& energy, const
 class TangentFactor;
 
 struct Equilibrium {
-  VectorXd q;                  ///< 3n deformed positions [length]
-  VectorXd R;                  ///< 3n; zero on free unknowns, on prescribed ones the force the
-                               ///< support exerts on the body [force]
-  SparseMatrix K;              ///< true tangent at q, 3n x 3n
+  VectorXd q;      ///< 3n deformed positions [length]
+  VectorXd R;      ///< 3n; zero on free unknowns, on prescribed ones the force the
+                   ///< support exerts on the body [force]
+  SparseMatrix K;  ///< true tangent at q, 3n x 3n
   std::shared_ptr<const TangentFactor> factor;
   int newton_iterations = 0;
   int factorizations = 0;
-  bool stable = true;          ///< K_ff positive definite
+  bool stable = true;  ///< K_ff positive definite
 };
 
 struct EquilibriumOptions {
-  double tolerance = 1e-9;     ///< |R_free|_inf over the largest nodal force (or reaction)
-  int max_iterations = 60;     ///< Newton iterations of one load step
-  double smallest_step = 1e-4; ///< load fraction at which the solver gives up
+  double tolerance = 1e-9;          ///< |R_free|_inf over the largest nodal force (or reaction)
+  int max_iterations = 60;          ///< Newton iterations of one load step
+  double smallest_step = 1e-4;      ///< load fraction at which the solver gives up
   std::function<bool()> cancelled;  ///< polled; true: returns a failure "cancelled"
 };
 

@@ -164,8 +164,9 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(cons
   e.R = problem.residual(x, 1.0);
   e.stable = state.factorize();  // newton() left the true tangent at x in K
   if (!e.stable && !state.factor->factorize_indefinite(state.K))
-    return NumericalFailure{problem.loading.name, 1.0,
-                            "the tangent at the solution is singular: the body buckles here or is not held"};
+    return NumericalFailure{
+        problem.loading.name, 1.0,
+        "the tangent at the solution is singular: the body buckles here or is not held"};
   for (int u : state.free) e.R[u] = 0;
   e.K = state.K;
   e.factor = state.factor;

@@ -31,7 +31,8 @@ void Loading::prescribe(const TetMesh&, const Region& region, int component, dou
   merge(added, *this);
 }
 
-void Loading::prescribe_rigid(const TetMesh& mesh, const Region& region, const RigidMotion& motion) {
+void Loading::prescribe_rigid(const TetMesh& mesh, const Region& region,
+                              const RigidMotion& motion) {
   std::map<int, double> added;
   for (int a : region.nodes) {
     const Vector3d X = mesh.X.col(a), u = motion.apply(X) - X;
@@ -62,9 +63,8 @@ Loading make_loading(const Capture&, const ExampleSpec& example, const TetMesh& 
       for (int i = 0; i < 3; ++i)
         if (support.displacement[i]) loading.prescribe(mesh, region, i, *support.displacement[i]);
     } else {
-      loading.prescribe_rigid(mesh, region,
-                              support.kind == SupportSpec::Kind::rigid ? support.rigid
-                                                                       : RigidMotion{});
+      loading.prescribe_rigid(
+          mesh, region, support.kind == SupportSpec::Kind::rigid ? support.rigid : RigidMotion{});
     }
   }
   for (const LoadSpec& load : example.loads) {
@@ -102,7 +102,8 @@ std::string motion_text(const Vector3d& move, const Vector3d& turn, const Vector
   if (turn.norm() < 1e-6) return "translation along " + point_text(move.normalized());
   const double w2 = turn.squaredNorm(), pitch = move.dot(turn) / w2;
   const Vector3d through = center + turn.cross(move) / w2;
-  std::string text = "rotation about " + point_text(turn.normalized()) + " through " + point_text(through);
+  std::string text =
+      "rotation about " + point_text(turn.normalized()) + " through " + point_text(through);
   if (std::abs(pitch) > 1e-6) text += fmt::format(" with an advance of {:.4g} a radian", pitch);
   return text;
 }

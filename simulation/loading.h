@@ -20,10 +20,12 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
-  /// Potential energy at load fraction s in [0,1]; terms without one return 0 and has_potential() = false.
+  /// Potential energy at load fraction s in [0,1]; terms without one return 0 and has_potential() =
+  /// false.
   virtual double potential(const TetMesh& mesh, const VectorXd& q, double s) const = 0;
   virtual bool has_potential() const { return true; }
-  virtual void add_residual(const TetMesh& mesh, const VectorXd& q, double s, VectorXd& R) const = 0;
+  virtual void add_residual(const TetMesh& mesh, const VectorXd& q, double s,
+                            VectorXd& R) const = 0;
   virtual void add_tangent(const TetMesh& mesh, const VectorXd& q, double s, Triplets& K) const = 0;
   /// True when add_tangent adds nothing (dead loads): keeps the symbolic pattern.
   virtual bool dead() const { return false; }
@@ -35,12 +37,13 @@ std::shared_ptr<const ForceTerm> dead_force(const Region& region, const Vector3d
 std::shared_ptr<const ForceTerm> nodal_force(VectorXd force);
 /// Pressure on the deformed faces, inwards [stress].
 std::shared_ptr<const ForceTerm> follower_pressure(const Region& region, double pressure);
-/// density * gravity on the reference volume, consistent nodal loads. `density` [force s^2/length^4],
-/// gravity [length/s^2].
+/// density * gravity on the reference volume, consistent nodal loads. `density` [force
+/// s^2/length^4], gravity [length/s^2].
 std::shared_ptr<const ForceTerm> self_weight(const TetMesh& mesh, double density,
                                              const Vector3d& gravity);
 /// Elastic foundation on the region: traction -k_n (u.n)n - k_t (u - (u.n)n), u = q - target, rest
-/// normal n, nodal areas lumped consistently. k [stress/length]. `target` 3n: where the springs are at rest.
+/// normal n, nodal areas lumped consistently. k [stress/length]. `target` 3n: where the springs are
+/// at rest.
 std::shared_ptr<const ForceTerm> elastic_foundation(const Region& region, double k_normal,
                                                     double k_tangent, VectorXd target);
 /// Rigid floor, half space (x - point).normal >= 0 is free. Penalty traction k * depth, smoothed

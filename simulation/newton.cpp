@@ -14,7 +14,8 @@ constexpr double kNear = 0.3;
 
 VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::Index size) {
   VectorXd all = VectorXd::Zero(size);
-  for (size_t i = 0; i < unknowns.size(); ++i) all[unknowns[i]] = some[static_cast<Eigen::Index>(i)];
+  for (size_t i = 0; i < unknowns.size(); ++i)
+    all[unknowns[i]] = some[static_cast<Eigen::Index>(i)];
   return all;
 }
 
@@ -47,8 +48,7 @@ LineSearch search(const Problem& problem, double s, const VectorXd& q, const Vec
     if (use_potential) {
       const double now = problem.potential(out.q, s);
       const double rounding = 1e-13 * (std::abs(now) + std::abs(start));
-      good = now <= start + 1e-4 * step * slope ||
-             (good && now <= start + rounding);
+      good = now <= start + 1e-4 * step * slope || (good && now <= start + rounding);
     }
     if (good) {
       out.step = step;
@@ -99,7 +99,8 @@ double relative_error(const Problem& problem, const NewtonState& state, const Ve
   double largest = f.cwiseAbs().maxCoeff();
   for (int u : problem.loading.prescribed) largest = std::max(largest, std::abs(R[u]));
   if (state.K.nonZeros() > 0) {
-    const double size = (problem.mesh.X.rowwise().maxCoeff() - problem.mesh.X.rowwise().minCoeff()).norm();
+    const double size =
+        (problem.mesh.X.rowwise().maxCoeff() - problem.mesh.X.rowwise().minCoeff()).norm();
     largest = std::max(largest, 1e-5 * size * state.K.diagonal().cwiseAbs().maxCoeff());
   }
   double error = 0;
@@ -155,8 +156,8 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     VectorXd x;
     // Forcing term: what quadratic convergence can use (Eisenstat and Walker 1996), and no more
     // than the last step needs.
-    const double forcing = std::clamp(std::max(0.01 * out.error, 0.05 * goal.tolerance / out.error),
-                                      1e-7, 1e-2);
+    const double forcing =
+        std::clamp(std::max(0.01 * out.error, 0.05 * goal.tolerance / out.error), 1e-7, 1e-2);
     const bool by_cg = reuse && state.symbolic->fits(state.K, state.free) &&
                        conjugate_gradients(state.K, *state.factor, b, forcing, kMaxCg, x) > 0;
     if (!by_cg) {
@@ -166,7 +167,8 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
         return {false, out.error, "the tangent is singular: something is not held"};
     }
     reuse = (by_cg || !projected) && (by_cg || out.error < kNear);
-    LineSearch found = search(problem, goal.s, q, R, spread(x, state.free, q.size()), use_potential);
+    LineSearch found =
+        search(problem, goal.s, q, R, spread(x, state.free, q.size()), use_potential);
     if (found.step == 0) {
       if (out.error <= 100 * goal.tolerance && out.error <= 1e-7) {  // rounding stops it
         out.converged = out.error <= 10 * goal.tolerance;
@@ -181,8 +183,9 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     R = std::move(found.R);
     last_error = out.error;
   }
-  out.reason = fmt::format("no equilibrium after {} Newton iterations, residual {:.1e} of the largest force",
-                           goal.max_iterations, out.error);
+  out.reason =
+      fmt::format("no equilibrium after {} Newton iterations, residual {:.1e} of the largest force",
+                  goal.max_iterations, out.error);
   return out;
 }
 

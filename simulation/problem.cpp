@@ -67,7 +67,8 @@ void add_triplets(const Triplets& triplets, SparseMatrix& K) {
 
 VectorXd select(const VectorXd& all, const std::vector<int>& unknowns) {
   VectorXd some(static_cast<Eigen::Index>(unknowns.size()));
-  for (size_t i = 0; i < unknowns.size(); ++i) some[static_cast<Eigen::Index>(i)] = all[unknowns[i]];
+  for (size_t i = 0; i < unknowns.size(); ++i)
+    some[static_cast<Eigen::Index>(i)] = all[unknowns[i]];
   return some;
 }
 

@@ -46,7 +46,8 @@ MatrixXd d_support_moment(const Equilibrium& equilibrium, const Region& region,
                           const Vector3d& about, const MatrixXd& dR, const MatrixXd& S) {
   MatrixXd d = MatrixXd::Zero(3, dR.cols());
   for (int a : region.nodes) {
-    const Vector3d arm = equilibrium.q.segment<3>(3 * a) - about, R = equilibrium.R.segment<3>(3 * a);
+    const Vector3d arm = equilibrium.q.segment<3>(3 * a) - about,
+                   R = equilibrium.R.segment<3>(3 * a);
     for (Eigen::Index j = 0; j < dR.cols(); ++j)
       d.col(j) += arm.cross(Vector3d(dR.col(j).segment<3>(3 * a))) +
                   Vector3d(S.col(j).segment<3>(3 * a)).cross(R);

@@ -97,9 +97,9 @@ std::vector<int> dissect(const SparseMatrix& K, const std::vector<int>& free,
 
 struct SymbolicFactor::Impl {
   Common common;
-  std::vector<int> free, index;           ///< unknown of a free one and back (-1: prescribed)
+  std::vector<int> free, index;             ///< unknown of a free one and back (-1: prescribed)
   std::vector<int> lower_start, lower_row;  ///< K_ff, lower triangle by columns
-  std::vector<int> gather;                ///< value of K for each value of the lower triangle
+  std::vector<int> gather;                  ///< value of K for each value of the lower triangle
   Eigen::Index nonzeros = 0, columns = 0;
   size_t fingerprint = 0;
   cholmod_factor* factor = nullptr;

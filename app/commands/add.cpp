@@ -30,7 +30,8 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, Sess
     session.say(", {:.0f} % on the held-out ones ({:.3f} -> {:.3f})", removed(true), held,
                 after.fitted.evaluation.chi(true));
     if (after.fitted.evaluation.chi(true) >= held)
-      session.warn(after.name + " does not pay on the held-out photos; take it back with "
+      session.warn(after.name +
+                   " does not pay on the held-out photos; take it back with "
                    "--take-back");
   }
   session.say("\n");
@@ -56,8 +57,7 @@ void run_add(const AddArguments& arguments, Session& session) {
 }  // namespace
 
 void add_add(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command =
-      app.add_subcommand("add", "Refit with an effect; the next step of the run");
+  CLI::App* command = app.add_subcommand("add", "Refit with an effect; the next step of the run");
   const auto arguments = std::make_shared<AddArguments>();
   command->add_option("RUN", arguments->run, "Run folder")->required();
   command->add_option("EFFECT", arguments->request.effect, "Name of the effect")->required();

@@ -18,8 +18,8 @@ void run_diagnose(const std::string& folder, Session& session) {
   step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
   record_diagnosis(run, step);
   session.document = to_json(step.diagnosis);
-  session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name,
-              step.fitted.evaluation.chi(false), step.diagnosis.floor.chi);
+  session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name, step.fitted.evaluation.chi(false),
+              step.diagnosis.floor.chi);
   session.say("{}", diagnosis_table(step.diagnosis));
 }
 

@@ -1,6 +1,7 @@
 // hookeye discover: fit, diagnose, add, until what is left is noise.
-#include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
@@ -41,8 +42,7 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
 std::string steps_table(const Discovery& discovery) {
   std::vector<std::vector<std::string>> rows = {
       {"step", "chi fitted", "chi held out", "rms px", "over the floor"}};
-  const double top =
-      discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
+  const double top = discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
   for (const auto& step : discovery.steps) {
     const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
     rows.push_back({step.name, fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
@@ -61,9 +61,9 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   const bool resumed = !run.steps().empty();
   const DiscoverEvents on = events(run, bench, resumed);
   const ModelForm form = base_form(bench.scene);
-  const Discovery found = value_or_fail(
-      resumed ? discover_from(bench.workspace, newest_step(run, bench), options, on)
-              : discover(bench.workspace, form, form.initial(), options, on));
+  const Discovery found =
+      value_or_fail(resumed ? discover_from(bench.workspace, newest_step(run, bench), options, on)
+                            : discover(bench.workspace, form, form.initial(), options, on));
   run.update([&](nlohmann::json& timeline) {
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;

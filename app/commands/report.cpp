@@ -19,8 +19,9 @@ struct Reduction {
 };
 constexpr Reduction kReductions[] = {
     {1, 1, ""},
-    {2, 1, "Residuals of earlier steps are at half size to keep this file under 30 MB; the newest "
-           "step and the photos are whole."},
+    {2, 1,
+     "Residuals of earlier steps are at half size to keep this file under 30 MB; the newest "
+     "step and the photos are whole."},
     {2, 2, "All pictures are at half size to keep this file under 30 MB."},
     {4, 4, "All pictures are at a quarter of their size to keep this file under 30 MB."},
     {8, 8, "All pictures are at an eighth of their size to keep this file under 30 MB."}};
@@ -54,8 +55,11 @@ void run_report(const std::string& folder, const std::string& out, Session& sess
     const std::string page = make_page(document, parts);
     if (page.size() > kMostBytes && &reduction != std::end(kReductions) - 1) continue;
     write_text(out, page);
-    session.document = {{"hookeye", 1}, {"report", out}, {"bytes", page.size()},
-                        {"reduction", reduction.said}, {"faults", document["faults"]}};
+    session.document = {{"hookeye", 1},
+                        {"report", out},
+                        {"bytes", page.size()},
+                        {"reduction", reduction.said},
+                        {"faults", document["faults"]}};
     for (const auto& fault : document["faults"]) session.warn(fault.get<std::string>());
     if (reduction.said[0]) session.warn(reduction.said);
     session.say("written to {} ({:.1f} MB)\n", out, 1e-6 * static_cast<double>(page.size()));

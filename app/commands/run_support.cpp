@@ -79,7 +79,8 @@ void record_diagnosis(Run& run, const Step& step) {
 }
 
 std::string parameter_table(const Fitted& fitted) {
-  std::vector<std::vector<std::string>> rows = {{"parameter", "value", "95 % interval", "unit", ""}};
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "value", "95 % interval", "unit", ""}};
   const auto parameters = fitted.form.parameters();
   for (size_t i = 0; i < parameters.size(); ++i)
     rows.push_back({parameters[i].name, fmt::format("{:.5g}", fitted.p[i]),
@@ -130,8 +131,9 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
     if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += "  " + effect.why + "\n";
   }
   return table(rows) +
-         fmt::format("  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
-                     std::max(diagnosis.gate, kNameable)) +
+         fmt::format(
+             "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
+             std::max(diagnosis.gate, kNameable)) +
          sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
 }
 

@@ -17,7 +17,8 @@ void run_studio(const StudioArguments& arguments, Session& session) {
     session.document = {{"hookeye", 1}, {"address", address}};
     // Told at once, also with --json: the one document comes only when the studio ends.
     fmt::print(session.json ? stderr : stdout, "{}\n", address);
-    session.say("Open this address in a browser. It is good for this studio alone; Ctrl-C ends it.\n");
+    session.say(
+        "Open this address in a browser. It is good for this studio alone; Ctrl-C ends it.\n");
     std::fflush(nullptr);
   });
 }

@@ -18,8 +18,8 @@ std::string encode_png16(const Image& image, const Quantised& quantum) {
       const double v = image.at(x, y);
       codes.at<unsigned short>(y, x) =
           std::isnan(v) ? 0
-                        : static_cast<unsigned short>(
-                              std::clamp(std::round(v / quantum.step) + quantum.zero, 1.0, 65535.0));
+                        : static_cast<unsigned short>(std::clamp(
+                              std::round(v / quantum.step) + quantum.zero, 1.0, 65535.0));
     }
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", codes, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
@@ -37,8 +37,8 @@ Image shrink(const Image& image, int factor) {
       for (int v = y * factor; v < std::min(image.height, (y + 1) * factor); ++v)
         for (int u = x * factor; u < std::min(image.width, (x + 1) * factor); ++u)
           if (!std::isnan(image.at(u, v))) sum += image.at(u, v), count += 1.0;
-      out.at(x, y) = count > 0.0 ? static_cast<float>(sum / count)
-                                 : std::numeric_limits<float>::quiet_NaN();
+      out.at(x, y) =
+          count > 0.0 ? static_cast<float>(sum / count) : std::numeric_limits<float>::quiet_NaN();
     }
   return out;
 }

@@ -21,15 +21,15 @@ std::string support_text(const SupportSpec& support, const Units& units) {
     return fmt::format("{} moves rigidly, fitted", support.region);
   if (support.kind == SupportSpec::Kind::rigid)
     return fmt::format("{} turns {:.4g}° about {} and moves {} {}", support.region,
-                       support.rigid.degrees, three(support.rigid.axis),
-                       three(support.rigid.move), units.length);
+                       support.rigid.degrees, three(support.rigid.axis), three(support.rigid.move),
+                       units.length);
   std::vector<std::string> parts;
   for (int i = 0; i < 3; ++i)
     if (support.displacement[i])
-      parts.push_back(*support.displacement[i] == 0.0
-                          ? fmt::format("{} fixed", "xyz"[i])
-                          : fmt::format("{} by {:.4g} {}", "xyz"[i], *support.displacement[i],
-                                        units.length));
+      parts.push_back(
+          *support.displacement[i] == 0.0
+              ? fmt::format("{} fixed", "xyz"[i])
+              : fmt::format("{} by {:.4g} {}", "xyz"[i], *support.displacement[i], units.length));
   return fmt::format("{}: {}", support.region, fmt::join(parts, ", "));
 }
 
@@ -42,10 +42,14 @@ std::string load_text(const LoadSpec& load, const Units& units) {
 
 std::string texture_text(const BodySpec& body) {
   switch (body.texture) {
-    case BodySpec::Texture::image: return "image " + body.texture_image.filename().string();
-    case BodySpec::Texture::rest: return "photos of " + body.texture_example;
-    case BodySpec::Texture::uniform: return "uniform";
-    default: return "none";
+    case BodySpec::Texture::image:
+      return "image " + body.texture_image.filename().string();
+    case BodySpec::Texture::rest:
+      return "photos of " + body.texture_example;
+    case BodySpec::Texture::uniform:
+      return "uniform";
+    default:
+      return "none";
   }
 }
 
@@ -54,17 +58,21 @@ std::string noise_text(const Capture& capture) {
     for (const auto& photo : example.photos) {
       if (!photo.noise) return "estimated from each photo (high-pass residuals)";
       if (photo.noise->full_well > 0.0)
-        return fmt::format("variance = read² + intensity / full well; read {:.3g}, full well {:.0f}",
-                           photo.noise->read, photo.noise->full_well);
+        return fmt::format(
+            "variance = read² + intensity / full well; read {:.3g}, full well {:.0f}",
+            photo.noise->read, photo.noise->full_well);
       return fmt::format("standard deviation {:.3g} of full scale", photo.noise->read);
     }
   return "no photos";
 }
 
 json example_facts(const ExampleSpec& example, const Units& units) {
-  json out = {{"name", example.name}, {"use", example.validate ? "validate" : "fit"},
-              {"supports", json::array()}, {"loads", json::array()},
-              {"photos", example.photos.size()}, {"measured", example.measured.size()}};
+  json out = {{"name", example.name},
+              {"use", example.validate ? "validate" : "fit"},
+              {"supports", json::array()},
+              {"loads", json::array()},
+              {"photos", example.photos.size()},
+              {"measured", example.measured.size()}};
   for (const auto& support : example.supports)
     out["supports"].push_back(support_text(support, units));
   for (const auto& load : example.loads) out["loads"].push_back(load_text(load, units));
@@ -74,15 +82,23 @@ json example_facts(const ExampleSpec& example, const Units& units) {
 }  // namespace
 
 json capture_facts(const Capture& capture) {
-  json out = {{"title", capture.title}, {"file", capture.file.string()},
-              {"units", {{"length", capture.units.length}, {"force", capture.units.force},
-                         {"stress", capture.units.stress()}}},
-              {"fit", capture.fit}, {"texture", texture_text(capture.body)},
-              {"laws", json::array()}, {"cameras", json::array()}, {"examples", json::array()}};
+  json out = {{"title", capture.title},
+              {"file", capture.file.string()},
+              {"units",
+               {{"length", capture.units.length},
+                {"force", capture.units.force},
+                {"stress", capture.units.stress()}}},
+              {"fit", capture.fit},
+              {"texture", texture_text(capture.body)},
+              {"laws", json::array()},
+              {"cameras", json::array()},
+              {"examples", json::array()}};
   for (const auto& material : capture.materials) out["laws"].push_back(material.law);
   for (const auto& camera : capture.cameras)
     out["cameras"].push_back(
-        {{"name", camera.name}, {"width", camera.width}, {"height", camera.height},
+        {{"name", camera.name},
+         {"width", camera.width},
+         {"height", camera.height},
          {"projection",
           camera.projection == Camera::Projection::perspective ? "perspective" : "orthographic"}});
   for (const auto& example : capture.examples)
@@ -98,22 +114,26 @@ json reporting_table(const Capture& capture) {
   auto row = [&](const char* name, const std::string& value) {
     rows.push_back({{"name", name}, {"value", value}});
   };
-  row("Technique", "integrated digital image correlation: the whole body's equilibrium is matched "
-                   "to all photos at once, no subsets");
+  row("Technique",
+      "integrated digital image correlation: the whole body's equilibrium is matched "
+      "to all photos at once, no subsets");
   row("Matching criterion",
       fmt::format("sum of squared (model − photo) / noise over pixels, Huber beyond {:.0f} times "
-                  "the photos' own misfit", fit.huber));
+                  "the photos' own misfit",
+                  fit.huber));
   row("Noise", noise_text(capture));
   row("Interpolation", from_photo ? "cubic B-spline in the rest photo (one interpolation)"
                                   : "bilinear in the texture");
-  row("Pixel filter", fmt::format("Blackman-Harris, {:.1f} px wide, {}×{} rays a pixel",
-                                  render.filter_width_px, render.rays_per_axis,
-                                  render.rays_per_axis));
+  row("Pixel filter",
+      fmt::format("Blackman-Harris, {:.1f} px wide, {}×{} rays a pixel", render.filter_width_px,
+                  render.rays_per_axis, render.rays_per_axis));
   row("Pre-filtering", "none at full size; coarse levels are halved with a low pass");
-  row("Regularisation", "none: the mechanical model alone; directions the photos do not fix are "
-                        "named, not smoothed");
-  row("Residual displacement", "least squares on cells of 16 px, shown where both directions are "
-                               "known to better than 1 px");
+  row("Regularisation",
+      "none: the mechanical model alone; directions the photos do not fix are "
+      "named, not smoothed");
+  row("Residual displacement",
+      "least squares on cells of 16 px, shown where both directions are "
+      "known to better than 1 px");
   row("Units", fmt::format("{}, {}, {}; pictures in px; intensity linear, full scale 1",
                            capture.units.length, capture.units.force, capture.units.stress()));
   return rows;

@@ -23,8 +23,9 @@ std::string_view built_page() {
   return {_binary_page_html_start,
           static_cast<size_t>(_binary_page_html_end - _binary_page_html_start)};
 #else
-  throw InputError({"hookeye"}, "this program was built without its page, because Node.js was "
-                                "not there",
+  throw InputError({"hookeye"},
+                   "this program was built without its page, because Node.js was "
+                   "not there",
                    "install nodejs and npm (packages.txt) and build again");
 #endif
 }
@@ -81,8 +82,7 @@ std::vector<std::string> blob_names(const json& document) {
 
 std::string part(const std::string& name, const RunView::Blob& blob) {
   const std::string open = "<script type=\"text/plain\" data-part=\"" + attribute(name) + "\"";
-  if (blob.text)
-    return open + ">" + inside_script(json::parse(blob.bytes)) + "</script>\n";
+  if (blob.text) return open + ">" + inside_script(json::parse(blob.bytes)) + "</script>\n";
   return open + " data-base64>" + base64(blob.bytes.data(), blob.bytes.size()) + "</script>\n";
 }
 
@@ -96,8 +96,8 @@ std::string make_page(const json& document, const std::string& parts) {
   std::string out;
   out.reserve(page.size() + parts.size() + 100000);
   out += page.substr(0, at);
-  out += "<script type=\"application/json\" id=\"document\">" + inside_script(document) +
-         "</script>";
+  out +=
+      "<script type=\"application/json\" id=\"document\">" + inside_script(document) + "</script>";
   out += page.substr(at + kDocument.size(), end - at - kDocument.size());
   out += parts;
   out += page.substr(end + kParts.size());

@@ -89,8 +89,10 @@ RunView::RunView(fs::path folder) : folder_(std::move(folder)) {
     if (where.empty()) throw std::runtime_error("run.json does not tell where it is");
     capture_ = read_capture(where);
   } catch (const std::exception& error) {
-    capture_fault_ = fmt::format("the capture cannot be read, so photos and its facts are not "
-                                 "here: {}", error.what());
+    capture_fault_ = fmt::format(
+        "the capture cannot be read, so photos and its facts are not "
+        "here: {}",
+        error.what());
   }
   if (!capture_) return;
   for (const auto& example : capture_->examples)
@@ -115,19 +117,25 @@ json RunView::photos_json(json& faults, int factor) {
       for (const auto& [name, plane] : planes_) {
         if (name.rfind(example.name + "-" + spec.camera, 0) != 0 || plane.spec.file != spec.file)
           continue;
-        json one = {{"name", name}, {"example", example.name}, {"camera", spec.camera},
+        json one = {{"name", name},
+                    {"example", example.name},
+                    {"camera", spec.camera},
                     {"use", example.validate ? "validate" : "fit"},
-                    {"width", plane.camera.width}, {"height", plane.camera.height},
+                    {"width", plane.camera.width},
+                    {"height", plane.camera.height},
                     {"file", spec.file.filename().string()}};
-        one["photo"] = {{"blob", at_factor("photo/" + name, factor)}, {"shrink", factor},
+        one["photo"] = {{"blob", at_factor("photo/" + name, factor)},
+                        {"shrink", factor},
                         {"quantum", quantum_json(intensity_quantum(1.25))}};
         // Told noise of one channel is a function of its intensity; else it takes a picture.
         const bool told = spec.noise && (spec.rgb || read_image_header(spec.file).channels == 1);
         if (told)
-          one["noise"] = {{"read", spec.noise->read}, {"full_well", spec.noise->full_well},
+          one["noise"] = {{"read", spec.noise->read},
+                          {"full_well", spec.noise->full_well},
                           {"factor", noise_factor(*capture_)}};
         else
-          one["sigma"] = {{"blob", at_factor("sigma/" + name, factor)}, {"shrink", factor},
+          one["sigma"] = {{"blob", at_factor("sigma/" + name, factor)},
+                          {"shrink", factor},
                           {"quantum", quantum_json(intensity_quantum(0.25))}};
         all.push_back(std::move(one));
       }
@@ -181,8 +189,12 @@ json RunView::document(int shrink_old, int shrink_new) {
   if (timeline["steps"].size() != steps.size())
     faults.push_back(fmt::format("run.json tells of {} steps, the folder holds {}",
                                  timeline["steps"].size(), steps.size()));
-  json out = {{"hookeye", 1}, {"page", 1}, {"version", HOOKEYE_VERSION},
-              {"run", folder_.string()}, {"timeline", timeline}, {"steps", std::move(steps)},
+  json out = {{"hookeye", 1},
+              {"page", 1},
+              {"version", HOOKEYE_VERSION},
+              {"run", folder_.string()},
+              {"timeline", timeline},
+              {"steps", std::move(steps)},
               {"photos", photos_json(faults, shrink_new)},
               {"capture", capture_ ? capture_facts(*capture_) : json()},
               {"practice", capture_ ? reporting_table(*capture_) : json::array()}};
@@ -198,8 +210,9 @@ std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const 
   if (found == planes_.end()) return {};
   Photo photo = read_photo(found->second.spec, found->second.camera);
   if (kind == "photo")
-    return Blob{encode_png16(shrink(photo.planes[found->second.plane], factor),
-                             intensity_quantum(1.25)), "image/png"};
+    return Blob{
+        encode_png16(shrink(photo.planes[found->second.plane], factor), intensity_quantum(1.25)),
+        "image/png"};
   Image& sigma = photo.sigma[found->second.plane];
   for (float& s : sigma.values) s *= static_cast<float>(noise_factor(*capture_));
   return Blob{encode_png16(shrink(sigma, factor), intensity_quantum(0.25)), "image/png"};

@@ -18,7 +18,9 @@ bool RefitJob::start(const AddRequest& request) {
   running_ = true;
   cancel_ = false;
   started_ = stage_started_ = Clock::now();
-  state_ = {{"state", "running"}, {"effect", request.effect}, {"take_back", request.take_back},
+  state_ = {{"state", "running"},
+            {"effect", request.effect},
+            {"take_back", request.take_back},
             {"stage", "reading the run"}};
   thread_ = std::thread([this, request] { work(request); });
   return true;
@@ -83,9 +85,9 @@ void RefitJob::refit(const AddRequest& request) {
   stage("diagnosing the new step");
   step.diagnosis = value_or_fail(diagnose(bench_->workspace, step.fitted, wanted.diagnosis));
   record_diagnosis(run, step);
-  finish("done", fmt::format("χ {:.4g} → {:.4g} on the fitted photos",
-                             current.fitted.evaluation.chi(false),
-                             step.fitted.evaluation.chi(false)));
+  finish("done",
+         fmt::format("χ {:.4g} → {:.4g} on the fitted photos", current.fitted.evaluation.chi(false),
+                     step.fitted.evaluation.chi(false)));
 }
 
 void RefitJob::work(const AddRequest& request) {

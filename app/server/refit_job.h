@@ -22,7 +22,8 @@ class RefitJob {
   /// False: another one is running.
   bool start(const AddRequest& request);
   void stop() { cancel_ = true; }
-  /// {state: idle | running | done | failed | stopped, effect, take_back, stage, iteration, of, chi,
+  /// {state: idle | running | done | failed | stopped, effect, take_back, stage, iteration, of,
+  /// chi,
   ///  seconds, seconds_left, message}
   nlohmann::json state();
 

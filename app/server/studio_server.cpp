@@ -61,8 +61,7 @@ class StudioLock {
   }
   void tell(const std::string& address) const {
     if (handle_ < 0 || ::ftruncate(handle_, 0) != 0) return;
-    [[maybe_unused]] const auto written =
-        ::pwrite(handle_, address.data(), address.size(), 0);
+    [[maybe_unused]] const auto written = ::pwrite(handle_, address.data(), address.size(), 0);
   }
 
  private:
@@ -79,8 +78,9 @@ class Studio {
     route();
     // Addresses that others use are refused rather than shared.
     server_.set_socket_options([](socket_t) {});
-    port_ = options.port > 0 ? (server_.bind_to_port(options.host, options.port) ? options.port : -1)
-                             : server_.bind_to_any_port(options.host);
+    port_ = options.port > 0
+                ? (server_.bind_to_port(options.host, options.port) ? options.port : -1)
+                : server_.bind_to_any_port(options.host);
     if (port_ < 0)
       throw InputError({options.host}, fmt::format("port {} cannot be used", options.port),
                        "choose another with --port, or leave it out");
@@ -112,10 +112,10 @@ class Studio {
   /// By a provider, because the library would compress whole text bodies for seconds.
   static void send(Response& response, std::string body, const char* type) {
     const auto kept = std::make_shared<std::string>(std::move(body));
-    response.set_content_provider(
-        kept->size(), type, [kept](size_t offset, size_t length, httplib::DataSink& sink) {
-          return sink.write(kept->data() + offset, length);
-        });
+    response.set_content_provider(kept->size(), type,
+                                  [kept](size_t offset, size_t length, httplib::DataSink& sink) {
+                                    return sink.write(kept->data() + offset, length);
+                                  });
   }
   static void reply(Response& response, const json& document) {
     send(response, document.dump(-1, ' ', false, json::error_handler_t::replace),
@@ -170,12 +170,11 @@ class Studio {
 
   void file(const Request& request, Response& response) {
     std::error_code error;
-    const fs::path wanted =
-        fs::canonical(view_.folder() / request.get_param_value("name"), error);
+    const fs::path wanted = fs::canonical(view_.folder() / request.get_param_value("name"), error);
     const std::string inside = wanted.string().substr(0, view_.folder().string().size() + 1);
     static const std::string kKinds[] = {".json", ".vtu", ".csv", ".yaml", ".exr", ".png"};
-    const bool kind = std::find(std::begin(kKinds), std::end(kKinds), wanted.extension()) !=
-                      std::end(kKinds);
+    const bool kind =
+        std::find(std::begin(kKinds), std::end(kKinds), wanted.extension()) != std::end(kKinds);
     if (error || inside != view_.folder().string() + "/" || !kind || !fs::is_regular_file(wanted))
       return refuse(response, 404, "there is no such file in this run");
     response.set_header("Content-Disposition",
@@ -211,9 +210,8 @@ class Studio {
       if (!blob) return refuse(response, 404, "there is no such part of this run");
       send(response, std::move(blob->bytes), blob->type.c_str());
     });
-    server_.Get(root + "file", [this](const Request& request, Response& response) {
-      file(request, response);
-    });
+    server_.Get(root + "file",
+                [this](const Request& request, Response& response) { file(request, response); });
     server_.Post(root + "add",
                  [this](const Request& request, Response& response) { add(request, response); });
     server_.Post(root + "stop", [this](const Request&, Response& response) {

@@ -55,10 +55,10 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   }
   if (!fs::exists(found)) {
     // discover works on the folder alone; the truth beside it is read below, after it has ended
-    const int status =
-        run(fmt::format("{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
-                        shell_quoted(options.hookeye), shell_quoted(capture), shell_quoted(folder / "run"),
-                        shell_quoted(found), shell_quoted(folder / "discover.log")));
+    const int status = run(fmt::format(
+        "{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
+        shell_quoted(options.hookeye), shell_quoted(capture), shell_quoted(folder / "run"),
+        shell_quoted(found), shell_quoted(folder / "discover.log")));
     if (status != 0) {
       failed.status = fmt::format("discover {}", status);
       return failed;

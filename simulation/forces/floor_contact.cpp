@@ -7,9 +7,9 @@
 namespace hookeye {
 namespace {
 
-/// Potential sum_a A_a k phi(d_a), depth d = -(x - point).n, with phi'(d) = 0 for d < 0, d^2/(2h) up
-/// to the smoothing depth h, d - h/2 beyond. A_a: rest area of node a (integral of N_a), which for
-/// quadratic faces lies on mid nodes only.
+/// Potential sum_a A_a k phi(d_a), depth d = -(x - point).n, with phi'(d) = 0 for d < 0, d^2/(2h)
+/// up to the smoothing depth h, d - h/2 beyond. A_a: rest area of node a (integral of N_a), which
+/// for quadratic faces lies on mid nodes only.
 class FloorContact final : public ForceTerm {
  public:
   FloorContact(const TetMesh& mesh, const Vector3d& point, const Vector3d& normal, double k,

@@ -102,9 +102,9 @@ class FollowerPressure final : public ForceTerm {
   double p_;
 };
 
-/// Potential 1/2 integral u.(k_n n n + k_t (1 - n n)).u dA over the rest patch, u interpolated by the
-/// faces' shape functions: positive semidefinite, where lumping by nodal areas would leave corner
-/// nodes of quadratic faces (area 0) without a spring.
+/// Potential 1/2 integral u.(k_n n n + k_t (1 - n n)).u dA over the rest patch, u interpolated by
+/// the faces' shape functions: positive semidefinite, where lumping by nodal areas would leave
+/// corner nodes of quadratic faces (area 0) without a spring.
 class ElasticFoundation final : public ForceTerm {
  public:
   ElasticFoundation(Faces faces, double kn, double kt, VectorXd target)

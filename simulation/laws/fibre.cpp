@@ -3,9 +3,9 @@
 // W = stiffness/2 (I4bar - 1)^2, I4bar = J^(-2/3) a.C a, along the unit rest direction a; acts in
 // tension and compression. For woven or printed material that is stiffer along one direction. The
 // direction's three numbers are parameters too; only its direction counts (a is normalised).
-#include "simulation/laws/invariants.h"
-
 #include <limits>
+
+#include "simulation/laws/invariants.h"
 
 namespace hookeye {
 namespace {
@@ -54,9 +54,8 @@ class Fibre final : public EnergyTerm {
     const Eigen::Vector3d e = Eigen::Vector3d::Unit(k - 1);
     const Eigen::Vector3d da = (e - a_ * a_.dot(e)) / d_.norm();
     const double dI4 = 2.0 * (F * a_).dot(F * da);
-    const Matrix3d dgradient =
-        i.scale * (2.0 * F * (da * a_.transpose() + a_ * da.transpose()) -
-                   (i.p * dI4 / d.J) * d.cof);
+    const Matrix3d dgradient = i.scale * (2.0 * F * (da * a_.transpose() + a_ * da.transpose()) -
+                                          (i.p * dI4 / d.J) * d.cof);
     return k_ * (i.scale * dI4 * i.gradient(d) + (i.value() - 1) * dgradient);
   }
 

@@ -6,7 +6,8 @@
 namespace hookeye::laws {
 
 void add_d2J(double scale, const Matrix3d& F, Matrix9d& D) {
-  // d2J/dF_ia dF_jb = e_ijk e_abc F_kc: the block (a, b) is -+ the cross-product matrix of column c.
+  // d2J/dF_ia dF_jb = e_ijk e_abc F_kc: the block (a, b) is -+ the cross-product matrix of column
+  // c.
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
     const Eigen::Vector3d f = scale * F.col((a + 2) % 3);

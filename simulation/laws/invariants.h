@@ -29,7 +29,8 @@ void add_d2J(double scale, const Matrix3d& F, Matrix9d& D);
 
 /// What all invariants need of F, computed once.
 struct Deformation {
-  explicit Deformation(const Matrix3d& F_) : F(F_), cof(cofactor(F_)), J(F_.col(0).dot(cof.col(0))) {}
+  explicit Deformation(const Matrix3d& F_)
+      : F(F_), cof(cofactor(F_)), J(F_.col(0).dot(cof.col(0))) {}
   Matrix3d F, cof;
   double J;
 };
@@ -41,8 +42,8 @@ struct Isochoric {
   Matrix3d dI;
   double value() const { return scale * I; }
   Matrix3d gradient(const Deformation& d) const { return scale * (dI - (p * I / d.J) * d.cof); }
-  /// D += w d2Ibar/dF2 + w2 dIbar dIbar^T, without the two parts that callers batch: w J^(-p) d2I/dF2
-  /// (depends on the invariant) and d2J (its coefficient is returned).
+  /// D += w d2Ibar/dF2 + w2 dIbar dIbar^T, without the two parts that callers batch: w J^(-p)
+  /// d2I/dF2 (depends on the invariant) and d2J (its coefficient is returned).
   double add_hessian(const Deformation& d, double w, double w2, Matrix9d& D) const;
 };
 

@@ -4,10 +4,10 @@
 // stretches lbar_j = J^(-1/3) l_j. The most flexible of the classical rubber laws: pairs of a
 // modulus and an exponent, tension and compression shaped apart. Small-strain shear modulus
 // sum mu_i alpha_i / 2, which must be positive. One term with alpha = 2 is neo-Hooke.
-#include "simulation/laws/invariants.h"
-
 #include <Eigen/SVD>
 #include <limits>
+
+#include "simulation/laws/invariants.h"
 
 namespace hookeye {
 namespace {
@@ -46,8 +46,8 @@ class Ogden final : public EnergyTerm {
     for (double m : mu_) mu = std::max(mu, std::abs(m));
     for (double a : alpha_) alpha = std::max(alpha, std::abs(a));
     for (size_t i = 0; i < mu_.size(); ++i)
-      all.push_back(laws::coefficient("mu" + std::to_string(i + 1), "Ogden modulus",
-                                      units.stress(), mu_[i], mu));
+      all.push_back(laws::coefficient("mu" + std::to_string(i + 1), "Ogden modulus", units.stress(),
+                                      mu_[i], mu));
     for (size_t i = 0; i < mu_.size(); ++i)
       all.push_back(laws::coefficient("alpha" + std::to_string(i + 1), "Ogden exponent", "",
                                       alpha_[i], alpha));
@@ -65,8 +65,7 @@ class Ogden final : public EnergyTerm {
     const Principal p(F);
     double W = 0.5 * kappa_ * (p.J - 1) * (p.J - 1);
     for (size_t i = 0; i < mu_.size(); ++i)
-      W += mu_[i] / alpha_[i] *
-           ((p.l / std::cbrt(p.J)).array().pow(alpha_[i]).sum() - 3);
+      W += mu_[i] / alpha_[i] * ((p.l / std::cbrt(p.J)).array().pow(alpha_[i]).sum() - 3);
     return W;
   }
 
@@ -145,7 +144,8 @@ class Ogden final : public EnergyTerm {
     }
     return H;
   }
-  /// (g_i - g_j)/(l_i - l_j): powers by power_difference, (1/l_i - 1/l_j)/(l_i - l_j) = -1/(l_i l_j).
+  /// (g_i - g_j)/(l_i - l_j): powers by power_difference, (1/l_i - 1/l_j)/(l_i - l_j) = -1/(l_i
+  /// l_j).
   double pair_quotient(const Principal& p, int i, int j) const {
     double inverse = kappa_ * (p.J - 1) * p.J, quotient = 0;
     for (size_t t = 0; t < mu_.size(); ++t) {

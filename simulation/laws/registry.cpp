@@ -38,7 +38,8 @@ std::string check_ogden(const Values& v) {
     if (alpha[i] == 0) return "an exponent `alpha` is 0";
     shear += 0.5 * mu[i] * alpha[i];
   }
-  return shear > 0 ? "" : "the small-strain shear modulus, sum of mu_i alpha_i / 2, is not positive";
+  return shear > 0 ? ""
+                   : "the small-strain shear modulus, sum of mu_i alpha_i / 2, is not positive";
 }
 
 std::string check_mooney(const Values& v) {
@@ -55,7 +56,9 @@ const std::vector<Form>& known_laws() {
        [](const Values& v) { return neo_hookean(number(v, "mu"), number(v, "kappa")); }},
       {"neo-hookean",
        {{"mu", K::positive}, {"kappa_over_mu", K::positive}},
-       [](const Values& v) { return neo_hookean_tied(number(v, "mu"), number(v, "kappa_over_mu")); }},
+       [](const Values& v) {
+         return neo_hookean_tied(number(v, "mu"), number(v, "kappa_over_mu"));
+       }},
       {"stvk",
        {{"lambda", K::not_negative}, {"mu", K::positive}},
        [](const Values& v) { return stvk(number(v, "lambda"), number(v, "mu")); }},
@@ -80,7 +83,8 @@ const std::vector<Form>& known_laws() {
 
 std::string usage(const Form& form) {
   std::vector<std::string> keys;
-  for (const Key& k : form.keys) keys.push_back(k.name + (k.kind == Key::Kind::list ? ": [...]" : ""));
+  for (const Key& k : form.keys)
+    keys.push_back(k.name + (k.kind == Key::Kind::list ? ": [...]" : ""));
   return fmt::format("{} {{{}}}", form.law, fmt::join(keys, ", "));
 }
 
@@ -126,11 +130,11 @@ void check_keys(const MaterialSpec& spec, const Form& form) {
     if (has_key(form, name)) continue;
     const std::string near = nearest_name(name, names);
     const bool other_form = std::find(names.begin(), names.end(), name) != names.end();
-    throw InputError(value.place,
-                     other_form ? fmt::format("`{}` does not go with the other parameters", name)
-                                : fmt::format("the law {} has no parameter `{}`", spec.law, name),
-                     near.empty() || other_form ? usages(spec.law)
-                                                : fmt::format("did you mean `{}`?", near));
+    throw InputError(
+        value.place,
+        other_form ? fmt::format("`{}` does not go with the other parameters", name)
+                   : fmt::format("the law {} has no parameter `{}`", spec.law, name),
+        near.empty() || other_form ? usages(spec.law) : fmt::format("did you mean `{}`?", near));
   }
   for (const Key& k : form.keys)
     if (!spec.parameters.count(k.name))

@@ -31,8 +31,8 @@ class StVk final : public EnergyTerm {
     Matrix9d D;
     for (int b = 0; b < 3; ++b) {
       for (int a = 0; a < 3; ++a) {
-        Matrix3d block = lambda_ * F.col(a) * F.col(b).transpose() +
-                         mu_ * F.col(b) * F.col(a).transpose();
+        Matrix3d block =
+            lambda_ * F.col(a) * F.col(b).transpose() + mu_ * F.col(b) * F.col(a).transpose();
         if (a == b) block += mu_ * B;
         block.diagonal().array() += S(a, b);
         D.block<3, 3>(3 * a, 3 * b) = block;

@@ -134,9 +134,9 @@ void compare(const std::string& name) {
   for (const ExampleSpec& e : c.capture.examples)
     for (const PhotoSpec& p : e.photos) {
       const char* folder = std::getenv("HOOKEYE_PICTURES");
-      const Score s = score(c, renderer, e, p, options,
-                            folder ? fmt::format("{}/{}_{}_{}.png", folder, name, e.name, p.camera)
-                                   : "");
+      const Score s =
+          score(c, renderer, e, p, options,
+                folder ? fmt::format("{}/{}_{}_{}.png", folder, name, e.name, p.camera) : "");
       fmt::print("{} {} {}: chi {:.3f} over {} px, mean {:.3f}; even parts {:.3f}, floor {:.3f}\n",
                  name, e.name, p.camera, s.chi, s.pixels, s.mean, s.even, s.floor);
       // The photos' own noise is 1.2-1.4 times the stated one (rounding, the renderer's samples).

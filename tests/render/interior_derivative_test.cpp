@@ -17,7 +17,9 @@ struct Setting {
 
 std::string name_of(const testing::TestParamInfo<Setting>& info) {
   const Setting& s = info.param;
-  std::string out = s.source == Source::image ? "image" : s.source == Source::photo ? "photo" : "uniform";
+  std::string out = s.source == Source::image   ? "image"
+                    : s.source == Source::photo ? "photo"
+                                                : "uniform";
   out += s.projection == Camera::Projection::perspective ? "_perspective" : "_orthographic";
   if (s.distorted) out += "_distorted";
   return out + (s.smooth ? "" : "_flat");
@@ -97,9 +99,9 @@ TEST_P(Interior, positions) {
   }
 }
 
-// Flat shading jumps at the facets' edges, and so does the share of the sky that lies below a facet.
-// A ray that changes facets within the step measures that jump and not a derivative: the median
-// pixel has none.
+// Flat shading jumps at the facets' edges, and so does the share of the sky that lies below a
+// facet. A ray that changes facets within the step measures that jump and not a derivative: the
+// median pixel has none.
 TEST_P(Interior, positions_where_facets_matter) {
   state.ambient = 0.4;
   const Rendering r = render(x, x_reference, state, true);
@@ -123,9 +125,8 @@ TEST_P(Interior, reference) {
   const Matrix3Xd u = test::field(surface.X, 0.4);
   const VectorXd analytic =
       pick(test::directional(renderer, r, x, nullptr, &u, VectorXd::Zero(kPhotoColumns)));
-  expect_derivative(
-      [&](double h) { return pick(render(x, x_reference + h * u, state, false).I); }, analytic, 0.01,
-      1e-3, "reference");
+  expect_derivative([&](double h) { return pick(render(x, x_reference + h * u, state, false).I); },
+                    analytic, 0.01, 1e-3, "reference");
 }
 
 TEST_P(Interior, photo_columns) {
@@ -135,7 +136,8 @@ TEST_P(Interior, photo_columns) {
   for (int column = 0; column < kBlur; ++column) {
     const bool light = column >= kAmbient;
     if (light && !state.shaded) continue;
-    if (column == kMove + 2 && state.camera.projection == Camera::Projection::orthographic) continue;
+    if (column == kMove + 2 && state.camera.projection == Camera::Projection::orthographic)
+      continue;
     // A uniform ball turned about the optical axis hardly changes: only breaks of slope remain.
     if (column == kRotate + 2 && GetParam().source == Source::uniform) continue;
     const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
@@ -165,19 +167,18 @@ TEST_P(Interior, photo_columns) {
 
 constexpr auto kPerspective = Camera::Projection::perspective;
 constexpr auto kOrthographic = Camera::Projection::orthographic;
-INSTANTIATE_TEST_SUITE_P(
-    all, Interior,
-    testing::Values(Setting{Source::image, kPerspective, false, true},
-                    Setting{Source::image, kPerspective, true, true},
-                    Setting{Source::image, kOrthographic, false, true},
-                    Setting{Source::photo, kPerspective, false, true},
-                    Setting{Source::photo, kPerspective, true, true},
-                    Setting{Source::photo, kOrthographic, false, true},
-                    Setting{Source::uniform, kPerspective, false, true},
-                    Setting{Source::uniform, kOrthographic, false, true},
-                    Setting{Source::uniform, kPerspective, true, true},
-                    Setting{Source::image, kPerspective, false, false}),
-    name_of);
+INSTANTIATE_TEST_SUITE_P(all, Interior,
+                         testing::Values(Setting{Source::image, kPerspective, false, true},
+                                         Setting{Source::image, kPerspective, true, true},
+                                         Setting{Source::image, kOrthographic, false, true},
+                                         Setting{Source::photo, kPerspective, false, true},
+                                         Setting{Source::photo, kPerspective, true, true},
+                                         Setting{Source::photo, kOrthographic, false, true},
+                                         Setting{Source::uniform, kPerspective, false, true},
+                                         Setting{Source::uniform, kOrthographic, false, true},
+                                         Setting{Source::uniform, kPerspective, true, true},
+                                         Setting{Source::image, kPerspective, false, false}),
+                         name_of);
 
 TEST(normals, derivative) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 1, 0.2);

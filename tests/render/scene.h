@@ -14,12 +14,13 @@ namespace hookeye::test {
 inline SurfaceMesh sphere(const Vector3d& centre, double radius, int subdivisions, double bump = 0,
                           const Vector2d& uv_shift = Vector2d::Zero()) {
   const double p = (1 + std::sqrt(5.0)) / 2;
-  std::vector<Vector3d> x = {{-1, p, 0}, {1, p, 0}, {-1, -p, 0}, {1, -p, 0}, {0, -1, p}, {0, 1, p},
-                             {0, -1, -p}, {0, 1, -p}, {p, 0, -1}, {p, 0, 1}, {-p, 0, -1}, {-p, 0, 1}};
-  std::vector<std::array<int, 3>> t = {
-      {0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-      {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-      {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  std::vector<Vector3d> x = {{-1, p, 0}, {1, p, 0}, {-1, -p, 0}, {1, -p, 0},
+                             {0, -1, p}, {0, 1, p}, {0, -1, -p}, {0, 1, -p},
+                             {p, 0, -1}, {p, 0, 1}, {-p, 0, -1}, {-p, 0, 1}};
+  std::vector<std::array<int, 3>> t = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                                       {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                                       {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                                       {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   for (int s = 0; s < subdivisions; ++s) {
     std::map<std::pair<int, int>, int> middle;
     const auto between = [&](int a, int b) {
@@ -44,7 +45,8 @@ inline SurfaceMesh sphere(const Vector3d& centre, double radius, int subdivision
   for (const auto& f : t) {
     auto& uv = out.uv.emplace_back();
     for (int k = 0; k < 3; ++k)
-      uv[k] = 0.5 * Vector2d::Ones() + uv_shift + (out.X.col(f[k]) - centre).head<2>() / (4 * radius);
+      uv[k] =
+          0.5 * Vector2d::Ones() + uv_shift + (out.X.col(f[k]) - centre).head<2>() / (4 * radius);
   }
   return out;
 }

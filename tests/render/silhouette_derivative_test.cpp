@@ -65,9 +65,9 @@ TEST_F(Contours, positions) {
       Renderer renderer(surface);
       const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
       const Matrix3Xd u = test::field(surface.X, 0.3);
-      compare(test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
-              [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1,
-              "positions");
+      compare(
+          test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
+          [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1, "positions");
     }
 }
 
@@ -80,14 +80,15 @@ TEST_F(Contours, inner_edge_alone) {
   VectorXd analytic =
       test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns));
   ASSERT_GT(r.dI.pixel.size(), 500u);
-  compare(analytic,
-          [&](double h) {
-            VectorXd I = picture(renderer, surface.X + h * u, state);
-            for (int i = 0; i < I.size(); ++i)
-              if (!std::isfinite(analytic[i])) I[i] = 0;
-            return I;
-          },
-          0.1, "inner edge");
+  compare(
+      analytic,
+      [&](double h) {
+        VectorXd I = picture(renderer, surface.X + h * u, state);
+        for (int i = 0; i < I.size(); ++i)
+          if (!std::isfinite(analytic[i])) I[i] = 0;
+        return I;
+      },
+      0.1, "inner edge");
 }
 
 TEST_F(Contours, camera) {
@@ -104,7 +105,11 @@ TEST_F(Contours, camera) {
         s.camera = s.camera.zoomed(h);
       return picture(renderer, surface.X, s);
     };
-    const double h = column < 2 ? 0.002 : column == 2 ? 0.03 : column < 5 ? 0.1 : column == 5 ? 0.5 : 0.01;
+    const double h = column < 2    ? 0.002
+                     : column == 2 ? 0.03
+                     : column < 5  ? 0.1
+                     : column == 5 ? 0.5
+                                   : 0.01;
     compare(test::directional(renderer, r, surface.X, nullptr, nullptr,
                               VectorXd::Unit(kPhotoColumns, column)),
             f, h, "column " + std::to_string(column));

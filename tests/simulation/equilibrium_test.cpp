@@ -1,10 +1,11 @@
 // Equilibria with known answers, sensitivities against re-solved equilibria, and failure.
+#include "simulation/equilibrium.h"
+
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
 
 #include "simulation/blocks.h"
-#include "simulation/equilibrium.h"
 #include "support/derivative.h"
 
 namespace hookeye {
@@ -67,7 +68,8 @@ TEST_P(Exact, UniaxialStretchIsExact) {
   EXPECT_NEAR(state.von_mises[5], force / (t * t), 1e-10);
   EXPECT_NEAR(state.J[5], l * t * t, 1e-10);
   EXPECT_NEAR(state.green_strain(0, 5), (l * l - 1) / 2, 1e-10);
-  EXPECT_NEAR(state.energy_density.sum() / mesh.size(), internal_energy(mesh, of(law), e.q) / 3, 1e-10);
+  EXPECT_NEAR(state.energy_density.sum() / mesh.size(), internal_energy(mesh, of(law), e.q) / 3,
+              1e-10);
 }
 
 TEST_P(Exact, PatchTestOfShearAndStretch) {
@@ -105,22 +107,24 @@ struct Case {
     Loading l;
     hold(mesh, base, l);
     l.prescribe(mesh, tip, 2, lift);
-    l.forces = {self_weight(mesh, 1.0, Vector3d(0, gravity, 0)),
-                dead_force(tip, Vector3d(0.02, 0, 0)),
-                follower_pressure(test::region_where(mesh, [](const Vector3d&) { return true; }), pressure),
-                elastic_foundation(side, spring, 0.5 * spring, mesh.X.reshaped())};
+    l.forces = {
+        self_weight(mesh, 1.0, Vector3d(0, gravity, 0)), dead_force(tip, Vector3d(0.02, 0, 0)),
+        follower_pressure(test::region_where(mesh, [](const Vector3d&) { return true; }), pressure),
+        elastic_foundation(side, spring, 0.5 * spring, mesh.X.reshaped())};
     return l;
   }
   Equilibrium solved() const { return solve(mesh, energy(), loading()); }
 };
 
 /// dR/dp at fixed q by central differences of the residual, as effects do it.
-VectorXd dR(const Case& c, const VectorXd& q, const std::function<void(Case&, double)>& change, double h) {
+VectorXd dR(const Case& c, const VectorXd& q, const std::function<void(Case&, double)>& change,
+            double h) {
   Case up = c, down = c;
   change(up, h);
   change(down, -h);
   return (residual(c.mesh, up.energy(), up.loading(), q) -
-          residual(c.mesh, down.energy(), down.loading(), q)) / (2 * h);
+          residual(c.mesh, down.energy(), down.loading(), q)) /
+         (2 * h);
 }
 
 void check_sensitivity(const Case& c, const std::function<void(Case&, double)>& change, double h,
@@ -139,21 +143,27 @@ void check_sensitivity(const Case& c, const std::function<void(Case&, double)>& 
   test::expect_derivative([&](double t) { return resolved(t).q; }, S, h, relative, what);
   test::expect_derivative([&](double t) { return VectorXd(support_force(resolved(t), c.base)); },
                           d_support_force(c.base, dR_total), h, relative, what + ", force");
-  test::expect_derivative([&](double t) { return VectorXd(support_moment(resolved(t), c.tip, about)); },
-                          d_support_moment(e, c.tip, about, dR_total, S), h, relative, what + ", moment");
+  test::expect_derivative(
+      [&](double t) { return VectorXd(support_moment(resolved(t), c.tip, about)); },
+      d_support_moment(e, c.tip, about, dR_total, S), h, relative, what + ", moment");
 }
 
 TEST(Sensitivities, LoadsAndSupports) {
   const Case c;
-  check_sensitivity(c, [](Case& x, double h) { x.gravity += h; }, 4e-4, {}, "gravity");
-  check_sensitivity(c, [](Case& x, double h) { x.pressure += h; }, 2e-4, {}, "pressure");
-  check_sensitivity(c, [](Case& x, double h) { x.spring += h; }, 2e-4, {}, "foundation");
-  check_sensitivity(c, [](Case& x, double h) { x.swelling += h; }, 3e-4, {}, "swelling");
+  check_sensitivity(
+      c, [](Case& x, double h) { x.gravity += h; }, 4e-4, {}, "gravity");
+  check_sensitivity(
+      c, [](Case& x, double h) { x.pressure += h; }, 2e-4, {}, "pressure");
+  check_sensitivity(
+      c, [](Case& x, double h) { x.spring += h; }, 2e-4, {}, "foundation");
+  check_sensitivity(
+      c, [](Case& x, double h) { x.swelling += h; }, 3e-4, {}, "swelling");
   const Loading loading = c.loading();
   VectorXd dqc(static_cast<int>(loading.prescribed.size()));
   for (size_t i = 0; i < loading.prescribed.size(); ++i)
     dqc[static_cast<int>(i)] = loading.displacement[static_cast<int>(i)] != 0;
-  check_sensitivity(c, [](Case& x, double h) { x.lift += h; }, 1e-2, dqc, "prescribed motion");
+  check_sensitivity(
+      c, [](Case& x, double h) { x.lift += h; }, 1e-2, dqc, "prescribed motion");
 }
 
 TEST(Sensitivities, EveryParameterOfEveryLaw) {
@@ -200,7 +210,8 @@ TEST(Reactions, BalanceAppliedLoads) {
   for (const auto& f : loading.forces) f->add_residual(c.mesh, e.q, 1.0, R);
   for (int a = 0; a < c.mesh.nodes(); ++a)
     applied -= (e.q.segment<3>(3 * a) - about).cross(Vector3d(R.segment<3>(3 * a)));
-  EXPECT_LE((support_moment(e, c.base, about) + support_moment(e, c.tip, about) + applied).norm(), 1e-9);
+  EXPECT_LE((support_moment(e, c.base, about) + support_moment(e, c.tip, about) + applied).norm(),
+            1e-9);
 }
 
 TEST(Solver, RerunsAreBitEqualAndWarmEqualsCold) {
@@ -256,7 +267,10 @@ TEST(Solver, QuadraticElementsDoNotLock) {
     Loading loading;
     const Region left = plane(mesh, 0, 0), right = plane(mesh, 0, 48);
     hold(mesh, left, loading);
-    loading.prescribe(mesh, test::region_where(mesh, [](const Vector3d& X) { return X.z() < 1e-9 || X.z() > 1 - 1e-9; }), 2, 0);
+    loading.prescribe(mesh,
+                      test::region_where(
+                          mesh, [](const Vector3d& X) { return X.z() < 1e-9 || X.z() > 1 - 1e-9; }),
+                      2, 0);
     loading.forces = {dead_force(right, Vector3d(0, 0.02 * 16, 0))};
     const Equilibrium e = solve(mesh, of(neo_hookean(0.3, 30.0)), loading, 1e-9);
     double v = 0;
@@ -287,7 +301,8 @@ TEST(Solver, FailureSaysWhereAndWhy) {
   floating.forces = {dead_force(c.tip, Vector3d(1, 0, 0))};
   result = solve_equilibrium(c.mesh, c.energy(), floating);
   ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
-  EXPECT_THAT(std::get<NumericalFailure>(result).reason, testing::HasSubstr("translation along (1, 0, 0)"));
+  EXPECT_THAT(std::get<NumericalFailure>(result).reason,
+              testing::HasSubstr("translation along (1, 0, 0)"));
 
   EquilibriumOptions options;
   options.cancelled = [] { return true; };
@@ -309,7 +324,9 @@ TEST(Solver, UnloadedBodyStaysAtRest) {
 TEST(Solver, FreeBodySwellsInPlace) {
   const Case c;  // swollen, and nothing holds it: self-equilibrated
   const Equilibrium e = solve(c.mesh, c.energy(), Loading{}, 1e-9);
-  EXPECT_LE((element_state(c.mesh, c.energy(), e.q).J.array() - std::pow(c.swelling, 3)).abs().maxCoeff(), 1e-8);
+  EXPECT_LE(
+      (element_state(c.mesh, c.energy(), e.q).J.array() - std::pow(c.swelling, 3)).abs().maxCoeff(),
+      1e-8);
   EXPECT_TRUE(e.stable);
 }
 
@@ -321,7 +338,8 @@ TEST(Solver, FoundationAloneHoldsTheBody) {
   const Equilibrium e = solve(c.mesh, of(c.law), loading, 1e-9);
   EXPECT_TRUE(e.stable);
   double mean = 0;
-  for (int a : c.base.nodes) mean += c.base.nodal_area[a] / c.base.area * (e.q[3 * a] - c.mesh.X(0, a));
+  for (int a : c.base.nodes)
+    mean += c.base.nodal_area[a] / c.base.area * (e.q[3 * a] - c.mesh.X(0, a));
   EXPECT_NEAR(mean, 0.05 / (0.5 * 4), 1e-7);
 }
 

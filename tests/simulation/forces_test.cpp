@@ -46,9 +46,11 @@ VectorXd residual_of(const ForceTerm& force, const TetMesh& mesh, const VectorXd
 void check_potential(const ForceTerm& force, const TetMesh& mesh, const VectorXd& q,
                      const std::string& what) {
   const VectorXd d = test::noise(q.size(), 11);
-  const auto f = [&](double h) { return VectorXd::Constant(1, force.potential(mesh, q + h * d, 0.7)); };
-  test::expect_derivative(f, VectorXd::Constant(1, residual_of(force, mesh, q, 0.7).dot(d)), 1e-4, 1e-7,
-                          what);
+  const auto f = [&](double h) {
+    return VectorXd::Constant(1, force.potential(mesh, q + h * d, 0.7));
+  };
+  test::expect_derivative(f, VectorXd::Constant(1, residual_of(force, mesh, q, 0.7).dot(d)), 1e-4,
+                          1e-7, what);
 }
 
 void check_tangent(const ForceTerm& force, const TetMesh& mesh, const VectorXd& q,
@@ -72,13 +74,15 @@ TEST_P(Forces, DeadForceAndWeight) {
   check_potential(*weight, mesh, q, "weight");
   const VectorXd F = -residual_of(*force, mesh, q, 1.0), W = -residual_of(*weight, mesh, q, 1.0);
   EXPECT_LE((F.reshaped(3, mesh.nodes()).rowwise().sum() - Vector3d(1, -2, 3)).norm(), 1e-13);
-  EXPECT_LE((W.reshaped(3, mesh.nodes()).rowwise().sum() - 3.0 * 2.0 * Vector3d(0.5, 0, -9)).norm(), 1e-12);
+  EXPECT_LE((W.reshaped(3, mesh.nodes()).rowwise().sum() - 3.0 * 2.0 * Vector3d(0.5, 0, -9)).norm(),
+            1e-12);
 }
 
 TEST(Weight, IsConsistentInEachElement) {
   TetMesh mesh = test::block(1, 1, 1, {1, 1, 1}, 2);
   mesh.elements.conservativeResize(10, 1);
-  const VectorXd W = -residual_of(*self_weight(mesh, 1.0, Vector3d(0, 0, 1)), mesh, mesh.X.reshaped(), 1.0);
+  const VectorXd W =
+      -residual_of(*self_weight(mesh, 1.0, Vector3d(0, 0, 1)), mesh, mesh.X.reshaped(), 1.0);
   for (int i = 0; i < 10; ++i)
     EXPECT_NEAR(W[3 * mesh.elements(i, 0) + 2], (i < 4 ? -1.0 / 20 : 1.0 / 5) / 6, 1e-15);
 }
@@ -106,7 +110,8 @@ TEST_P(Forces, PressureOnPatchFollowsTheNormalAndHasTheTangentOfAHeldRim) {
   // Directions that leave the rim alone.
   VectorXd d = test::noise(3 * mesh.nodes(), 13);
   for (int a = 0; a < mesh.nodes(); ++a)
-    if (mesh.X(0, a) < 1e-9 || mesh.X(0, a) > 2 - 1e-9 || mesh.X(1, a) < 1e-9 || mesh.X(1, a) > 1.5 - 1e-9)
+    if (mesh.X(0, a) < 1e-9 || mesh.X(0, a) > 2 - 1e-9 || mesh.X(1, a) < 1e-9 ||
+        mesh.X(1, a) > 1.5 - 1e-9)
       d.segment<3>(3 * a).setZero();
   const VectorXd q = deformed(mesh);
   const auto r = [&](double h) {
@@ -129,12 +134,14 @@ TEST_P(Forces, Foundation) {
   check_tangent(*springs, mesh, q, "foundation");
   // Moved as a whole: traction times area, stiff along the normal z, soft along x.
   const VectorXd moved = (mesh.X.colwise() + Vector3d(0.2, 0, 0.1)).reshaped();
-  const Vector3d f = -residual_of(*springs, mesh, moved, 1.0).reshaped(3, mesh.nodes()).rowwise().sum();
+  const Vector3d f =
+      -residual_of(*springs, mesh, moved, 1.0).reshaped(3, mesh.nodes()).rowwise().sum();
   EXPECT_LE((f - Vector3d(-0.7 * 0.2 * 3, 0, -4.0 * 0.1 * 3)).norm(), 1e-12);
   // No direction of negative stiffness, corner nodes included.
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(dense_tangent(*springs, mesh, X, 1.0));
   EXPECT_GE(eigen.eigenvalues()[0], -1e-14);
-  EXPECT_EQ((eigen.eigenvalues().array() > 1e-9).count(), 3 * static_cast<int>(top(mesh).nodes.size()));
+  EXPECT_EQ((eigen.eigenvalues().array() > 1e-9).count(),
+            3 * static_cast<int>(top(mesh).nodes.size()));
 }
 
 TEST_P(Forces, Floor) {
@@ -143,7 +150,10 @@ TEST_P(Forces, Floor) {
   const auto floor = floor_contact(mesh, Vector3d(0, 0, 0.45), Vector3d(0.1, 0, 1), 5.0, 0.3);
   check_potential(*floor, mesh, q, "floor");
   check_tangent(*floor, mesh, q, "floor", 1e-6);  // the tangent is only C0
-  EXPECT_EQ(residual_of(*floor_contact(mesh, Vector3d(0, 0, -9), Vector3d::UnitZ(), 5, 0.3), mesh, q, 1).norm(), 0);
+  EXPECT_EQ(
+      residual_of(*floor_contact(mesh, Vector3d(0, 0, -9), Vector3d::UnitZ(), 5, 0.3), mesh, q, 1)
+          .norm(),
+      0);
   // A block sunk by 1 with smoothing 0.3: k (d - h/2) on the lower face, 0 on top where d = 0.
   const VectorXd X = mesh.X.reshaped();
   const auto flat = floor_contact(mesh, Vector3d(0, 0, 1.0), Vector3d::UnitZ(), 5.0, 1e-6);
@@ -156,7 +166,8 @@ TEST_P(Forces, Floor) {
 
 EnergyModel mixed(const TetMesh& mesh) {
   EnergyModel energy;
-  energy.parts.push_back({neo_hookean(0.05, 0.6), (1.5 + test::noise(mesh.size(), 21).array()).matrix()});
+  energy.parts.push_back(
+      {neo_hookean(0.05, 0.6), (1.5 + test::noise(mesh.size(), 21).array()).matrix()});
   energy.parts.push_back({fibre(0.03, Vector3d(1, 1, 0)), {}});
   energy.swelling = 1.1 + 0.05 * test::noise(mesh.size(), 22).array();
   return energy;
@@ -171,12 +182,13 @@ TEST_P(Forces, ElementsEnergyForcesTangent) {
       [&](double h) { return VectorXd::Constant(1, internal_energy(mesh, energy, q + h * d)); },
       VectorXd::Constant(1, R.dot(d)), 1e-4, 1e-8, "energy");
   Loading loading;
-  loading.forces = {follower_pressure(everywhere(mesh), 0.02), self_weight(mesh, 1, Vector3d(0, 0, -1)),
+  loading.forces = {follower_pressure(everywhere(mesh), 0.02),
+                    self_weight(mesh, 1, Vector3d(0, 0, -1)),
                     elastic_foundation(top(mesh), 0.3, 0.1, mesh.X.reshaped())};
   const SparseMatrix K = tangent(mesh, energy, loading, q, 0.6);
   EXPECT_LE((K - SparseMatrix(K.transpose())).norm(), 1e-14 * K.norm());
-  test::expect_derivative([&](double h) { return residual(mesh, energy, loading, q + h * d, 0.6); }, K * d,
-                          1e-4, 1e-8, "tangent");
+  test::expect_derivative([&](double h) { return residual(mesh, energy, loading, q + h * d, 0.6); },
+                          K * d, 1e-4, 1e-8, "tangent");
   const MatrixXd each = element_forces(mesh, energy, q);
   VectorXd sum = VectorXd::Zero(q.size());
   for (int e = 0; e < mesh.size(); ++e)
@@ -200,7 +212,8 @@ TEST_P(Forces, ParameterDerivativeOfForces) {
             other.parts[part].term = energy.parts[part].term->with(v);
             return residual(mesh, other, Loading{}, q);
           },
-          dR_dtheta(mesh, energy, q, part, k), 1e-4, 1e-8, fmt::format("part {} parameter {}", part, k));
+          dR_dtheta(mesh, energy, q, part, k), 1e-4, 1e-8,
+          fmt::format("part {} parameter {}", part, k));
 }
 
 TEST_P(Forces, SwollenFreeBodyIsStressFree) {
@@ -221,7 +234,8 @@ TEST(Loading, PrescribeOverrideRelease) {
   loading.prescribe(mesh, region, 0, 0.3);
   EXPECT_TRUE(std::is_sorted(loading.prescribed.begin(), loading.prescribed.end()));
   for (size_t i = 0; i < loading.prescribed.size(); ++i)
-    EXPECT_EQ(loading.displacement[static_cast<int>(i)], loading.prescribed[i] % 3 == 0 ? 0.3 : 0.1);
+    EXPECT_EQ(loading.displacement[static_cast<int>(i)],
+              loading.prescribed[i] % 3 == 0 ? 0.3 : 0.1);
   loading.release(region);
   for (int u : loading.prescribed) EXPECT_LT(mesh.X(2, u / 3), 1 - 1e-9);
   RigidMotion motion;

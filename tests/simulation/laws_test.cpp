@@ -86,7 +86,8 @@ struct FibreEnergy {
 VectorXd values_of(const Law& law) {
   const auto parameters = law->parameters(Units{"mm", "N"});
   VectorXd v(static_cast<Eigen::Index>(parameters.size()));
-  for (size_t i = 0; i < parameters.size(); ++i) v[static_cast<Eigen::Index>(i)] = parameters[i].value;
+  for (size_t i = 0; i < parameters.size(); ++i)
+    v[static_cast<Eigen::Index>(i)] = parameters[i].value;
   return v;
 }
 
@@ -204,7 +205,10 @@ TEST(Laws, OgdenWithOneTermOfTwoIsNeoHooke) {
 
 TEST(Laws, RestIsStressFreeAndSmallStrainModuliAreRight) {
   const Matrix3d I = Matrix3d::Identity();
-  struct Expected { Law law; double mu, kappa; };
+  struct Expected {
+    Law law;
+    double mu, kappa;
+  };
   const std::vector<Expected> all = {{neo_hookean(0.05, 0.6), 0.05, 0.6},
                                      {stvk(0.3, 0.05), 0.05, 0.3 + 0.1 / 3},
                                      {mooney_rivlin(0.02, 0.013, 0.6), 0.066, 0.6},
@@ -238,8 +242,8 @@ TEST(Laws, UniaxialStressOfIncompressibleStretch) {
     return sigma(0, 0) - sigma(1, 1);
   };
   EXPECT_NEAR(difference(neo_hookean(0.05, 0.6)), 0.05 * (l * l - 1 / l), 1e-15);
-  EXPECT_NEAR(difference(mooney_rivlin(0.02, 0.013, 0.6)),
-              2 * (l * l - 1 / l) * (0.02 + 0.013 / l), 1e-15);
+  EXPECT_NEAR(difference(mooney_rivlin(0.02, 0.013, 0.6)), 2 * (l * l - 1 / l) * (0.02 + 0.013 / l),
+              1e-15);
   EXPECT_NEAR(difference(ogden({0.03, -0.01}, {1.3, -2.7}, 0.6)),
               0.03 * (std::pow(l, 1.3) - std::pow(l, -0.65)) -
                   0.01 * (std::pow(l, -2.7) - std::pow(l, 1.35)),
@@ -267,7 +271,8 @@ MaterialSpec spec(const std::string& law, std::map<std::string, std::vector<doub
   s.law = law;
   s.place = {"capture.yaml", 9, 14};
   int column = 20;
-  for (auto& [name, numbers] : values) s.parameters[name] = {numbers, {"capture.yaml", 9, column++}};
+  for (auto& [name, numbers] : values)
+    s.parameters[name] = {numbers, {"capture.yaml", 9, column++}};
   return s;
 }
 
@@ -287,20 +292,25 @@ TEST(Registry, NamesTheFaultAndItsPlace) {
   expect_fault(spec("neo-hokean", {{"mu", {1}}}), "no law `neo-hokean`", "`neo-hookean`", 14);
   expect_fault(spec("xyz", {{"mu", {1}}}), "no law", "yeoh {c1, c2, c3, kappa}", 14);
   expect_fault(spec("neo-hookean", {{"mu", {1}}}), "lacks `kappa`", "kappa_over_mu", 14);
-  expect_fault(spec("neo-hookean", {{"kappa", {1}}, {"mux", {1}}, {"mu", {1}}}), "`mux`", "`mu`", 22);
+  expect_fault(spec("neo-hookean", {{"kappa", {1}}, {"mux", {1}}, {"mu", {1}}}), "`mux`", "`mu`",
+               22);
   expect_fault(spec("neo-hookean", {{"kappa", {1}}, {"kappa_over_mu", {1}}, {"mu", {1}}}),
                "does not go", "kappa", 21);
   expect_fault(spec("yeoh", {{"c1", {-1}}, {"c2", {0}}, {"c3", {0}}, {"kappa", {1}}}), "`c1` is -1",
                "above 0", 20);
   expect_fault(spec("stvk", {{"lambda", {1, 2}}, {"mu", {1}}}), "2 numbers", "one number", 20);
   expect_fault(spec("stvk", {{"lambda", {NAN}}, {"mu", {1}}}), "`lambda` is nan", "finite", 20);
-  expect_fault(spec("ogden", {{"alpha", {2}}, {"kappa", {1}}, {"mu", {1, 2}}}), "2 moduli", "ogden", 14);
-  expect_fault(spec("ogden", {{"alpha", {-2}}, {"kappa", {1}}, {"mu", {1}}}), "shear modulus", "", 14);
+  expect_fault(spec("ogden", {{"alpha", {2}}, {"kappa", {1}}, {"mu", {1, 2}}}), "2 moduli", "ogden",
+               14);
+  expect_fault(spec("ogden", {{"alpha", {-2}}, {"kappa", {1}}, {"mu", {1}}}), "shear modulus", "",
+               14);
 }
 
 TEST(Registry, MakesEveryLawWithItsNumbers) {
-  EXPECT_THAT(law_names(), testing::ElementsAre("neo-hookean", "stvk", "mooney-rivlin", "yeoh", "ogden"));
-  const Law law = make_law(spec("ogden", {{"alpha", {1.3, -2.7}}, {"kappa", {0.6}}, {"mu", {0.03, -0.01}}}));
+  EXPECT_THAT(law_names(),
+              testing::ElementsAre("neo-hookean", "stvk", "mooney-rivlin", "yeoh", "ogden"));
+  const Law law =
+      make_law(spec("ogden", {{"alpha", {1.3, -2.7}}, {"kappa", {0.6}}, {"mu", {0.03, -0.01}}}));
   const auto p = law->parameters(Units{"mm", "N"});
   ASSERT_EQ(p.size(), 5u);
   EXPECT_EQ(p[1].name, "mu2");

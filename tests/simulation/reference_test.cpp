@@ -52,7 +52,8 @@ Loading heavy_cantilever(const TetMesh& mesh) {
   return loading;
 }
 
-double worst_displacement(const std::filesystem::path& csv, const TetMesh& mesh, const VectorXd& q) {
+double worst_displacement(const std::filesystem::path& csv, const TetMesh& mesh,
+                          const VectorXd& q) {
   std::ifstream in(csv);
   std::string line;
   std::getline(in, line);
@@ -94,7 +95,8 @@ TEST_P(CalculiX, DisplacementsReactionsEnergy) {
   Vector3d reaction = Vector3d::Zero();
   for (int a = 0; a < mesh.nodes(); ++a)
     if (mesh.X(0, a) < 1e-6) reaction += R.segment<3>(3 * a);
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(reaction[i], reference.reaction[i], 2e-5 * reference.reaction.norm());
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(reaction[i], reference.reaction[i], 2e-5 * reference.reaction.norm());
   double potential = internal_energy(mesh, energy, e.q);
   for (const auto& f : loading.forces) potential += f->potential(mesh, e.q, 1.0);
   EXPECT_NEAR(potential, reference.potential, 2e-7 * std::abs(reference.potential));

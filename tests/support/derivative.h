@@ -13,8 +13,7 @@ namespace hookeye::test {
 inline void expect_derivative(const std::function<Eigen::VectorXd(double)>& f,
                               const Eigen::VectorXd& analytic, double h, double relative,
                               const std::string& what = "") {
-  const Eigen::VectorXd numeric =
-      (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12.0 * h);
+  const Eigen::VectorXd numeric = (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12.0 * h);
   const double scale = numeric.norm();
   ASSERT_TRUE(numeric.allFinite()) << what << ": the finite difference is not finite";
   ASSERT_GT(scale, 0.0) << what << ": the derivative vanishes, the test would prove nothing";

@@ -17,7 +17,7 @@ inline std::filesystem::path shared_data() {
 }  // namespace hookeye::test
 
 /// First line of a test that needs `folder` below the shared data; skips loudly without it.
-#define HOOKEYE_NEEDS_DATA(folder)                                            \
-  if (!std::filesystem::exists(hookeye::test::shared_data() / (folder)))      \
-  GTEST_SKIP() << "NOT RUN: " << (hookeye::test::shared_data() / (folder))    \
+#define HOOKEYE_NEEDS_DATA(folder)                                         \
+  if (!std::filesystem::exists(hookeye::test::shared_data() / (folder)))   \
+  GTEST_SKIP() << "NOT RUN: " << (hookeye::test::shared_data() / (folder)) \
                << " is not there (set HOOKEYE_DATA)"
