@@ -1,0 +1,95 @@
+// Evidence against simulation: chance does not reach it, a real signal does, size does not buy it.
+#include "estimation/evidence.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+namespace hookeye {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Data {
+  MatrixXd J;
+  VectorXd r;
+};
+
+Data noise(std::mt19937& engine, int rows, int columns) {
+  std::normal_distribution<double> normal;
+  Data data{MatrixXd(rows, columns), VectorXd(rows)};
+  for (double& x : data.J.reshaped()) x = normal(engine);
+  for (double& x : data.r) x = normal(engine);
+  return data;
+}
+
+double evidence(const Data& data, int base, int count, bool one_sided = false) {
+  const MatrixXd H = data.J.transpose() * data.J;
+  const VectorXd s = data.J.transpose() * data.r;
+  const auto projected = project(H, base, {base, count, VectorXd::Ones(count), one_sided});
+  const VectorXd a = H.topLeftCorner(base, base).ldlt().solve(s.head(base));
+  return log_evidence(projected, s, data.r.squaredNorm() - s.head(base).dot(a),
+                      static_cast<double>(data.r.size()), 1.0);
+}
+
+TEST(Evidence, ChanceSeldomReachesThree) {
+  std::mt19937 engine(5);
+  int one = 0, field = 0;
+  for (int i = 0; i < 300; ++i) {
+    one += evidence(noise(engine, 200, 3), 2, 1) > 3.0;
+    field += evidence(noise(engine, 200, 18), 2, 16) > 3.0;
+  }
+  EXPECT_LT(one, 15);
+  EXPECT_LT(field, 15);
+}
+
+TEST(Evidence, FindsASignalAndPrefersTheSmallerForm) {
+  std::mt19937 engine(6);
+  for (int i = 0; i < 20; ++i) {
+    Data data = noise(engine, 200, 18);
+    data.r -= 0.6 * data.J.col(2);  // eight standard deviations
+    const double exact = evidence(data, 2, 1), field = evidence(data, 2, 16);
+    EXPECT_GT(exact, 5.0);
+    EXPECT_GT(exact, field);
+  }
+}
+
+TEST(Evidence, WhatTheBaseCanImitateIsNoEvidence) {
+  std::mt19937 engine(7);
+  Data data = noise(engine, 200, 3);
+  data.r -= 5.0 * data.J.col(0);
+  data.J.col(2) = data.J.col(0) - data.J.col(1);
+  EXPECT_LT(evidence(data, 2, 1), 1e-6);
+}
+
+TEST(Evidence, StepIsTheLeastSquaresStep) {
+  std::mt19937 engine(8);
+  const Data data = noise(engine, 100, 5);
+  const MatrixXd H = data.J.transpose() * data.J;
+  const VectorXd s = data.J.transpose() * data.r;
+  const VectorXd whole = -H.ldlt().solve(s);
+  const auto projected = project(H, 2, {2, 3, VectorXd::Ones(3), false});
+  EXPECT_LT((projected.step(s) - whole.tail(3)).norm(), 1e-9 * whole.norm());
+  const VectorXd base = H.topLeftCorner(2, 2).ldlt().solve(s.head(2));
+  EXPECT_NEAR(projected.fall(s), s.dot(-whole) - s.head(2).dot(base), 1e-9);
+}
+
+TEST(Evidence, OneSidedParametersDoNotShrink) {
+  std::mt19937 engine(9);
+  Data data = noise(engine, 200, 2);
+  data.r -= 1.0 * data.J.col(1);
+  EXPECT_GT(evidence(data, 1, 1, true), 10.0);
+  data.r += 2.0 * data.J.col(1);  // the parameter would have to be negative
+  EXPECT_EQ(evidence(data, 1, 1, true), 0.0);
+  EXPECT_GT(evidence(data, 1, 1, false), 10.0);
+}
+
+TEST(Evidence, LogMeanExp) {
+  EXPECT_NEAR(log_mean_exp(Eigen::Vector2d(1000.0, 1000.0)), 1000.0, 1e-12);
+  EXPECT_NEAR(log_mean_exp(Eigen::Vector2d(0.0, 1000.0)), 1000.0 - std::log(2.0), 1e-9);
+}
+
+}  // namespace
+}  // namespace hookeye

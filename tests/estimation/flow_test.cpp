@@ -1,0 +1,96 @@
+// The residual as a displacement: known motions come out, white noise stays white.
+#include "estimation/flow.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "estimation/registration.h"
+
+namespace hookeye {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 128;
+
+/// A smooth speckle, moved by (u, v).
+Image speckle(double u, double v) {
+  Image image{kWidth, kHeight, 1, std::vector<float>(kWidth * kHeight)};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const double X = x - u, Y = y - v;
+      image.at(x, y) = static_cast<float>(0.5 + 0.15 * std::sin(0.55 * X + 0.21 * Y) +
+                                          0.15 * std::cos(0.17 * X - 0.63 * Y) +
+                                          0.1 * std::sin(0.09 * X * 1.7 + 0.05 * Y));
+    }
+  return image;
+}
+
+Image constant(float value) {
+  return {kWidth, kHeight, 1, std::vector<float>(kWidth * kHeight, value)};
+}
+
+Image over_noise(const Image& model, const Image& photo, float sigma) {
+  Image r = model;
+  for (size_t i = 0; i < r.values.size(); ++i)
+    r.values[i] = (model.values[i] - photo.values[i]) / sigma;
+  return r;
+}
+
+TEST(Flow, FindsTheMotionThatTheModelLacks) {
+  const Image model = speckle(0, 0), photo = speckle(0.2, -0.1), sigma = constant(0.01f);
+  const FlowField flow = residual_flow(model, over_noise(model, photo, 0.01f), sigma);
+  ASSERT_GT(flow.cells.size(), 50u);
+  for (const auto& cell : flow.cells) {
+    EXPECT_NEAR(cell.estimate.x(), 0.2, 0.03);
+    EXPECT_NEAR(cell.estimate.y(), -0.1, 0.03);
+  }
+  EXPECT_NEAR(flow.rms_px(), std::hypot(0.2, 0.1), 0.01);
+}
+
+TEST(Flow, WhiteNoiseIsWhite) {
+  std::mt19937 engine(3);
+  std::normal_distribution<float> normal;
+  const Image model = speckle(0, 0);
+  double variance = 0, effective = 0, count = 0;
+  int refused = 0;
+  for (int repeat = 0; repeat < 40; ++repeat) {
+    Image r = constant(0);
+    for (float& x : r.values) x = normal(engine);
+    const FlowStatistics s = flow_statistics(residual_flow(model, r, constant(0.01f)));
+    variance += s.variance / 40;
+    effective += s.effective / 40;
+    count += s.count / 40;
+    refused += s.whiteness_p < 0.05;
+  }
+  EXPECT_NEAR(variance, 1.0, 0.05);
+  EXPECT_GT(effective, 0.9 * count);
+  // 5 % of 40 is 2; ten or more would happen once in 30,000 such tests
+  EXPECT_LT(refused, 10);
+}
+
+TEST(Flow, OneMotionEverywhereIsOneObservation) {
+  const Image model = speckle(0, 0), photo = speckle(0.3, 0.3);
+  const FlowStatistics s =
+      flow_statistics(residual_flow(model, over_noise(model, photo, 0.01f), constant(0.01f)));
+  EXPECT_GT(s.variance, 10.0);
+  EXPECT_LT(s.effective, 0.1 * s.count);
+  EXPECT_LT(s.whiteness_p, 1e-6);
+}
+
+TEST(Registration, MakesAMotionOfManyPixelsLinear) {
+  const Image model = speckle(0, 0), photo = speckle(3.0, -2.0), sigma = constant(0.01f);
+  const Image plain = over_noise(model, photo, 0.01f);
+  const Registration registered = register_pictures(model, photo, plain, sigma);
+  const FlowField flow = residual_flow(model, registered.linear, sigma);
+  double u = 0, v = 0;
+  for (const auto& cell : flow.cells) {
+    u += cell.estimate.x() / flow.cells.size();
+    v += cell.estimate.y() / flow.cells.size();
+  }
+  EXPECT_NEAR(u, 3.0, 0.3);
+  EXPECT_NEAR(v, -2.0, 0.3);
+}
+
+}  // namespace
+}  // namespace hookeye
