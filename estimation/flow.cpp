@@ -16,13 +16,17 @@ struct CellSums {
   int pixels = 0;
 };
 
-/// Central difference where both neighbours count, else NaN.
+/// Fourth-order central difference where its neighbours count, else NaN: the second-order one is
+/// 7 % short on speckle of ten pixels, and every motion would come out that much too long.
 Eigen::Vector2d gradient(const Image& model, const Image& residual, int x, int y) {
-  if (std::isnan(residual.at(x - 1, y)) || std::isnan(residual.at(x + 1, y)) ||
-      std::isnan(residual.at(x, y - 1)) || std::isnan(residual.at(x, y + 1)))
-    return Eigen::Vector2d::Constant(std::nan(""));
-  return {0.5 * (model.at(x + 1, y) - model.at(x - 1, y)),
-          0.5 * (model.at(x, y + 1) - model.at(x, y - 1))};
+  auto along = [&](int dx, int dy) {
+    for (int k : {-2, -1, 1, 2})
+      if (std::isnan(residual.at(x + k * dx, y + k * dy))) return std::nan("");
+    return (8.0 * (model.at(x + dx, y + dy) - model.at(x - dx, y - dy)) -
+            (model.at(x + 2 * dx, y + 2 * dy) - model.at(x - 2 * dx, y - 2 * dy))) /
+           12.0;
+  };
+  return {along(1, 0), along(0, 1)};
 }
 
 FlowCell solve_cell(const CellSums& sums, int column, int row) {
@@ -51,11 +55,11 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
   FlowField field;
   field.cell_px = cell_px;
   std::map<std::pair<int, int>, CellSums> cells;
-  for (int y = 1; y + 1 < model.height; ++y)
-    for (int x = 1; x + 1 < model.width; ++x) {
+  for (int y = 2; y + 2 < model.height; ++y)
+    for (int x = 2; x + 2 < model.width; ++x) {
       if (std::isnan(residual.at(x, y))) continue;
       const Eigen::Vector2d g = gradient(model, residual, x, y);
-      if (std::isnan(g.x())) continue;
+      if (!g.allFinite()) continue;
       const double s = sigma.at(x, y);
       const Eigen::Vector3d d(g.x() / s, g.y() / s, model.at(x, y) / s);
       CellSums& sums = cells[{y / cell_px, x / cell_px}];
