@@ -48,7 +48,7 @@ void add_synth(CLI::App& app, CommandBody& chosen) {
   command->add_option("RECIPE", options->recipe, "recipe.yaml (docs/synth.md)")->required();
   command
       ->add_option("-o,--out", options->out,
-                   "Capture folder, which must not exist; the truth goes to CAPTURE.truth.json")
+                   "New capture folder; the truth goes to CAPTURE.truth.json")
       ->required();
   command->callback([&chosen, options] {
     chosen = [options](Session& session) { run_synth(*options, session); };
