@@ -13,6 +13,7 @@
 #include "estimation/photo_evaluation.h"
 #include "estimation/synth_body.h"
 #include "estimation/synth_capture.h"
+#include "estimation/synth_photographer.h"
 #include "estimation/synth_truth.h"
 
 namespace hookeye {
@@ -31,25 +32,29 @@ fs::path truth_file(const fs::path& capture) {
 
 namespace {
 
-/// A folder that goes away unless it is kept.
+/// A folder that goes away unless it is kept, and one beside it that always goes.
 class Staging {
  public:
   explicit Staging(const fs::path& out)
       : folder_(out.parent_path() /
-                fmt::format(".{}.partial-{}", out.filename().string(), ::getpid())) {
+                fmt::format(".{}.partial-{}", out.filename().string(), ::getpid())),
+        stage_(folder_.string() + ".stage") {
     fs::create_directories(folder_ / "photos");
   }
   ~Staging() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
+    fs::remove_all(stage_, ignored);
   }
   Staging(const Staging&) = delete;
   Staging& operator=(const Staging&) = delete;
   const fs::path& folder() const { return folder_; }
+  /// For another photographer; not there until it is written to.
+  const fs::path& stage() const { return stage_; }
   void become(const fs::path& out) { fs::rename(folder_, out); }
 
  private:
-  fs::path folder_;
+  fs::path folder_, stage_;
 };
 
 /// Normal deviates by Box and Muller: the same with every standard library.
@@ -117,29 +122,41 @@ void add_noise(const NoiseRecipe& noise, Normal normal, Image& image) {
   }
 }
 
-void photograph(const Recipe& recipe, const detail::Truth& truth, const fs::path& folder,
-                const SynthOptions& options) {
+detail::Pictures our_pictures(const Recipe& recipe, const detail::Truth& truth,
+                              const SynthOptions& options) {
   const auto scene = truth.model.scene;
   RenderOptions render = render_options(*scene);
   render.derivatives = false;
   render.rays_per_axis = recipe.truth.rays_per_axis;
   render.visibility_rays = recipe.truth.visibility_rays;
+  detail::Pictures pictures(truth.states.size());
   tbb::parallel_for(size_t{0}, truth.states.size(), [&](size_t e) {
     const ExampleSpec& example = scene->capture.examples[e];
     const Scope scope("example " + example.name);
     PhotoComparer comparer(scene, static_cast<int>(e));
     for (size_t k = 0; k < example.photos.size(); ++k) {
       if (options.cancel && *options.cancel) return;
-      const std::string& camera = example.photos[k].camera;
-      if (options.progress) options.progress(fmt::format("{} by {}", example.name, camera));
-      Image image =
+      if (options.progress)
+        options.progress(fmt::format("{} by {}", example.name, example.photos[k].camera));
+      pictures[e].push_back(
           comparer.render(truth.model, truth.states[e].q, nullptr, static_cast<int>(k), 0, render)
-              .I;
-      const std::string purpose = fmt::format("photo {} {}", example.name, camera);
-      add_noise(recipe.noise, Normal(detail::random_of(recipe.seed, purpose)), image);
-      write_image(folder / detail::photo_name(recipe, example.name, camera), image);
+              .I);
     }
   });
+  return pictures;
+}
+
+void write_photos(const Recipe& recipe, const detail::Truth& truth, detail::Pictures pictures,
+                  const fs::path& folder) {
+  for (size_t e = 0; e < pictures.size(); ++e) {
+    const ExampleSpec& example = truth.model.scene->capture.examples[e];
+    for (size_t k = 0; k < pictures[e].size(); ++k) {
+      const std::string& camera = example.photos[k].camera;
+      const std::string purpose = fmt::format("photo {} {}", example.name, camera);
+      add_noise(recipe.noise, Normal(detail::random_of(recipe.seed, purpose)), pictures[e][k]);
+      write_image(folder / detail::photo_name(recipe, example.name, camera), pictures[e][k]);
+    }
+  }
 }
 
 std::vector<GripForce> measure(const Recipe& recipe, const SynthBody& body,
@@ -221,8 +238,12 @@ std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const
   if (auto* failure = std::get_if<NumericalFailure>(&found)) return std::move(*failure);
   const auto& truth = std::get<detail::Truth>(found);
   check_in_view(recipe, truth);
-  photograph(recipe, truth, folder, options);
+  auto pictures = options.photographer.empty()
+                      ? our_pictures(recipe, truth, options)
+                      : detail::photographed_by(options.photographer, truth, folder / "albedo.png",
+                                                staging.stage());
   if (options.cancel && *options.cancel) return NumericalFailure{"", 0.0, "cancelled"};
+  write_photos(recipe, truth, std::move(pictures), folder);
   write_text(folder / "capture.yaml",
              detail::capture_text(recipe, body,
                                   {.photos = true, .measured = measure(recipe, body, truth)}));

@@ -16,6 +16,8 @@
 namespace hookeye {
 
 struct SynthOptions {
+  /// A command that photographs in place of our renderer (docs/synth.md, "Another photographer").
+  std::string photographer;
   const std::atomic<bool>* cancel = nullptr;
   /// Called with what is done next ("solving", "photographing pull"); from several threads.
   std::function<void(const std::string&)> progress;

@@ -11,7 +11,7 @@ namespace hookeye {
 namespace {
 
 struct SynthCommand {
-  std::string recipe, out;
+  std::string recipe, out, photographer;
 };
 
 void run_synth(const SynthCommand& options, Session& session) {
@@ -19,6 +19,7 @@ void run_synth(const SynthCommand& options, Session& session) {
   const int photos = static_cast<int>(recipe.examples.size()) * recipe.cameras.count;
   SynthOptions synth;
   synth.cancel = &interrupted();
+  synth.photographer = options.photographer;
   Synthesis made;
   {
     Progress progress("photographing", photos + 1);
@@ -50,6 +51,8 @@ void add_synth(CLI::App& app, CommandBody& chosen) {
       ->add_option("-o,--out", options->out,
                    "New capture folder; the truth goes to CAPTURE.truth.json")
       ->required();
+  command->add_option("--photographer", options->photographer,
+                      "A command that takes the pictures in our place (docs/synth.md)");
   command->callback([&chosen, options] {
     chosen = [options](Session& session) { run_synth(*options, session); };
   });

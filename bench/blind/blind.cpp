@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
-  std::string hookeye = "hookeye", out = "blind-out";
+  std::string hookeye = "hookeye", out = "blind-out", photographer;
   std::vector<std::string> effects;
   unsigned first = 1;
   int seeds = 3;
@@ -45,9 +45,11 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   failed.seed = seed;
   if (!fs::exists(capture)) {
     write_text(folder / "recipe.yaml", draw_recipe(effect, seed));
-    const int status = run(fmt::format("{} synth {} -o {} 2> {}", shell_quoted(options.hookeye),
-                                       shell_quoted(folder / "recipe.yaml"), shell_quoted(capture),
-                                       shell_quoted(folder / "synth.log")));
+    const int status = run(fmt::format(
+        "{} synth {} -o {} {} 2> {}", shell_quoted(options.hookeye),
+        shell_quoted(folder / "recipe.yaml"), shell_quoted(capture),
+        options.photographer.empty() ? "" : "--photographer " + shell_quoted(options.photographer),
+        shell_quoted(folder / "synth.log")));
     if (status != 0) {
       failed.status = fmt::format("synth {}", status);
       return failed;
@@ -76,6 +78,8 @@ int main_of(int argc, char** argv) {
   CLI::App app("Hidden effects drawn by seed: how often is the right one named?");
   app.add_option("--hookeye", options.hookeye, "The program under test");
   app.add_option("-o,--out", options.out, "Results; finished captures there are kept");
+  app.add_option("--photographer", options.photographer,
+                 "Command that takes the pictures (docs/synth.md); default: our renderer");
   app.add_option("-n,--seeds", options.seeds, "Captures per effect");
   app.add_option("--first-seed", options.first, "Seed of the first of them");
   app.add_option("-e,--effects", options.effects,

@@ -196,6 +196,48 @@ TEST_F(SynthTest, DrawsWhatTheRecipeLeavesOpenFromTheSeed) {
 
 /// Photos and measurements of the truth differ from the true model by their noise alone, where mesh
 /// and sampling are those of the fit.
+/// A photographer that leaves an even grey of 0.25 in every picture that the stage asks for.
+std::string grey_photographer(const fs::path& folder, const std::string& size) {
+  const fs::path script = folder / "photographer";
+  std::ofstream(script) << "#!/bin/sh\nset -e\nsed -n 's/.*\"picture\": \"\\(.*\\)\".*/\\1/p' "
+                           "\"$1/scene.json\" | while read name; do\n"
+                           "  test -s \"$1/${name%%-*}.obj\"\n"
+                           "  oiiotool --create "
+                        << size << " 1 --addc 0.25 -d float -o \"$1/$name\"\ndone\n";
+  fs::permissions(script, fs::perms::owner_all);
+  return script;
+}
+
+TEST_F(SynthTest, AnotherPhotographerTakesThePictures) {
+  const Recipe recipe = parse_recipe(recipe_text("", kFast), "recipe.yaml");
+  SynthOptions options;
+  options.photographer = grey_photographer(folder_, "96x120");
+  synthesize(recipe, folder_ / "grey", options);
+  const Image photo = read_image(folder_ / "grey/photos/pull_cam0.png", Encoding{});
+  double mean = 0.0;
+  for (const float value : photo.values) mean += value / photo.values.size();
+  EXPECT_NEAR(mean, 0.25, 2e-3);  // noise and rounding to levels remain
+  EXPECT_FALSE(fs::exists(folder_ / "grey/scene.json"));
+}
+
+TEST_F(SynthTest, APhotographerThatFailsLeavesNothing) {
+  const Recipe recipe = parse_recipe(recipe_text("", kFast), "recipe.yaml");
+  SynthOptions options;
+  const auto fault = [&](const std::string& command) {
+    options.photographer = command;
+    try {
+      synthesize(recipe, folder_ / "none", options);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(fault("exit 7;"), testing::HasSubstr("exit status 7"));
+  EXPECT_THAT(fault("true"), testing::HasSubstr("rest-cam0.exr"));
+  EXPECT_THAT(fault(grey_photographer(folder_, "90x120")), testing::HasSubstr("is 90 x 120 px"));
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
+}
+
 TEST_F(SynthTest, PhotosOfTheTruthAgreeWithinNoise) {
   const Synthesis made = make(recipe_text("", kSameAsFit), "plain");
   const auto scene = load_scene(read_capture(made.capture));
