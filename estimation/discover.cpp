@@ -39,8 +39,7 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
   // The linear step is a direction more than a length: where even half of it has no equilibrium or
   // is worse than the null, the fit starts from the null.
   FitOptions warm = options;
-  // A step from a misfit of more than a pixel may land a speckle away.
-  warm.coarse_to_fine = current.evaluation.rms_px(false) > 1.0;
+  warm.coarse_to_fine = false;
   std::variant<Fitted, NumericalFailure> result = NumericalFailure{"", 0.0, "not started"};
   for (double share : {1.0, 0.3, 0.0}) {
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};

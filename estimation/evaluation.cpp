@@ -38,6 +38,17 @@ double Evaluation::rms_px(bool held_out) const {
   return n > 0.0 ? std::sqrt(sum / n) : 0.0;
 }
 
+double Evaluation::motion_px() const {
+  double sum = 0.0, n = 0.0;
+  for (const auto& example : examples)
+    if (!example.held_out)
+      for (const auto& photo : example.photos) {
+        sum += photo.count * photo.motion_px * photo.motion_px;
+        n += photo.count;
+      }
+  return n > 0.0 ? std::sqrt(sum / n) : 0.0;
+}
+
 Camera camera_at_level(const Camera& camera, int level) {
   Camera coarse = camera;
   const double s = std::pow(0.5, level);

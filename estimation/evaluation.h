@@ -21,7 +21,10 @@ struct EvaluationOptions {
   bool pictures = false;  ///< keep model, residual and flow
   bool fitted = true;     ///< examples with use: fit
   bool held_out = false;  ///< examples with use: validate
-  int level = 0;          ///< pyramid level: 0 = full size, each level halves
+  /// Residuals made linear in the motion (registration.h): `sums`, their cost and the pictures.
+  /// Where only pictures are asked for, `sums` alone are of those.
+  bool registered = false;
+  int level = 0;  ///< pyramid level: 0 = full size, each level halves
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
   const std::atomic<bool>* cancel = nullptr;
@@ -38,6 +41,7 @@ struct PhotoEvaluation {
   /// residual made linear, which `sums` hold too when pictures are on.
   FlowField flow, aligned;
   double linear_r2 = 0.0;
+  double motion_px = 0.0;  ///< registered: rms motion between model and photo
   double chi() const;
 };
 
@@ -63,6 +67,7 @@ struct Evaluation {
   const ExampleEvaluation* find(int example) const;
   double chi(bool held_out) const;     ///< root mean square of photo residuals over noise
   double rms_px(bool held_out) const;  ///< of the residual displacement (needs pictures)
+  double motion_px() const;            ///< the same, cruder, of fitted photos (needs registered)
 };
 
 /// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.

@@ -106,22 +106,31 @@ class ReducedCost final : public ceres::CostFunction {
   mutable std::optional<NumericalFailure> failure_;
 };
 
+/// One look at the pictures after another: coarse; full size, made linear in the motion; full size.
+struct Stage {
+  int level = 0;
+  bool registered = false;
+  std::string name() const {
+    if (level > 0) return fmt::format("1/{} size", 1 << level);
+    return registered ? "motion" : "full size";
+  }
+  /// Pictures are linear in motions below this: the finest pattern that the pixel filter passes at
+  /// half its contrast has a period of 6 px, of which sin(2 pi 0.3/6) is linear to 2 %. Further
+  /// away Gauss-Newton on pixels creeps, and on the motion between the pictures it does not.
+  bool serves(double motion_px) const { return level > 0 || registered == (motion_px > 0.3); }
+};
+
 class Reporter final : public ceres::IterationCallback {
  public:
-  Reporter(const FitOptions& options, const ReducedCost& cost, std::string stage, double count,
+  Reporter(const FitOptions& options, const ReducedCost& cost, Stage stage, double count,
            double misfit, int of)
-      : options_(options),
-        cost_(cost),
-        stage_(std::move(stage)),
-        count_(count),
-        misfit_(misfit),
-        of_(of) {}
+      : options_(options), cost_(cost), stage_(stage), count_(count), misfit_(misfit), of_(of) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (options_.progress)
-      options_.progress(
-          {stage_, summary.iteration, of_, std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
+      options_.progress({stage_.name(), summary.iteration, of_,
+                         std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
     return ceres::SOLVER_CONTINUE;
   }
 
@@ -130,8 +139,11 @@ class Reporter final : public ceres::IterationCallback {
   /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
   /// apart in a modulus differ by some 1e-5). A refused step that changed next to nothing has met
   /// the same limit. A structured misfit moves the parameters by more than noise does: the limit
-  /// grows with its square.
+  /// grows with its square. A coarse picture only has to lead the next one to the right speckle.
   bool done(const ceres::IterationSummary& summary) const {
+    if (stage_.level > 0 && cost_.promised() < 0.02 * cost_.r2()) return true;
+    // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
+    if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
     if (summary.step_is_successful)
       return cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2());
     return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
@@ -139,7 +151,7 @@ class Reporter final : public ceres::IterationCallback {
 
   const FitOptions& options_;
   const ReducedCost& cost_;
-  std::string stage_;
+  Stage stage_;
   double count_, misfit_;
   int of_;
 };
@@ -166,25 +178,41 @@ double photo_count(const Evaluation& evaluation) {
 
 struct StageResult {
   VectorXd p;
-  bool converged = false, cancelled = false;
+  bool converged = false;
   int iterations = 0;
 };
 
-std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
-                                                      const VectorXd& start,
-                                                      const FitOptions& options, int level) {
+/// What a stage has to know of the pictures before it starts.
+struct Look {
+  double misfit = 1.0;  ///< misfit_scale
+  double count = 0.0;   ///< pixels
+  double motion_px = 0.0;
+};
+
+std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
+                                          const VectorXd& p, const FitOptions& options, int level) {
   EvaluationOptions evaluation;
   evaluation.derivatives = false;
   evaluation.pictures = true;
   evaluation.level = level;
+  evaluation.registered = level == 0;
   evaluation.cancel = options.cancel;
-  auto first = workspace.evaluate(form, start, evaluation);
-  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
-  const Evaluation& seen = std::get<Evaluation>(first);
-  evaluation.derivatives = true;
-  evaluation.pictures = false;
-  const double misfit = misfit_scale(seen);
-  evaluation.huber = options.huber > 0.0 ? options.huber * misfit : 0.0;
+  auto seen = workspace.evaluate(form, p, evaluation);
+  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
+  const Evaluation& pictures = std::get<Evaluation>(seen);
+  return Look{misfit_scale(pictures), photo_count(pictures), pictures.motion_px()};
+}
+
+std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
+                                                      const VectorXd& start,
+                                                      const FitOptions& options, Stage stage,
+                                                      const Look& seen) {
+  const int level = stage.level;
+  EvaluationOptions evaluation;
+  evaluation.level = level;
+  evaluation.registered = stage.registered;
+  evaluation.cancel = options.cancel;
+  evaluation.huber = options.huber > 0.0 ? options.huber * seen.misfit : 0.0;
 
   const Scaling scaling{form.parameters()};
   VectorXd x = scaling.to_x(start);
@@ -208,8 +236,8 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.parameter_tolerance = 1e-7;
   solver.logging_type = ceres::SILENT;
   solver.max_num_consecutive_invalid_steps = 8;
-  Reporter reporter(options, cost, level > 0 ? fmt::format("1/{} size", 1 << level) : "full size",
-                    photo_count(seen), std::min(misfit, 30.0), solver.max_num_iterations);
+  Reporter reporter(options, cost, stage, seen.count, std::min(seen.misfit, 30.0),
+                    solver.max_num_iterations);
   solver.callbacks.push_back(&reporter);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
@@ -219,7 +247,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   return StageResult{scaling.to_p(x),
                      summary.termination_type == ceres::CONVERGENCE ||
                          summary.termination_type == ceres::USER_SUCCESS,
-                     false, static_cast<int>(summary.iterations.size())};
+                     static_cast<int>(summary.iterations.size())};
 }
 
 }  // namespace
@@ -331,14 +359,16 @@ namespace {
 
 /// Gauss-Newton follows a pattern only while it overlaps with itself. At 1/32 a misfit of some
 /// tens of pixels is one pixel and speckle has averaged out; 1/8 brings the rest below a speckle.
-std::vector<int> pyramid(const Scene& scene) {
+std::vector<Stage> stages(const Scene& scene, bool coarse_to_fine) {
   int smallest = 1 << 20;
   for (const auto& camera : scene.capture.cameras)
     smallest = std::min({smallest, camera.width, camera.height});
-  std::vector<int> levels;
-  for (int level : {5, 3, 0})
-    if (level == 0 || (smallest >> level) >= 12) levels.push_back(level);
-  return levels;
+  std::vector<Stage> all;
+  for (int level : {5, 3})
+    if (coarse_to_fine && (smallest >> level) >= 12) all.push_back({level, false});
+  all.push_back({0, true});
+  all.push_back({0, false});
+  return all;
 }
 
 }  // namespace
@@ -349,15 +379,23 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
   VectorXd p = start;
   int iterations = 0;
   bool converged = true;
-  if (form.size() > 0) {
-    for (int level : options.coarse_to_fine ? pyramid(workspace.scene()) : std::vector<int>{0}) {
-      auto stage = run_stage(workspace, form, p, options, level);
-      if (auto* failure = std::get_if<NumericalFailure>(&stage)) return *failure;
-      const auto& result = std::get<StageResult>(stage);
-      p = result.p;
-      iterations += result.iterations;
-      converged = result.converged;
+  std::optional<Look> full_size;  // of p
+  for (const Stage& stage : stages(workspace.scene(), options.coarse_to_fine)) {
+    if (form.size() == 0) break;
+    if (stage.level > 0 || !full_size) {
+      auto first = look(workspace, form, p, options, stage.level);
+      if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+      full_size = std::get<Look>(first);
     }
+    const Look seen = *full_size;
+    if (!stage.serves(seen.motion_px)) continue;
+    full_size.reset();
+    auto ran = run_stage(workspace, form, p, options, stage, seen);
+    if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
+    const auto& result = std::get<StageResult>(ran);
+    p = result.p;
+    iterations += result.iterations;
+    if (stage.level == 0) converged = result.converged;
   }
   auto fitted = assess(workspace, form, p, options);
   if (auto* out = std::get_if<Fitted>(&fitted)) {

@@ -140,8 +140,19 @@ bool shows_body(const PhotoPlane& photo, size_t i, double background) {
 
 struct Comparison {
   Image residual;  ///< NaN: does not count
-  double r2 = 0.0, cost = 0.0, count = 0.0;
+  double r2 = 0.0, count = 0.0;
 };
+
+/// Sum of Huber's losses; huber 0: of squares.
+double loss(const Image& residual, double huber) {
+  double sum = 0.0;
+  for (const float value : residual.values) {
+    if (std::isnan(value)) continue;
+    const double r = std::abs(value);
+    sum += huber > 0.0 && r > huber ? huber * (2.0 * r - huber) : r * r;
+  }
+  return sum;
+}
 
 /// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
 Image compared_sigma(const PhotoPlane& photo, const Texture& texture) {
@@ -152,7 +163,7 @@ Image compared_sigma(const PhotoPlane& photo, const Texture& texture) {
 }
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
-                          bool silhouette, double background, double huber) {
+                          bool silhouette, double background) {
   Comparison out;
   out.residual = Image{photo.I.width, photo.I.height, 1, {}};
   out.residual.values.assign(photo.I.pixels(), std::numeric_limits<float>::quiet_NaN());
@@ -165,7 +176,6 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
     const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
     out.residual.values[i] = static_cast<float>(r);
     out.r2 += r * r;
-    out.cost += huber > 0.0 && std::abs(r) > huber ? huber * (2.0 * std::abs(r) - huber) : r * r;
     out.count += 1.0;
   }
   return out;
@@ -258,13 +268,15 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       if (mask_photo) state = coverage_state(state);
       RenderOptions render_options = at_level(base_options, options.level);
       render_options.derivatives = columns != nullptr;
+      render_options.gloss_derivative =
+          columns != nullptr && !columns->dphoto[k].row(kSpecular).isZero(0.0);
       Rendering rendering =
           impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
                                  render_options, silhouette, &photo.valid);
       composite_background(scene, rendering);
       const Image sigma = compared_sigma(photo, texture);
       const Comparison comparison =
-          compare_pixels(rendering, photo, sigma, silhouette, state.background, options.huber);
+          compare_pixels(rendering, photo, sigma, silhouette, state.background);
       PhotoEvaluation one;
       one.example = e;
       one.photo = static_cast<int>(k);
@@ -272,8 +284,9 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       one.r2 = comparison.r2;
       one.count = comparison.count;
       std::optional<Registration> registered;
-      if (options.pictures && !mask_photo)
+      if ((options.pictures || options.registered) && !mask_photo)
         registered = register_pictures(rendering.I, photo.I, comparison.residual, sigma);
+      if (registered) one.motion_px = registered->rms_px;
       const Image& residual = registered ? registered->linear : comparison.residual;
       if (columns) {
         S.photo = columns->dphoto[k];
@@ -283,15 +296,14 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
                             options.huber, has_light, reference.state != nullptr)
                        .reduce(S);
       }
-      one.sums.r2 = comparison.cost;
+      one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);
       if (options.pictures) {
         one.flow = residual_flow(rendering.I, residual, sigma);
         one.aligned =
             residual_flow(rendering.I, registered ? registered->residual : residual, sigma);
-        for (float r : residual.values)
-          if (!std::isnan(r)) one.linear_r2 += r * r;
+        one.linear_r2 = loss(residual, 0.0);
         one.model = std::move(rendering.I);
-        one.residual = comparison.residual;
+        one.residual = options.registered ? residual : comparison.residual;
       }
       all.push_back(std::move(one));
     }

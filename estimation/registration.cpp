@@ -31,42 +31,68 @@ float white_level(const Image& photo) {
   return std::max(sorted[high], 1e-4f);
 }
 
-}  // namespace
+/// Fourth-order central difference, as in flow.cpp.
+float slope(const Image& model, int x, int y, int dx, int dy) {
+  return (8.0f * (model.at(x + dx, y + dy) - model.at(x - dx, y - dy)) -
+          (model.at(x + 2 * dx, y + 2 * dy) - model.at(x - 2 * dx, y - 2 * dy))) /
+         12.0f;
+}
 
-Registration register_pictures(const Image& model, const Image& photo, const Image& residual,
-                               const Image& sigma) {
+/// Box around the pixels that count, widened by what the search may look at beyond them.
+cv::Rect around_counted(const Image& residual) {
+  int x0 = residual.width, y0 = residual.height, x1 = 0, y1 = 0;
+  for (int y = 0; y < residual.height; ++y)
+    for (int x = 0; x < residual.width; ++x)
+      if (!std::isnan(residual.at(x, y))) {
+        x0 = std::min(x0, x), x1 = std::max(x1, x + 1);
+        y0 = std::min(y0, y), y1 = std::max(y1, y + 1);
+      }
+  constexpr int kMargin = 24;
+  const cv::Rect box(x0 - kMargin, y0 - kMargin, x1 - x0 + 2 * kMargin, y1 - y0 + 2 * kMargin);
+  return x0 < x1 ? box & cv::Rect(0, 0, residual.width, residual.height) : cv::Rect();
+}
+
+/// photo(x) = model(x + flow(x)) within the box.
+cv::Mat find_flow(const Image& model, const Image& photo, const cv::Rect& box) {
   const float white = white_level(photo);
   auto search = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM);
   search->setFinestScale(0);
   cv::Mat flow;
-  // photo(x) = model(x + flow(x)): the model must move by -flow.
-  search->calc(eight_bits(photo, white), eight_bits(model, white), flow);
+  search->calc(eight_bits(photo, white)(box).clone(), eight_bits(model, white)(box).clone(), flow);
   // Single pixels of the flow are noise; what physics moves is smooth over a cell.
   cv::GaussianBlur(flow, flow, cv::Size(), 6.0);
+  return flow;
+}
 
+}  // namespace
+
+Registration register_pictures(const Image& model, const Image& photo, const Image& residual,
+                               const Image& sigma) {
+  Registration out;
+  out.residual = out.linear = residual;
+  const cv::Rect box = around_counted(residual);
+  // The search works on patches of 8 px over three octaves.
+  if (box.width < 32 || box.height < 32) return out;
+  const cv::Mat flow = find_flow(model, photo, box);
   cv::Mat from(flow.size(), CV_32FC2), moved;
   for (int y = 0; y < flow.rows; ++y)
     for (int x = 0; x < flow.cols; ++x)
-      from.at<cv::Vec2f>(y, x) = flow.at<cv::Vec2f>(y, x) + cv::Vec2f(x, y);
+      from.at<cv::Vec2f>(y, x) = flow.at<cv::Vec2f>(y, x) + cv::Vec2f(x + box.x, y + box.y);
   cv::remap(wrap(model), moved, from, cv::noArray(), cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
-
-  Registration out;
-  out.u = out.v = Image{model.width, model.height, 1, std::vector<float>(model.pixels(), 0.0f)};
-  out.residual = out.linear = residual;
-  for (int y = 0; y < model.height; ++y)
-    for (int x = 0; x < model.width; ++x) {
-      const cv::Vec2f& f = flow.at<cv::Vec2f>(y, x);
-      out.u.at(x, y) = -f[0];
-      out.v.at(x, y) = -f[1];
-      if (std::isnan(residual.at(x, y)) || x == 0 || y == 0 || x + 1 == model.width ||
-          y + 1 == model.height)
-        continue;
-      const float gx = 0.5f * (model.at(x + 1, y) - model.at(x - 1, y));
-      const float gy = 0.5f * (model.at(x, y + 1) - model.at(x, y - 1));
-      const float r = (moved.at<float>(y, x) - photo.at(x, y)) / sigma.at(x, y);
+  double motion = 0.0, count = 0.0;
+  for (int y = std::max(box.y, 2); y < std::min(box.br().y, model.height - 2); ++y)
+    for (int x = std::max(box.x, 2); x < std::min(box.br().x, model.width - 2); ++x) {
+      if (std::isnan(residual.at(x, y))) continue;
+      // the model must move by -flow
+      const cv::Vec2f& f = flow.at<cv::Vec2f>(y - box.y, x - box.x);
+      const float gx = slope(model, x, y, 1, 0), gy = slope(model, x, y, 0, 1);
+      const float r = (moved.at<float>(y - box.y, x - box.x) - photo.at(x, y)) / sigma.at(x, y);
       out.residual.at(x, y) = r;
       out.linear.at(x, y) = r - (gx * f[0] + gy * f[1]) / sigma.at(x, y);
+      motion += f.dot(f);
+      count += 1.0;
     }
+  if (count > 0.0) out.rms_px = std::sqrt(motion / count);
   return out;
 }
 

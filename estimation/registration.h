@@ -8,8 +8,8 @@
 namespace hookeye {
 
 struct Registration {
-  Image u, v;      ///< motion [px] of the model's picture that brings it onto the photo
-  Image residual;  ///< (moved model - photo)/sigma, NaN where the pixel does not count
+  double rms_px = 0.0;  ///< motion of the model's picture that brings it onto the photo
+  Image residual;       ///< (moved model - photo)/sigma, NaN where the pixel does not count
   /// grad(model).(u, v)/sigma + residual: what the residual would be if pictures were linear in
   /// the motion. Equal to the plain residual, to first order, where the motion is small.
   Image linear;

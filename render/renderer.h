@@ -21,6 +21,7 @@ struct RenderOptions {
   bool cast_shadows = true;
   int visibility_rays = 64;  ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
   bool derivatives = true;
+  bool gloss_derivative = true;  ///< false: kSpecular of a body without gloss stays zero
   int threads = 1;
 };
 

@@ -84,7 +84,8 @@ Light light_of(const Frame& f, const Sample& s, const Vector3d& n, double visibi
     out.diffuse_by_n = f.photo.sun;
     out.diffuse_by_sun = n;
   }
-  add_gloss(f, s, n, &out);
+  if (f.photo.specular != 0 || (f.options.derivatives && f.options.gloss_derivative))
+    add_gloss(f, s, n, &out);
   return out;
 }
 
