@@ -25,41 +25,6 @@ const char* to_string(Verdict verdict) {
   }
 }
 
-std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
-                                                  const EffectScore& score,
-                                                  const FitOptions& options) {
-  const Effect* effect = find_effect(score.effect);
-  const Model model = current.form.realise(current.p);
-  VectorXd values = score.values;
-  auto ingredient = effect->refit_form(model, score.best, values);
-  const auto parameters = ingredient->parameters();
-  ModelForm form = current.form;
-  form.ingredients.push_back(ingredient);
-  VectorXd start(current.p.size() + values.size());
-  // The linear step is a direction more than a length: where even half of it has no equilibrium or
-  // is worse than the null, the fit starts from the null.
-  FitOptions warm = options;
-  warm.coarse_to_fine = false;
-  std::variant<Fitted, NumericalFailure> result = NumericalFailure{"", 0.0, "not started"};
-  for (double share : {1.0, 0.3, 0.0}) {
-    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
-    start.head(current.p.size()) = current.p;
-    for (int i = 0; i < values.size(); ++i) {
-      // the refit form may have other parameters than the scored one: then its own start counts
-      const double from =
-          parameters.size() == static_cast<size_t>(score.values.size()) && ingredient == score.best
-              ? parameters[i].value
-              : values[i];
-      const double v = from + share * (values[i] - from);
-      start[current.p.size() + i] = std::clamp(v, parameters[i].low, parameters[i].high);
-    }
-    result = fit(workspace, form, start, warm);
-    if (std::holds_alternative<Fitted>(result)) return result;
-    if (std::get<NumericalFailure>(result).reason == "cancelled") return result;
-  }
-  return result;
-}
-
 namespace {
 
 struct EffectiveMisfit {
@@ -112,14 +77,6 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
 
 namespace {
 
-/// Effects worth a refit, best first.
-std::vector<const EffectScore*> leaders(const Diagnosis& diagnosis, int most) {
-  std::vector<const EffectScore*> out;
-  for (const auto& effect : diagnosis.effects)
-    if (nameable(effect, diagnosis) && static_cast<int>(out.size()) < most) out.push_back(&effect);
-  return out;
-}
-
 struct Refit {
   std::string effect;
   Fitted fitted;
@@ -134,27 +91,34 @@ bool at_floor(const Fitted& fitted, const Floor& floor) {
          fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
 }
 
-/// Refits the leaders and scores them on fitted and held-out photos with the correlation of the
-/// best of them. Best first.
+/// A tie needs equals: a rival that after as many steps is left with twice the winner's misfit is
+/// none.
+bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 2.0 * winner.chi(); }
+
+/// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
+/// of the best of them. Best first.
 std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& workspace,
                                                                  const Step& step,
                                                                  const DiscoverOptions& options,
                                                                  const DiscoverEvents& events) {
   std::vector<Refit> refits;
-  const auto worth = leaders(step.diagnosis, options.leaders);
-  for (const EffectScore* leader : worth) {
-    // Nothing can do better than the floor; once it is reached only a tie in evidence is of use.
+  auto raced = race(workspace, step.fitted, step.diagnosis, options.fit, events.tried);
+  if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
+  auto& racers = std::get<std::vector<Racer>>(raced);
+  if (static_cast<int>(racers.size()) > options.leaders) racers.resize(options.leaders);
+  for (const Racer& racer : racers) {
+    // Nothing can do better than the floor; once it is reached only a tie is of use.
     if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
-        leader->evidence < worth.front()->evidence - kTie)
+        !may_tie(racer, racers.front()))
       continue;
-    if (events.refitting) events.refitting(leader->effect);
-    auto result = add_effect(workspace, step.fitted, *leader, options.fit);
+    if (events.refitting) events.refitting(racer.effect);
+    auto result = refit(workspace, racer, options.fit);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;  // a model without equilibrium explains nothing
     }
-    if (events.refitted) events.refitted(leader->effect, std::get<Fitted>(result));
-    refits.push_back({leader->effect, std::get<Fitted>(std::move(result)), 0.0});
+    if (events.refitted) events.refitted(racer.effect, std::get<Fitted>(result));
+    refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
   }
   if (refits.empty()) return refits;
   auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };

@@ -18,12 +18,25 @@ const ExampleEvaluation* Evaluation::find(int example) const {
   return nullptr;
 }
 
-double Evaluation::chi(bool held_out) const {
-  double r2 = 0.0, count = 0.0;
+namespace {
+
+double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out,
+                 double PhotoEvaluation::*r2) {
+  double sum = 0.0, count = 0.0;
   for (const auto& example : examples)
     if (example.held_out == held_out)
-      for (const auto& photo : example.photos) r2 += photo.r2, count += photo.count;
-  return count > 0.0 ? std::sqrt(r2 / count) : 0.0;
+      for (const auto& photo : example.photos) sum += photo.*r2, count += photo.count;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+}  // namespace
+
+double Evaluation::chi(bool held_out) const {
+  return root_mean(examples, held_out, &PhotoEvaluation::r2);
+}
+
+double Evaluation::linear_chi(bool held_out) const {
+  return root_mean(examples, held_out, &PhotoEvaluation::linear_r2);
 }
 
 double Evaluation::rms_px(bool held_out) const {

@@ -42,6 +42,22 @@ struct Fitted {
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options = {});
 
+/// What one Gauss-Newton step on the motion in half-size pictures makes of a model.
+struct Trial {
+  VectorXd p;
+  /// Root mean square of residual over noise, made linear in the motion, half-size pictures.
+  double chi_fit = 0.0, chi_validate = 0.0;
+};
+/// `huber`: threshold in units of noise (trial_huber). Fails where not even a tenth of the step has
+/// an equilibrium.
+std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
+                                               const VectorXd& start, double huber,
+                                               const FitOptions& options = {});
+/// Huber's threshold for the trials of a race that starts from this model.
+std::variant<double, NumericalFailure> trial_huber(Workspace& workspace, const ModelForm& form,
+                                                   const VectorXd& p,
+                                                   const FitOptions& options = {});
+
 /// The starting point again without moving anything: pictures, intervals, what is undetermined.
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options = {});

@@ -20,7 +20,7 @@ namespace {
 /// every speckle once (a box has 2.5 times the variance of the 1.5 px window).
 RenderOptions at_level(RenderOptions options, int level) {
   if (level == 0) return options;
-  options.rays_per_axis = std::min(3 + 3 * level, 15);
+  options.rays_per_axis = std::min(1 + 3 * level, 15);
   options.filter_width_px = 2.4;
   return options;
 }
