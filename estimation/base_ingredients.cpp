@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include "estimation/additive_material.h"
+
 namespace hookeye {
 
 namespace {
@@ -223,6 +225,9 @@ class SelfWeight final : public Ingredient {
 std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
                                                       const EnergyModel& energy) {
   const Capture& capture = scene.capture;
+  if (capture.materials.size() == 1 && capture.fit == std::vector<std::string>{"additive"})
+    if (const AdditiveModel* model = additive_model(*energy.parts.at(0).term))
+      return additive_material(*model, capture.units);
   std::vector<Material::Slot> slots;
   for (size_t i = 0; i < capture.fit.size(); ++i) {
     std::vector<std::string> known;
@@ -234,7 +239,10 @@ std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
         const std::string qualified =
             region.empty() ? declared[k].name : region + "." + declared[k].name;
         known.push_back(qualified);
-        if (capture.fit[i] != qualified && capture.fit[i] != declared[k].name) continue;
+        // The name of an addend stands for all of its control values.
+        const bool of_addend = declared[k].name.rfind(capture.fit[i] + ".", 0) == 0;
+        if (capture.fit[i] != qualified && capture.fit[i] != declared[k].name && !of_addend)
+          continue;
         Parameter parameter = declared[k];
         parameter.name = qualified;
         slots.push_back({static_cast<int>(part), static_cast<int>(k), parameter});

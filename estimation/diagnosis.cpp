@@ -120,7 +120,12 @@ Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
   return out;
 }
 
-/// Removes from |r|^2 what the base parameters alone would still gain under these weights.
+}  // namespace
+
+EffectiveSums effective_sums(const Evaluation& evaluation, const Floor& floor) {
+  return sum_up(evaluation, floor).effective;
+}
+
 double without_base(const EffectiveSums& sums, int base) {
   if (base == 0) return sums.r2;
   const VectorXd s = sums.s.head(base);
@@ -128,6 +133,8 @@ double without_base(const EffectiveSums& sums, int base) {
   const double gain = s.dot(H.completeOrthogonalDecomposition().solve(s));
   return std::max(sums.r2 - gain, 0.1 * sums.r2);
 }
+
+namespace {
 
 /// Evidence of every effect from its candidates' evidence.
 std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,

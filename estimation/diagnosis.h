@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimation/effect.h"
+#include "estimation/evidence.h"
 #include "estimation/fit.h"
 #include "estimation/floor.h"
 
@@ -54,6 +55,11 @@ struct DiagnosisOptions {
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options = {});
+
+/// Sums of the fitted examples, every photo weighted by its effective share of independent cells.
+EffectiveSums effective_sums(const Evaluation& evaluation, const Floor& floor);
+/// |r|^2 less what the first `base` columns alone would still gain.
+double without_base(const EffectiveSums& sums, int base);
 
 /// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
 constexpr double kNameable = 5.0;

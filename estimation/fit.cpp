@@ -7,6 +7,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "estimation/additive_material.h"
+#include "estimation/progressive.h"
+
 namespace hookeye {
 
 namespace {
@@ -114,10 +117,9 @@ struct Stage {
     if (level > 0) return fmt::format("1/{} size", 1 << level);
     return registered ? "motion" : "full size";
   }
-  /// Pictures are linear in motions below this: the finest pattern that the pixel filter passes at
-  /// half its contrast has a period of 6 px, of which sin(2 pi 0.3/6) is linear to 2 %. Further
-  /// away Gauss-Newton on pixels creeps, and on the motion between the pictures it does not.
-  bool serves(double motion_px) const { return level > 0 || registered == (motion_px > 0.3); }
+  /// Beyond kLinearPx Gauss-Newton on pixels creeps, and on the motion between the pictures it does
+  /// not.
+  bool serves(double motion_px) const { return level > 0 || registered == (motion_px > kLinearPx); }
 };
 
 class Reporter final : public ceres::IterationCallback {
@@ -158,7 +160,8 @@ class Reporter final : public ceres::IterationCallback {
   int of_;
 };
 
-/// Misfit that Huber's threshold is measured in: 1.48 median |r| over the fitted photos.
+}  // namespace
+
 double misfit_scale(const Evaluation& evaluation) {
   std::vector<float> sample;
   for (const auto& example : evaluation.examples)
@@ -170,6 +173,8 @@ double misfit_scale(const Evaluation& evaluation) {
   std::nth_element(sample.begin(), sample.begin() + sample.size() / 2, sample.end());
   return std::max(1.0, 1.4826 * static_cast<double>(sample[sample.size() / 2]));
 }
+
+namespace {
 
 double photo_count(const Evaluation& evaluation) {
   double count = 0.0;
@@ -304,7 +309,8 @@ std::string name_direction(const std::vector<Parameter>& parameters, const Vecto
 
 Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
                                      const std::vector<Parameter>& parameters, const VectorXd& p,
-                                     std::vector<std::string>* undetermined) {
+                                     std::vector<std::string>* undetermined,
+                                     bool keep_undetermined) {
   const int n = static_cast<int>(parameters.size());
   const Scaling scaling{parameters};
   const VectorXd scale = scaling.dp_dx(p);
@@ -325,17 +331,18 @@ Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
   H = scale.asDiagonal() * H * scale.asDiagonal();
   V = scale.asDiagonal() * V * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n), unknown = inverse;
   for (int i = 0; i < n; ++i) {
     // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
     const VectorXd v = eigen.eigenvectors().col(i);
     if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
       if (undetermined) undetermined->push_back(name_direction(parameters, v));
+      if (keep_undetermined) unknown += 900.0 * v * v.transpose();
       continue;
     }
     inverse += v * v.transpose() / eigen.eigenvalues()[i];
   }
-  return scale.asDiagonal() * (inverse * V * inverse) * scale.asDiagonal();
+  return scale.asDiagonal() * (inverse * V * inverse + unknown) * scale.asDiagonal();
 }
 
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
@@ -385,6 +392,8 @@ std::vector<Stage> stages(const Scene& scene, bool coarse_to_fine) {
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+  if (find_additive(form, start).ingredient >= 0)
+    return fit_convex_to_end(workspace, form, start, options);
   VectorXd p = start;
   int iterations = 0;
   bool converged = true;

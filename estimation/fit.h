@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,6 +27,17 @@ struct FitOptions {
   std::function<void(const FitProgress&)> progress;
 };
 
+/// One step of the progressive estimation of an additive material (progressive.h).
+struct RefinementStage {
+  std::string what;                       ///< "start", "control point E11 = 0.21", "addend E22"
+  double evidence = 0.0;                  ///< log evidence before the refit
+  int values = 0;                         ///< control values
+  double misfit_fit = 0.0;                ///< sum of squares over noise after the refit
+  std::optional<double> misfit_held_out;  ///< empty: nothing is held out
+  double smallest_eigenvalue = 0.0;       ///< least over the accepted steps [stress]
+  bool kept = false;
+};
+
 /// A fitted model with its pictures and normal equations at full size.
 struct Fitted {
   ModelForm form;
@@ -35,6 +47,8 @@ struct Fitted {
   Evaluation evaluation;                  ///< fitted and held-out, pictures and derivatives
   int iterations = 0;
   bool converged = false;
+  std::vector<RefinementStage> refinements;  ///< additive material only
+  double smallest_eigenvalue = 0.0;          ///< the same: least over the last stage's steps
 };
 
 /// Least squares over photos, forces, moments and positions of the fitted examples, from `start`.
@@ -73,8 +87,17 @@ NormalEquations normal_equations(const Evaluation& evaluation, bool held_out = f
 /// Covariance H^-1 (sum_k lambda_k H_k) H^-1 of the first `size` parameters: lambda_k is how much
 /// the variance of a smooth signature in photo k exceeds that under white noise (flow.h).
 /// Directions without information are left out (pseudo-inverse).
+/// With `keep_undetermined` they stay in, with a standard deviation of 30 times what matters.
 Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
                                      const std::vector<Parameter>& parameters, const VectorXd& p,
-                                     std::vector<std::string>* undetermined);
+                                     std::vector<std::string>* undetermined,
+                                     bool keep_undetermined = false);
+
+/// Pictures are linear in motions below this [px]: the finest pattern that the pixel filter passes
+/// at half its contrast has a period of 6 px, of which sin(2 pi 0.3/6) is linear to 2 %.
+constexpr double kLinearPx = 0.3;
+
+/// Misfit that Huber's threshold is measured in: 1.48 median |r| of the fitted photos' pictures.
+double misfit_scale(const Evaluation& evaluation);
 
 }  // namespace hookeye

@@ -9,6 +9,7 @@
 #include "capture_io/run.h"
 #include "capture_io/yaml_section.h"
 #include "capture_io/yaml_tree.h"
+#include "estimation/additive_material.h"
 #include "estimation/effect.h"
 #include "estimation/model.h"
 
@@ -54,6 +55,16 @@ std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, co
   const YamlNode& named = section.need("name", "name: material, or an effect's name");
   const std::string name = read_string(named, "name");
   std::vector<std::string> known;
+  const YamlNode* structure = section.find("variant");
+  if (name == "material" && structure) {
+    try {
+      return additive_material_from(read_string(*structure, "variant"), base.scene->capture.units);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(structure->place,
+                       fmt::format("the material's variant is damaged: {}", error.what()),
+                       "take it from a model.yaml of a run");
+    }
+  }
   for (const auto& ingredient : base.ingredients) {
     if (ingredient->name() == name) return ingredient;
     known.push_back(ingredient->name());

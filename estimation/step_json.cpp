@@ -7,6 +7,7 @@
 
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
+#include "estimation/energy_curves.h"
 #include "estimation/page_data.h"
 
 namespace hookeye {
@@ -150,23 +151,28 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
         sum->first += photo.r2, sum->second += photo.count;
     }
   const MeshQuality mesh = quality(scene.body->mesh);
-  return {{"chi_fit", fitted.evaluation.chi(false)},
-          {"chi_validate", fitted.evaluation.chi(true)},
-          {"rms_px_fit", fitted.evaluation.rms_px(false)},
-          {"rms_px_validate", fitted.evaluation.rms_px(true)},
-          {"floor", to_json(floor)},
-          {"photos", std::move(photos)},
-          {"chi_by_example", chi_table(by_example)},
-          {"chi_by_camera", chi_table(by_camera)},
-          {"measured", measured_json(scene, fitted)},
-          {"undetermined", fitted.undetermined},
-          {"converged", fitted.converged},
-          {"iterations", fitted.iterations},
-          {"mesh",
-           {{"nodes", mesh.nodes},
-            {"elements", mesh.elements},
-            {"order", scene.body->mesh.order},
-            {"mean_edge", mesh.mean_edge}}}};
+  json out = {{"chi_fit", fitted.evaluation.chi(false)},
+              {"chi_validate", fitted.evaluation.chi(true)},
+              {"rms_px_fit", fitted.evaluation.rms_px(false)},
+              {"rms_px_validate", fitted.evaluation.rms_px(true)},
+              {"floor", to_json(floor)},
+              {"photos", std::move(photos)},
+              {"chi_by_example", chi_table(by_example)},
+              {"chi_by_camera", chi_table(by_camera)},
+              {"measured", measured_json(scene, fitted)},
+              {"undetermined", fitted.undetermined},
+              {"converged", fitted.converged},
+              {"iterations", fitted.iterations},
+              {"mesh",
+               {{"nodes", mesh.nodes},
+                {"elements", mesh.elements},
+                {"order", scene.body->mesh.order},
+                {"mean_edge", mesh.mean_edge}}}};
+  if (json additive = additive_metrics(scene, fitted); !additive.is_null()) {
+    out["energy"] = energy_curves(scene, fitted);
+    out["additive"] = std::move(additive);
+  }
+  return out;
 }
 
 namespace {
@@ -222,14 +228,18 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
   const Eigen::MatrixXd reaction =
       Eigen::Map<const Matrix3Xd>(example.equilibrium->R.data(), 3, mesh.nodes());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
-  write_vtu(file, mesh,
-            {{"displacement", u, true},
-             {"reaction", reaction, true},
-             {"residual", nodal_residual(scene, model, example).transpose(), true},
-             {"green_strain", state.green_strain, false},
-             {"cauchy_stress", state.cauchy_stress, false},
-             {"von_mises", state.von_mises.transpose(), false},
-             {"J", state.J.transpose(), false}});
+  std::vector<VtuArray> arrays = {
+      {"displacement", u, true},
+      {"reaction", reaction, true},
+      {"residual", nodal_residual(scene, model, example).transpose(), true},
+      {"green_strain", state.green_strain, false},
+      {"cauchy_stress", state.cauchy_stress, false},
+      {"von_mises", state.von_mises.transpose(), false},
+      {"J", state.J.transpose(), false}};
+  if (const AdditiveModel* own = additive_model(*model.energy.parts.at(0).term))
+    arrays.push_back(
+        {"beyond_control_points", addends_beyond(scene, *own, model, q).transpose(), false});
+  write_vtu(file, mesh, arrays);
 }
 
 }  // namespace

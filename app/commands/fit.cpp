@@ -3,14 +3,47 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
+#include "estimation/additive_material.h"
+#include "estimation/progressive.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
 namespace {
 
 struct FitArguments {
-  std::string capture, run, model;
+  std::string capture, run, model, material;
 };
+
+/// The capture's own law is additive, and its `fit` asks for all of it.
+bool asks_for_additive(const Capture& capture) {
+  return capture.materials.size() == 1 && capture.materials[0].law == "additive" &&
+         capture.fit == std::vector<std::string>{"additive"};
+}
+
+/// The textbook law first, where it can move; then the same energy told additively, refined.
+Fitted fit_additive(Bench& bench, const ModelForm& form, VectorXd p, Session& session) {
+  const bool own = find_additive(form, p).ingredient >= 0;
+  if (!own && form.size() > 0) {
+    const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options()));
+    session.say("{}", parameter_table(base));
+    p = base.p;
+  }
+  const auto [additive, start] = own ? std::pair(form, p) : to_additive(form, p);
+  ProgressiveOptions options;
+  options.fit = fit_options();
+  return value_or_fail(fit_progressive(bench.workspace, additive, start, options));
+}
+
+void say_refinements(const Fitted& fitted, const Session& session) {
+  std::vector<std::vector<std::string>> rows = {
+      {"refinement", "values", "evidence", "misfit", "held out", ""}};
+  for (const RefinementStage& stage : fitted.refinements)
+    rows.push_back({stage.what, std::to_string(stage.values), fmt::format("{:.1f}", stage.evidence),
+                    fmt::format("{:.6g}", stage.misfit_fit),
+                    stage.misfit_held_out ? fmt::format("{:.6g}", *stage.misfit_held_out) : "-",
+                    stage.kept ? "kept" : "refused"});
+  session.say("{}", table(rows));
+}
 
 void run_fit(const FitArguments& arguments, Session& session) {
   Bench bench = open_capture(arguments.capture, session);
@@ -25,12 +58,17 @@ void run_fit(const FitArguments& arguments, Session& session) {
   if (!arguments.model.empty()) std::tie(form, start) = read_model(arguments.model, bench.scene);
   Step step;
   step.name = "base";
-  step.fitted = value_or_fail(fit(bench.workspace, form, start, fit_options()));
+  const bool additive = arguments.material == "additive" ||
+                        find_additive(form, start).ingredient >= 0 ||
+                        asks_for_additive(bench.scene->capture);
+  step.fitted = additive ? fit_additive(bench, form, start, session)
+                         : value_or_fail(fit(bench.workspace, form, start, fit_options()));
   const auto folder = record(run, *bench.scene, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { timeline["floor"] = to_json(floor); });
   session.document = run.timeline();
   session.say("{}", parameter_table(step.fitted));
+  if (additive) say_refinements(step.fitted, session);
   session.say("chi {:.3f} on the fitted photos, {:.3f} on the held-out ones; floor {:.3f} ({})\n",
               step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true), floor.chi,
               floor.source);
@@ -45,6 +83,10 @@ void add_fit(CLI::App& app, CommandBody& chosen) {
   command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
   command->add_option("-o,--out", arguments->run, "Run folder")->required();
   command->add_option("-m,--model", arguments->model, "Start from this model.yaml");
+  command
+      ->add_option("--material", arguments->material,
+                   "additive: go on with the additive energy model from the fitted law")
+      ->check(CLI::IsMember({"additive"}));
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_fit(*arguments, session); };
   });

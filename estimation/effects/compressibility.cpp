@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estimation/effects/toolbox.h"
+#include "simulation/additive.h"
 
 namespace hookeye {
 
@@ -25,15 +26,44 @@ double ratio_of(double nu) { return 2.0 * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu));
 
 /// How the volumetric part of one material may move.
 struct Volumetric {
-  enum class Kind { ratio, kappa, lambda } kind = Kind::ratio;
+  /// addend: all control values of the additive law's J addend by a common factor.
+  enum class Kind { ratio, kappa, lambda, addend } kind = Kind::ratio;
   int part = 0, index = 0;  ///< index of kappa or lambda in the term's parameters
-  double value = 0.0;       ///< present kappa_over_mu, kappa or lambda
+  double value = 0.0;       ///< present kappa_over_mu, kappa or lambda; addend: factor
+  double modulus = 0.0;     ///< addend: its tangent modulus at rest
   std::string label;        ///< region of the material, or ""
 };
+
+/// A function of J alone.
+bool is_volumetric(const AdditiveModel& model, const Addend& a) {
+  return a.second < 0 && !a.fixed &&
+         model.components[a.first].kind == StrainComponent::Kind::volume;
+}
+
+/// The J addend at rest, where it is there and the capture does not fit it.
+double free_volume_modulus(const EnergyTerm& term, const Capture& capture) {
+  const AdditiveModel& model = *additive_model(term);
+  const Addend* J = nullptr;
+  for (const Addend& a : model.addends)
+    if (is_volumetric(model, a)) J = &a;
+  const bool told = capture.materials.size() == 1 && capture.materials[0].law == "additive";
+  const bool fitted = std::any_of(capture.fit.begin(), capture.fit.end(), [](const auto& name) {
+    return name == "additive" || name == "J" || name.rfind("J.", 0) == 0;
+  });
+  // A material that was told otherwise became additive by a fit, which moves all of it.
+  if (!J || !told || fitted) return 0.0;
+  return addend_curve(model, static_cast<int>(J - model.addends.data()), 0.0)[2];
+}
 
 /// The term with another bulk to shear ratio.
 std::shared_ptr<const EnergyTerm> with_value(const EnergyTerm& term, const Volumetric& how,
                                              double value, const Units& units) {
+  if (how.kind == Volumetric::Kind::addend) {
+    AdditiveModel model = *additive_model(term);
+    for (Addend& a : model.addends)
+      if (is_volumetric(model, a)) a.stiffness *= value;
+    return additive(model);
+  }
   const auto declared = term.parameters(units);
   if (how.kind == Volumetric::Kind::ratio) return neo_hookean_tied(declared[0].value, value);
   VectorXd theta(declared.size());
@@ -45,6 +75,11 @@ std::shared_ptr<const EnergyTerm> with_value(const EnergyTerm& term, const Volum
 double value_of_ratio(const EnergyTerm& term, const Volumetric& how, double ratio) {
   const double mu = initial_moduli(term).mu;
   if (how.kind == Volumetric::Kind::ratio) return ratio;
+  if (how.kind == Volumetric::Kind::addend) {
+    // The other addends resist a change of volume too; only the rest is J's.
+    const double others = initial_moduli(term).kappa - how.modulus;
+    return std::max(1e-6, (ratio * mu - others) / how.modulus);
+  }
   return how.kind == Volumetric::Kind::kappa ? ratio * mu : (ratio - 2.0 / 3.0) * mu;
 }
 
@@ -57,6 +92,13 @@ std::vector<Volumetric> free_volumetric(const Model& model) {
     Volumetric how;
     how.part = static_cast<int>(part);
     how.label = spec.region;
+    if (additive_model(term)) {
+      how.kind = Volumetric::Kind::addend;
+      how.modulus = free_volume_modulus(term, capture);
+      how.value = 1.0;
+      if (how.modulus > 0) out.push_back(how);
+      continue;
+    }
     if (spec.parameters.count("kappa_over_mu")) {
       const Moduli now = initial_moduli(term);
       const double told = spec.parameters.at("kappa_over_mu").numbers.at(0);
@@ -135,6 +177,10 @@ class Compressibility final : public Effect {
       double ratio = values[0];
       if (free[0].kind == Volumetric::Kind::kappa) ratio = values[0] / mu;
       if (free[0].kind == Volumetric::Kind::lambda) ratio = values[0] / mu + 2.0 / 3.0;
+      if (free[0].kind == Volumetric::Kind::addend) {
+        const double now = initial_moduli(*model.energy.parts[free[0].part].term).kappa;
+        ratio = (now + (values[0] - 1.0) * free[0].modulus) / mu;
+      }
       nu = poisson(ratio);
     }
     return fmt::format("Poisson's ratio is {:.3f} (bulk modulus {} times the shear modulus)", nu,
@@ -182,12 +228,17 @@ class Compressibility final : public Effect {
     for (const Volumetric& how : free) {
       const bool ratio = how.kind == Volumetric::Kind::ratio;
       const bool kappa = how.kind == Volumetric::Kind::kappa;
+      const bool addend = how.kind == Volumetric::Kind::addend;
       Parameter parameter;
-      parameter.name = label(how, ratio ? "kappa_over_mu" : kappa ? "kappa" : "lambda");
-      parameter.unit = ratio ? "" : stress;
-      parameter.long_name = ratio   ? "bulk over shear modulus"
-                            : kappa ? "bulk modulus"
-                                    : "first Lame modulus";
+      parameter.name = label(how, ratio    ? "kappa_over_mu"
+                                  : kappa  ? "kappa"
+                                  : addend ? "J_factor"
+                                           : "lambda");
+      parameter.unit = ratio || addend ? "" : stress;
+      parameter.long_name = ratio    ? "bulk over shear modulus"
+                            : kappa  ? "bulk modulus"
+                            : addend ? "factor on the J addend"
+                                     : "first Lame modulus";
       parameter.value = how.value;
       parameter.low = 0.0;
       parameter.typical = std::abs(how.value) > 0.0 ? std::abs(how.value) : 1.0;

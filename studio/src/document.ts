@@ -84,11 +84,15 @@ export interface Metrics {
 export interface EnergyCurve {
   name: string;
   unit: string;
+  axis?: string;  // what `stretch` holds; left out: stretch
   stretch: number[];
   value: number[];
   low: number[];
   high: number[];
   visited?: [number, number];
+  at?: Record<string, number>;  // the other component of an addend of two
+  beyond?: number;  // elements with a strain beyond the control points, of `elements` over all examples
+  elements?: number;
 }
 export interface TimelineStep {
   name: string;

@@ -42,9 +42,13 @@ function Energy(props: {curve: EnergyCurve}) {
     {label: curve.name, values: curve.value, colour: '#2166ac'},
     {label: 'lower', values: curve.low, colour: '#8888'},
   ], [curve]);
+  const axis = curve.axis ?? 'stretch';
+  const other = Object.entries(curve.at ?? {}).map(([name, value]) => `, ${name} = ${figure(value)}`).join('');
   return <>
-    <Chart title={curve.name} x={curve.stretch} lines={lines} bands={[[1, 3]]} xLabel="stretch" yLabel={`${curve.name} [${curve.unit}]`} />
-    {curve.visited && <p class="note">stretches visited: {figure(curve.visited[0])} to {figure(curve.visited[1])}</p>}
+    <Chart title={`Energy of ${curve.name} over ${axis}, with its 95 % band`} x={curve.stretch} lines={lines}
+           bands={[[1, 3]]} xLabel={axis + other} yLabel={`${curve.name} [${curve.unit}]`} />
+    {curve.visited && <p class="note">{axis} visited: {figure(curve.visited[0])} to {figure(curve.visited[1])}
+      {curve.beyond ? `; beyond the control points in ${curve.beyond} of ${curve.elements} elements` : ''}</p>}
   </>;
 }
 

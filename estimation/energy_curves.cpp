@@ -1,0 +1,239 @@
+#include "estimation/energy_curves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/ellipticity.h"
+
+namespace hookeye {
+namespace {
+
+using nlohmann::json;
+
+/// F of example `e` in the frame of the elements, element by element and point by point.
+std::vector<Matrix3d> gradients_in_frame(const Scene& scene, const Model& model,
+                                         const VectorXd& q) {
+  const TetMesh& mesh = scene.body->mesh;
+  std::vector<Matrix3d> all = deformation_gradients(mesh, q);
+  const EnergyModel::Part& part = model.energy.parts.at(0);
+  const size_t points = all.size() / static_cast<size_t>(mesh.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    const int e = static_cast<int>(i / points);
+    if (model.energy.swelling.size()) all[i] /= model.energy.swelling[e];
+    if (part.frames.size()) all[i] = all[i] * part.frame(e);
+  }
+  return all;
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto k = static_cast<size_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
+  return values[k];
+}
+
+constexpr int kCurvePoints = 41;
+
+/// Strain along a curve: over what is visited and the control points, with a margin.
+std::pair<double, double> curve_range(const Addend& addend, double low, double high) {
+  if (!addend.fixed) {
+    low = std::min(low, addend.at.front());
+    high = std::max(high, addend.at.back());
+  }
+  if (addend.even) low = std::min(low, 0.0);
+  const double margin = 0.1 * std::max(high - low, 1e-6);
+  return {addend.even ? low : low - margin, high + margin};
+}
+
+}  // namespace
+
+VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
+                               const AdditiveModel& model) {
+  const Model realised = form.realise(fitted.p);
+  std::vector<std::vector<double>> all(model.components.size());
+  for (const auto& example : fitted.evaluation.examples) {
+    if (example.held_out) continue;
+    for (const Matrix3d& F : gradients_in_frame(*form.scene, realised, example.equilibrium->q)) {
+      const VectorXd e = strains(model, F);
+      for (size_t c = 0; c < all.size(); ++c) all[c].push_back(e[static_cast<Eigen::Index>(c)]);
+    }
+  }
+  VisitedStrains out;
+  for (auto& values : all) {
+    out.low.push_back(values.empty() ? 0.0 : std::min(0.0, quantile(values, 0.01)));
+    out.high.push_back(values.empty() ? 0.0 : std::max(0.0, quantile(values, 0.99)));
+  }
+  return out;
+}
+
+VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
+                        const VectorXd& q) {
+  const auto all = gradients_in_frame(scene, realised, q);
+  const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
+  Eigen::MatrixXd flags = Eigen::MatrixXd::Zero(scene.body->mesh.size(), model.addends.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    const std::vector<bool> beyond = beyond_control_points(model, strains(model, all[i]));
+    for (size_t a = 0; a < beyond.size(); ++a)
+      if (beyond[a])
+        flags(static_cast<Eigen::Index>(i / points), static_cast<Eigen::Index>(a)) = 1.0;
+  }
+  return flags.rowwise().sum();
+}
+
+namespace {
+
+/// Energy along a curve and its derivative by the control values of the addend.
+struct CurvePoint {
+  double value;
+  VectorXd gradient;
+};
+
+CurvePoint on_curve(const AdditiveModel& model, int addend, double e, double second) {
+  const Addend& a = model.addends[addend];
+  if (a.second < 0) {
+    const Eigen::MatrixX3d basis = addend_curve_basis(model, addend, e);
+    return {basis.col(0).dot(a.stiffness), basis.col(0)};
+  }
+  CurvePoint out;
+  out.gradient = addend_energy_basis(model, addend, e, second);
+  out.value = out.gradient.dot(a.stiffness);
+  return out;
+}
+
+json curve_json(const AdditiveModel& model, int addend, const VisitedStrains& visited,
+                const Eigen::MatrixXd& covariance, int offset) {
+  const Addend& a = model.addends[addend];
+  const double low = visited.low[a.first], high = visited.high[a.first];
+  const auto [from, to] = curve_range(a, low, high);
+  double second = 0.0;
+  if (a.second >= 0)
+    second = visited.high[a.second] > -visited.low[a.second] ? visited.high[a.second]
+                                                             : visited.low[a.second];
+  json one = {{"name", a.name}, {"axis", model.components[a.first].name}, {"visited", {low, high}}};
+  if (a.second >= 0) one["at"] = {{model.components[a.second].name, second}};
+  for (int i = 0; i < kCurvePoints; ++i) {
+    const double e = from + (to - from) * i / (kCurvePoints - 1);
+    const CurvePoint point = on_curve(model, addend, e, second);
+    double half = 0.0;
+    if (!a.fixed) {
+      const auto n = point.gradient.size();
+      half = 1.959964 *
+             std::sqrt(std::max(
+                 0.0, point.gradient.dot(covariance.block(offset, offset, n, n) * point.gradient)));
+    }
+    one["stretch"].push_back(e);
+    one["value"].push_back(point.value);
+    one["low"].push_back(point.value - half);
+    one["high"].push_back(point.value + half);
+  }
+  return one;
+}
+
+/// Elements of all examples beyond the control points, by addend.
+std::map<std::string, int> count_beyond(const Scene& scene, const AdditiveModel& model,
+                                        const Model& realised, const Fitted& fitted,
+                                        int* elements) {
+  std::map<std::string, int> count;
+  *elements = 0;
+  for (const auto& example : fitted.evaluation.examples) {
+    for (const Addend& a : model.addends) {
+      AdditiveModel one = model;
+      one.addends = {a};
+      const VectorXd beyond = addends_beyond(scene, one, realised, example.equilibrium->q);
+      count[a.name] += static_cast<int>(beyond.sum());
+    }
+    *elements += scene.body->mesh.size();
+  }
+  return count;
+}
+
+/// dP/dF of the whole model.
+Matrix9d stiffness_of(const EnergyModel& energy, int e, const Matrix3d& F) {
+  const double g = energy.swelling.size() ? energy.swelling[e] : 1.0;
+  Matrix9d D = Matrix9d::Zero();
+  for (const auto& part : energy.parts)
+    D += (part.weight.size() ? part.weight[e] : 1.0) * g * part.dP_dF(e, F / g);
+  return D;
+}
+
+/// At the most strained point of every element of every example.
+json ellipticity_json(const Scene& scene, const Model& realised, const Fitted& fitted) {
+  constexpr int kStarts = 8;  // a sweep; the worst element is looked at again
+  json out;
+  double least = std::numeric_limits<double>::infinity();
+  Matrix9d worst = Matrix9d::Zero();
+  int lost = 0;
+  for (const auto& example : fitted.evaluation.examples) {
+    const EnergyModel energy = realised.energy_of(example.example);
+    const auto all = deformation_gradients(scene.body->mesh, example.equilibrium->q);
+    const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
+    for (int e = 0; e < scene.body->mesh.size(); ++e) {
+      const Matrix3d* F = nullptr;
+      double most = -1.0;
+      for (size_t i = 0; i < points; ++i) {
+        const Matrix3d& here = all[static_cast<size_t>(e) * points + i];
+        const double strain = (here.transpose() * here - Matrix3d::Identity()).norm();
+        if (strain > most) most = strain, F = &here;
+      }
+      const Matrix9d D = stiffness_of(energy, e, *F);
+      const double value = ellipticity(D, kStarts).smallest;
+      lost += value <= 0.0;
+      if (value >= least) continue;
+      least = value;
+      worst = D;
+      out["example"] = scene.capture.examples[example.example].name;
+      out["element"] = e;
+    }
+  }
+  if (out.is_null()) return out;
+  out["smallest"] = ellipticity(worst).smallest;
+  out["elements_lost"] = lost;
+  return out;
+}
+
+}  // namespace
+
+json energy_curves(const Scene& scene, const Fitted& fitted) {
+  const AdditivePart part = find_additive(fitted.form, fitted.p);
+  json out = json::array();
+  if (part.ingredient < 0) return out;
+  const auto parameters = fitted.form.parameters();
+  const Eigen::MatrixXd covariance =
+      parameter_covariance(fitted.evaluation, parameters, fitted.p, nullptr, true);
+  const VisitedStrains visited = visited_strains(fitted.form, fitted, part.model);
+  const Model realised = fitted.form.realise(fitted.p);
+  int elements = 0, offset = part.offset;
+  const auto beyond = count_beyond(scene, part.model, realised, fitted, &elements);
+  for (size_t a = 0; a < part.model.addends.size(); ++a) {
+    const Addend& addend = part.model.addends[a];
+    json one = curve_json(part.model, static_cast<int>(a), visited, covariance, offset);
+    one["unit"] = scene.capture.units.stress();
+    one["beyond"] = beyond.at(addend.name);
+    one["elements"] = elements;
+    out.push_back(std::move(one));
+    if (!addend.fixed) offset += static_cast<int>(addend.stiffness.size());
+  }
+  return out;
+}
+
+json additive_metrics(const Scene& scene, const Fitted& fitted) {
+  const AdditivePart part = find_additive(fitted.form, fitted.p);
+  if (part.ingredient < 0) return {};
+  const ConvexityTest convex = smallest_eigenvalue(part.model);
+  json out = {{"smallest_eigenvalue", convex.smallest},
+              {"at", convex.where},
+              {"least_over_accepted_steps", fitted.smallest_eigenvalue},
+              {"ellipticity", ellipticity_json(scene, fitted.form.realise(fitted.p), fitted)},
+              {"refinements", json::array()}};
+  for (const RefinementStage& stage : fitted.refinements)
+    out["refinements"].push_back(
+        {{"what", stage.what},
+         {"evidence", stage.evidence},
+         {"values", stage.values},
+         {"misfit_fit", stage.misfit_fit},
+         {"misfit_held_out", stage.misfit_held_out ? json(*stage.misfit_held_out) : json()},
+         {"smallest_eigenvalue", stage.smallest_eigenvalue},
+         {"kept", stage.kept}});
+  return out;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,33 @@
+// What the data say of an additive material: each addend's energy with its 95 % band, the strains
+// that the examples visit, and where the model is asked beyond its control points.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "estimation/additive_material.h"
+#include "estimation/fit.h"
+
+namespace hookeye {
+
+/// Strains of the components over all points where the energy is evaluated, fitted examples only:
+/// the range between the 1 % and 99 % quantiles of the volume, and always 0.
+struct VisitedStrains {
+  std::vector<double> low, high;  ///< by component
+};
+VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
+                               const AdditiveModel& model);
+
+/// Number of elements of an example with a point beyond the control points of any addend; per
+/// element how many addends (for pictures).
+VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
+                        const VectorXd& q);
+
+/// `metrics.energy`: one curve an addend {name, unit, axis, stretch, value, low, high, visited,
+/// beyond}: Psi over its component (`stretch` holds the strains, `axis` names them), a
+/// two-component addend along its first component with the second at its largest visited size.
+nlohmann::json energy_curves(const Scene& scene, const Fitted& fitted);
+/// `metrics.additive`: smallest eigenvalue, ellipticity over the strains that occur, refinements,
+/// elements beyond the control points. Null where the material is not additive.
+nlohmann::json additive_metrics(const Scene& scene, const Fitted& fitted);
+
+}  // namespace hookeye

@@ -1,0 +1,314 @@
+#include "estimation/progressive.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/additive_material.h"
+#include "estimation/diagnosis.h"
+#include "estimation/evidence.h"
+
+namespace hookeye {
+
+using Eigen::MatrixXd;
+namespace {
+
+/// x = p / typical, or log p for positive parameters, as in fit().
+struct Scaled {
+  std::vector<Parameter> parameters;
+  VectorXd to_p(const VectorXd& x) const {
+    VectorXd p(x.size());
+    for (int i = 0; i < x.size(); ++i)
+      p[i] = std::min(parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical,
+                      parameters[i].high);
+    return p;
+  }
+  VectorXd to_x(const VectorXd& p) const {
+    VectorXd x(p.size());
+    for (int i = 0; i < p.size(); ++i)
+      x[i] =
+          parameters[i].positive ? std::log(std::max(p[i], 1e-300)) : p[i] / parameters[i].typical;
+    return x;
+  }
+  VectorXd dp_dx(const VectorXd& p) const {
+    VectorXd d(p.size());
+    for (int i = 0; i < p.size(); ++i) d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
+    return d;
+  }
+  VectorXd low() const {
+    VectorXd x(parameters.size());
+    for (size_t i = 0; i < parameters.size(); ++i) {
+      const Parameter& one = parameters[i];
+      x[i] = one.positive
+                 ? (one.low > 0 ? std::log(one.low) : -std::numeric_limits<double>::infinity())
+                 : one.low / one.typical;
+    }
+    return x;
+  }
+};
+
+/// The model whose control values are those of x: all of an additive material share one scale, so
+/// that H(x) is a multiple of H(p) and keeps its sign.
+double common_scale(Scaled& scaled, const AdditivePart& part) {
+  double scale = 0.0;
+  for (int i = 0; i < part.model.size(); ++i)
+    scale = std::max(scale, scaled.parameters[part.offset + i].typical);
+  for (int i = 0; i < part.model.size(); ++i) scaled.parameters[part.offset + i].typical = scale;
+  return scale;
+}
+
+/// Walls are stiffness in p; in x they are divided by the scale like the values.
+AdditiveModel in_units(AdditiveModel model, double scale) {
+  for (Addend& a : model.addends) a.stiffness /= scale;
+  return model;
+}
+
+/// How the pictures are compared from here on: as in fit(), far ones by their motion.
+std::variant<EvaluationOptions, NumericalFailure> comparison(Workspace& workspace,
+                                                             const ModelForm& form,
+                                                             const VectorXd& p,
+                                                             const FitOptions& options) {
+  EvaluationOptions look;
+  look.derivatives = false;
+  look.pictures = true;
+  look.registered = true;
+  look.cancel = options.cancel;
+  auto first = workspace.evaluate(form, p, look);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const Evaluation& seen = std::get<Evaluation>(first);
+  EvaluationOptions out;
+  out.cancel = options.cancel;
+  out.registered = seen.motion_px() > kLinearPx;
+  out.huber = options.huber > 0.0 ? options.huber * misfit_scale(seen) : 0.0;
+  return out;
+}
+
+double residual_count(const Evaluation& evaluation) {
+  double count = 0.0;
+  for (const auto& example : evaluation.examples) {
+    for (const auto& photo : example.photos) count += photo.count;
+    count += 3.0 * static_cast<double>(example.measured.size());
+  }
+  return std::max(count, 1.0);
+}
+
+/// The damped quadratic model of one step, in x.
+struct Step {
+  MatrixXd H;
+  VectorXd g;
+  /// Minimum of the model over convex control values.
+  ConvexProjection solve(const AdditiveModel& model, int offset, const VectorXd& x,
+                         const VectorXd& low, double damping) const {
+    const double floor = 1e-10 * std::max(H.diagonal().maxCoeff(), 1e-300);
+    MatrixXd metric = H;
+    metric.diagonal() += damping * H.diagonal() + VectorXd::Constant(x.size(), floor);
+    const VectorXd target = x - metric.llt().solve(g);
+    return project_convex(model, target, metric, offset, low);
+  }
+};
+
+}  // namespace
+
+std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const ModelForm& form,
+                                                     const VectorXd& start,
+                                                     const FitOptions& options) {
+  const AdditivePart part = find_additive(form, start);
+  if (part.ingredient < 0) throw std::logic_error("fit_convex: no additive material");
+  Scaled scaled{form.parameters()};
+  const double scale = common_scale(scaled, part);
+  const AdditiveModel model = in_units(part.model, scale);
+  const VectorXd low = scaled.low();
+  auto chosen = comparison(workspace, form, start, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&chosen)) return *failure;
+  const EvaluationOptions evaluation = std::get<EvaluationOptions>(chosen);
+  double residuals = 1.0;
+  const auto sums_at = [&](const VectorXd& p) -> std::variant<NormalEquations, NumericalFailure> {
+    auto result = workspace.evaluate(form, p, evaluation);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+    residuals = residual_count(std::get<Evaluation>(result));
+    return normal_equations(std::get<Evaluation>(result));
+  };
+  ConvexFit out;
+  out.registered = evaluation.registered;
+  out.p = start;
+  out.eigenvalues = {smallest_eigenvalue(part.model).smallest};
+  auto first = sums_at(start);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  NormalEquations sums = std::get<NormalEquations>(std::move(first));
+  double damping = 1e-3;
+  for (; out.iterations < options.max_iterations; ++out.iterations) {
+    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+    const VectorXd x = scaled.to_x(out.p), d = scaled.dp_dx(out.p);
+    const Step step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
+    bool accepted = false;
+    double fall = 0.0;
+    // A damping of 1e6 moves nothing: then there is no lower place to go.
+    for (; !accepted && damping < 1e6; damping = accepted ? damping : 8.0 * damping) {
+      const ConvexProjection next = step.solve(model, part.offset, x, low, damping);
+      if (!next.converged) continue;
+      const VectorXd p = scaled.to_p(next.x);
+      const VectorXd move = next.x - x;
+      // Below a promise of 0.01 the parameters move by a tenth of their standard deviation.
+      if (-2.0 * step.g.dot(move) - move.dot(step.H * move) < 0.01) break;
+      auto trial = sums_at(p);
+      if (const auto* failed = std::get_if<NumericalFailure>(&trial)) {
+        if (failed->reason == "cancelled") return *failed;
+        continue;  // no equilibrium there: a shorter step
+      }
+      NormalEquations& there = std::get<NormalEquations>(trial);
+      if (!(there.r2 < sums.r2)) continue;
+      fall = sums.r2 - there.r2;
+      sums = std::move(there);
+      out.p = p;
+      out.eigenvalues.push_back(smallest_eigenvalue(find_additive(form, p).model).smallest);
+      accepted = true;
+    }
+    if (options.progress)
+      options.progress({fmt::format("additive, {} values", part.model.size()), out.iterations + 1,
+                        options.max_iterations, std::sqrt(sums.r2 / residuals)});
+    if (!accepted || fall < 1e-6 * sums.r2) {
+      out.converged = true;
+      break;
+    }
+    damping = std::max(0.2 * damping, 1e-9);
+  }
+  return out;
+}
+
+std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
+                                                         const ModelForm& form,
+                                                         const VectorXd& start,
+                                                         const FitOptions& options) {
+  VectorXd p = start;
+  ConvexFit last;
+  double least = std::numeric_limits<double>::infinity();
+  int iterations = 0;
+  // By motion first where the pictures are far, then by pixels.
+  for (int phase = 0; phase < 2; ++phase) {
+    auto moved = fit_convex(workspace, form, p, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&moved)) return *failure;
+    last = std::get<ConvexFit>(std::move(moved));
+    p = last.p;
+    iterations += last.iterations;
+    least = std::min(least, *std::min_element(last.eigenvalues.begin(), last.eigenvalues.end()));
+    if (!last.registered) break;
+  }
+  auto out = assess(workspace, form, p, options);
+  if (auto* fitted = std::get_if<Fitted>(&out)) {
+    fitted->iterations = iterations;
+    fitted->converged = last.converged;
+    fitted->smallest_eigenvalue = least;
+  }
+  return out;
+}
+
+namespace {
+
+struct Scored {
+  size_t index;
+  double evidence;
+};
+
+/// Refinements by falling log evidence over the present model.
+std::variant<std::vector<Scored>, NumericalFailure> score(Workspace& workspace,
+                                                          const Fitted& fitted,
+                                                          const std::vector<Refinement>& all,
+                                                          const FitOptions& options) {
+  EvaluationOptions evaluation;
+  evaluation.pictures = true;
+  evaluation.cancel = options.cancel;
+  std::vector<std::shared_ptr<const Ingredient>> candidates;
+  for (const Refinement& one : all) candidates.push_back(one.candidate);
+  auto result = workspace.evaluate(fitted.form, fitted.p, evaluation, candidates);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  const Evaluation& seen = std::get<Evaluation>(result);
+  const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
+  const EffectiveSums sums = effective_sums(seen, floor);
+  const int base = fitted.form.size();
+  std::vector<Scored> out;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const Parameter t = all[i].candidate->parameters()[0];
+    Hypothesis hypothesis;
+    hypothesis.first = base + static_cast<int>(i);
+    hypothesis.count = 1;
+    hypothesis.typical = VectorXd::Constant(1, t.typical);
+    hypothesis.one_sided = t.low == 0.0;
+    const ProjectedHypothesis projected = project(sums.H, base, hypothesis);
+    out.push_back(
+        {i, log_evidence(projected, sums.s, without_base(sums, base), sums.count, sums.floor2)});
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Scored& a, const Scored& b) { return a.evidence > b.evidence; });
+  return out;
+}
+
+/// Sum of squares over what is held out; empty where nothing is.
+std::optional<double> held_out_misfit(const Fitted& fitted) {
+  double sum = 0.0;
+  bool any = false;
+  for (const auto& example : fitted.evaluation.examples) {
+    if (!example.held_out) continue;
+    for (const auto& photo : example.photos) sum += photo.r2, any = true;
+    for (const auto& measured : example.measured) sum += measured.r.squaredNorm(), any = true;
+  }
+  return any ? std::optional<double>(sum) : std::nullopt;
+}
+
+double fitted_misfit(const Fitted& fitted) { return normal_equations(fitted.evaluation).r2; }
+
+RefinementStage stage_of(const std::string& what, double evidence, const Fitted& fitted) {
+  RefinementStage stage;
+  stage.what = what;
+  stage.evidence = evidence;
+  stage.values = find_additive(fitted.form, fitted.p).model.size();
+  stage.misfit_fit = fitted_misfit(fitted);
+  stage.misfit_held_out = held_out_misfit(fitted);
+  stage.smallest_eigenvalue = fitted.smallest_eigenvalue;
+  return stage;
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& start,
+                                                       const ProgressiveOptions& options) {
+  auto first = fit(workspace, form, start, options.fit);
+  if (std::holds_alternative<NumericalFailure>(first)) return first;
+  Fitted best = std::get<Fitted>(std::move(first));
+  std::vector<RefinementStage> stages = {stage_of("start", 0.0, best)};
+  stages.back().kept = true;
+  for (int round = 0; round < options.most_refinements; ++round) {
+    const std::vector<Refinement> all = refinements(best.form, best);
+    if (all.empty()) break;
+    auto scored = score(workspace, best, all, options.fit);
+    if (auto* failure = std::get_if<NumericalFailure>(&scored)) return *failure;
+    const auto& ranked = std::get<std::vector<Scored>>(scored);
+    bool kept = false;
+    // A refinement that held-out examples refuse may have a rival that they like.
+    for (size_t k = 0; !kept && k < std::min<size_t>(2, ranked.size()); ++k) {
+      if (ranked[k].evidence < kTie) break;
+      const Refinement& one = all[ranked[k].index];
+      const auto [larger, p] = with_structure(best.form, best.p, one.model);
+      auto result = fit(workspace, larger, p, options.fit);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+        if (failure->reason == "cancelled") return *failure;
+        continue;
+      }
+      Fitted& next = std::get<Fitted>(result);
+      RefinementStage stage = stage_of(one.what, ranked[k].evidence, next);
+      const auto after = stage.misfit_held_out;
+      const auto present = held_out_misfit(best);
+      kept = present ? after && *after < *present : true;
+      stage.kept = kept;
+      stages.push_back(stage);
+      if (kept) best = std::move(next);
+    }
+    if (!kept) break;
+  }
+  best.refinements = std::move(stages);
+  return best;
+}
+
+}  // namespace hookeye

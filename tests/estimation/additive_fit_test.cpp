@@ -1,0 +1,227 @@
+// The additive material fitted to positions, forces and photos of a sheet made by another law.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <fstream>
+
+#include "capture_io/run.h"
+#include "estimation/additive_material.h"
+#include "estimation/effects_scene.h"
+#include "estimation/energy_curves.h"
+#include "estimation/progressive.h"
+#include "estimation/sheet.h"
+#include "simulation/equilibrium.h"
+#include "support/derivative.h"
+
+namespace hookeye::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder(const std::string& name) {
+  return fs::temp_directory_path() / ("hookeye_" + name + "_" + std::to_string(getpid()));
+}
+
+/// A coarse sheet with few load levels: seconds.
+std::shared_ptr<const Scene> small_sheet(std::set<std::string> kinds,
+                                         std::shared_ptr<const EnergyTerm> truth,
+                                         const std::string& material, const std::string& fit) {
+  SheetOptions o;
+  o.folder = folder("sheet");
+  o.kinds = std::move(kinds);
+  o.truth = std::move(truth);
+  o.material = material;
+  o.fit = fit;
+  o.edge = 12.0;
+  o.levels = 2;
+  const auto scene = make_sheet(o);
+  fs::remove_all(o.folder);
+  return scene;
+}
+
+std::shared_ptr<const EnergyTerm> cloth() { return woven_sheet(0.1, 0.3, 0.08, 4.0, 0.02, 1.0); }
+
+TEST(WovenSheet, HasItsDerivatives) {
+  const Matrix3d F =
+      Matrix3d::Identity() + 0.2 * deformed_state(*block_scene()).head<9>().reshaped(3, 3) / 40.0;
+  const auto law = cloth();
+  for (int k = 0; k < 9; ++k) {
+    Matrix3d d = Matrix3d::Zero();
+    d(k % 3, k / 3) = 1;
+    expect_derivative([&](double h) { return VectorXd::Constant(1, law->psi(F + h * d)); },
+                      VectorXd::Constant(1, law->P(F)(k % 3, k / 3)), 1e-4, 1e-6);
+    expect_derivative([&](double h) { return VectorXd(law->P(F + h * d).reshaped()); },
+                      law->dP_dF(F).col(k), 1e-4, 1e-6);
+  }
+}
+
+TEST(AdditiveMaterial, IsReadBackFromItsVariantAndFile) {
+  const auto scene = block_scene();
+  const ModelForm base = base_form(scene);
+  auto [form, p] = to_additive(base, base.initial());
+  AdditiveModel model = find_additive(form, p).model;
+  model.frame = Eigen::AngleAxisd(0.4, Vector3d::UnitZ()).matrix();
+  add_addend(model, "E11", {-0.1, 0.2}, {}, Eigen::Vector2d(0.01, 0.03));
+  add_addend(model, "E22", {0.0}, {}, VectorXd::Constant(1, 0.02));
+  add_addend(model, "E11_E22", {0.0}, {0.0, 0.1}, Eigen::Vector2d(0.001, 0.002));
+  add_addend(model, "fibre1", {0.0}, {}, VectorXd::Constant(1, 0.02));
+  model.components[component_index(model, "fibre1")].direction = Vector3d(0.6, 0.8, 0);
+  std::tie(form, p) = with_structure(form, p, model);
+  const fs::path file = folder("model.yaml");
+  std::ofstream(file) << write_model(form, p);
+  const auto [again, q] = read_model(file, scene);
+  fs::remove(file);
+  EXPECT_EQ(q, p);
+  const VectorXd x = deformed_state(*scene);
+  EXPECT_EQ(signature(again.realise(q), x), signature(form.realise(p), x));
+  EXPECT_EQ(again.ingredients[0]->variant(), form.ingredients[0]->variant());
+  EXPECT_THROW(additive_material_from("{\"additive\": 1}", scene->capture.units),
+               std::invalid_argument);
+}
+
+TEST(AdditiveMaterial, StartsAtTheEnergyOfTheTextbookLaw) {
+  const auto scene = block_scene();
+  const ModelForm base = base_form(scene);
+  const auto [form, p] = to_additive(base, base.initial());
+  const VectorXd x = deformed_state(*scene);
+  const VectorXd a = signature(base.realise(base.initial()), x), b = signature(form.realise(p), x);
+  EXPECT_LE((a - b).norm(), 1e-12 * a.norm());
+}
+
+TEST(AdditiveMaterial, ForceDerivativesAreThoseOfTheAssembly) {
+  const auto scene = block_scene();
+  const ModelForm base = base_form(scene);
+  auto [form, p] = to_additive(base, base.initial());
+  AdditiveModel model = refined(find_additive(form, p).model, 0, 0.2);
+  add_addend(model, "E33", {-0.1, 0.1}, {}, Eigen::Vector2d(0.01, 0.02));
+  std::tie(form, p) = with_structure(form, p, model);
+  Equilibrium at;
+  at.q = deformed_state(*scene);
+  const Model now = form.realise(p);
+  const auto R = [&](int k, double h) {
+    VectorXd moved = p;
+    moved[k] += h;
+    const Model there = form.realise(moved);
+    return residual(scene->body->mesh, there.energy_of(1), there.examples[1].loading, at.q);
+  };
+  for (int k = 0; k < model.size(); ++k) {
+    MechanicsDerivative out;
+    ASSERT_TRUE(
+        form.ingredients[0]->mechanics_derivative(p.head(model.size()), now, 1, at, k, out));
+    expect_derivative([&](double h) { return R(k, h); }, out.dR_dt, 1e-3, 1e-8, std::to_string(k));
+  }
+}
+
+TEST(ConvexFit, StaysConvexAfterEveryAcceptedStep) {
+  const auto scene = small_sheet({"positions", "forces"}, cloth(),
+                                 "{law: stvk, lambda: 0.1, mu: 0.1}", "[lambda, mu]");
+  Workspace workspace(scene);
+  const ModelForm base = base_form(scene);
+  auto [form, p] = to_additive(base, base.initial());
+  // Many control points, and couplings that the data will want to move: some eigenvalue meets zero.
+  AdditiveModel model = find_additive(form, p).model;
+  for (int a = 0; a < 3; ++a)
+    for (double x : {-0.08, 0.08, 0.2}) model = refined(model, a, x);
+  std::tie(form, p) = with_structure(form, p, model);
+  FitOptions options;
+  options.max_iterations = 6;
+  const auto result = fit_convex(workspace, form, p, options);
+  ASSERT_TRUE(std::holds_alternative<ConvexFit>(result))
+      << std::get<NumericalFailure>(result).reason;
+  const ConvexFit& fit = std::get<ConvexFit>(result);
+  ASSERT_GE(fit.eigenvalues.size(), 3u);
+  for (double eigenvalue : fit.eigenvalues) EXPECT_GE(eigenvalue, 0.0);
+  const double mu = 0.1;
+  EXPECT_LT(*std::min_element(fit.eigenvalues.begin(), fit.eigenvalues.end()), 0.1 * mu)
+      << "no eigenvalue came near zero, the test would prove nothing";
+  const auto before = assess(workspace, form, p), after = assess(workspace, form, fit.p);
+  EXPECT_LT(normal_equations(std::get<Fitted>(after).evaluation).r2,
+            0.2 * normal_equations(std::get<Fitted>(before).evaluation).r2);
+}
+
+TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
+  const auto scene = small_sheet({"positions", "forces"}, cloth(),
+                                 "{law: neo-hookean, mu: 0.1, kappa: 0.3}", "[mu, kappa]");
+  Workspace workspace(scene);
+  const ModelForm base = base_form(scene);
+  const auto textbook = fit(workspace, base, base.initial());
+  ASSERT_TRUE(std::holds_alternative<Fitted>(textbook));
+  const auto [form, p] = to_additive(base, std::get<Fitted>(textbook).p);
+  ProgressiveOptions options;
+  options.most_refinements = 3;
+  options.fit.max_iterations = 6;
+  const auto result = fit_progressive(workspace, form, p, options);
+  ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << std::get<NumericalFailure>(result).reason;
+  const Fitted& fitted = std::get<Fitted>(result);
+  ASSERT_GE(fitted.refinements.size(), 2u);
+  EXPECT_TRUE(fitted.refinements[1].kept);
+  double held = *fitted.refinements[0].misfit_held_out;
+  for (const RefinementStage& stage : fitted.refinements) {
+    EXPECT_GE(stage.smallest_eigenvalue, 0.0) << stage.what;
+    if (!stage.kept) {
+      EXPECT_GE(*stage.misfit_held_out, held) << stage.what;
+    } else {
+      EXPECT_LE(*stage.misfit_held_out, held) << stage.what;
+      held = *stage.misfit_held_out;
+    }
+  }
+  EXPECT_LT(held, 0.5 * *fitted.refinements[0].misfit_held_out);
+  const auto curves = energy_curves(*scene, fitted);
+  ASSERT_EQ(curves.size(), find_additive(fitted.form, fitted.p).model.addends.size());
+  for (const auto& curve : curves) {
+    ASSERT_EQ(curve["stretch"].size(), curve["value"].size());
+    for (size_t i = 0; i < curve["value"].size(); ++i)
+      EXPECT_LE(curve["low"][i].get<double>(), curve["high"][i].get<double>());
+    EXPECT_LE(curve["visited"][0].get<double>(), 0.0);
+    EXPECT_TRUE(curve.contains("beyond"));
+  }
+  const auto told = additive_metrics(*scene, fitted);
+  EXPECT_GE(told["smallest_eigenvalue"].get<double>(), 0.0);
+  EXPECT_TRUE(told["ellipticity"].contains("smallest"));
+}
+
+/// Interval of the shear and bulk modulus of an additive neo-Hookean material from one kind of
+/// data.
+struct Interval {
+  VectorXd value, low, high;
+};
+Interval moduli_from(std::set<std::string> kinds) {
+  const auto scene = small_sheet(std::move(kinds), neo_hookean(0.1, 0.4),
+                                 "{law: neo-hookean, mu: 0.12, kappa: 0.3}", "[mu, kappa]");
+  Workspace workspace(scene);
+  const ModelForm base = base_form(scene);
+  const auto [form, p] = to_additive(base, base.initial());
+  const auto result = fit(workspace, form, p);
+  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
+    ADD_FAILURE() << failure->reason;
+    return {VectorXd::Zero(2), VectorXd::Zero(2), VectorXd::Zero(2)};
+  }
+  const Fitted& fitted = std::get<Fitted>(result);
+  return {fitted.p.head(2), fitted.low.head(2), fitted.high.head(2)};
+}
+
+TEST(Measurements, PositionsForcesAndPhotosAgreeOnTheMaterial) {
+  // All motions are prescribed, so that forces set the scale; positions and photos alone fix the
+  // ratio.
+  const Interval forces = moduli_from({"forces"});
+  const Interval positions = moduli_from({"positions", "forces"});
+  const Interval photos = moduli_from({"photos", "forces"});
+  const Eigen::Vector2d truth(0.1, 0.4);
+  for (const Interval* one : {&forces, &positions, &photos})
+    for (int k = 0; k < 2; ++k) {
+      // Another mesh made the data: 2 % beside the interval.
+      const double slack = 0.02 * truth[k];
+      EXPECT_LE(one->low[k] - slack, truth[k]) << one->value.transpose();
+      EXPECT_GE(one->high[k] + slack, truth[k]) << one->value.transpose();
+      EXPECT_GT(one->high[k], one->low[k]);
+    }
+  const auto ratio_only = moduli_from({"positions"});
+  EXPECT_NEAR(ratio_only.value[1] / ratio_only.value[0], 4.0, 0.4);
+  const auto ratio_by_photos = moduli_from({"photos"});
+  EXPECT_NEAR(ratio_by_photos.value[1] / ratio_by_photos.value[0], 4.0, 0.4);
+}
+
+}  // namespace
+}  // namespace hookeye::test

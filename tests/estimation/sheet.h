@@ -1,0 +1,42 @@
+// A thin orthotropic sheet with a known answer, under corner pull and complex shear: what the
+// additive model is tried on (Miguel, Miraut, Otaduy 2016, section 7).
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "estimation/model.h"
+#include "simulation/energy_model.h"
+
+namespace hookeye::test {
+
+struct SheetOptions {
+  std::filesystem::path folder;             ///< the capture is written here
+  std::shared_ptr<const EnergyTerm> truth;  ///< the law that makes the data
+  /// Kinds of measurement: "positions", "forces", "photos".
+  std::set<std::string> kinds = {"positions", "forces"};
+  std::string fitted = "corner";  ///< motion that is fitted: "corner" or "shear"
+  std::string material = "{law: stvk, lambda: 0.2, mu: 0.1}";
+  std::string fit = "[lambda, mu]";
+  double edge = 5.0;     ///< told mesh [mm]; the truth's is 0.7 times as fine
+  int levels = 3;        ///< load levels of every motion
+  double stretch = 1.0;  ///< size of all motions
+  double position_sigma = 0.02, force_sigma = 0.005;  ///< [mm], [N]
+  unsigned seed = 1;
+};
+
+/// 40 x 40 x 2 mm; axes 1 and 2 in its plane. corner_K: the left edge is held, the upper right
+/// corner pulled along its diagonal and out of the plane. shear_K: the lower edge is held, the
+/// upper one moved along itself, away and turned. Level K of the fitted motion is fitted, its
+/// middle one held out; the other motion is held out. Truth: another mesh, noise on everything.
+std::shared_ptr<const Scene> make_sheet(const SheetOptions& options);
+
+/// Orthotropic, stiffening, softer in compression than in tension in its plane: exponential fibres
+/// along both axes (Holzapfel, Gasser, Ogden 2000) in a compressible neo-Hookean sheet.
+/// stiff1, stiff2: fibre moduli; lock1, lock2: how fast they stiffen.
+std::shared_ptr<const EnergyTerm> woven_sheet(double mu, double kappa, double stiff1, double lock1,
+                                              double stiff2, double lock2);
+
+}  // namespace hookeye::test
