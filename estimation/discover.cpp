@@ -12,6 +12,12 @@ namespace {
 /// What texture and shading errors of another renderer leave over the floor of the rest photos.
 constexpr double kAtFloor = 1.3;
 
+/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
+bool at_floor(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -64,15 +70,17 @@ double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& f
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why) {
-  const double chi = fitted.evaluation.chi(false);
+  const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
   bool something = false;
   for (const auto& effect : diagnosis.effects) something |= nameable(effect, diagnosis);
-  const bool at_floor = chi <= kAtFloor * diagnosis.floor.chi;
   if (why)
-    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
-                       something ? ", and an effect of the catalogue still stands out" : "");
+    *why = fmt::format(
+        "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
+        held_out > 0.0 ? fmt::format(" ({:.2f} on held-out photos)", held_out / diagnosis.floor.chi)
+                       : "",
+        something ? ", and an effect of the catalogue still stands out" : "");
   if (!tie.empty()) return Verdict::ambiguous;
-  return at_floor ? Verdict::explained : Verdict::unexplained;
+  return at_floor(fitted, diagnosis.floor) ? Verdict::explained : Verdict::unexplained;
 }
 
 namespace {
@@ -84,12 +92,6 @@ struct Refit {
 };
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
-/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
-bool at_floor(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
-}
 
 /// A tie needs equals: a rival that after as many steps is left with twice the winner's misfit is
 /// none.

@@ -437,35 +437,39 @@ VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquat
 
 }  // namespace
 
-std::variant<double, NumericalFailure> trial_huber(Workspace& workspace, const ModelForm& form,
-                                                   const VectorXd& p, const FitOptions& options) {
-  auto seen = look(workspace, form, p, options, kHalfSize);
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options) {
+  const auto seen = workspace.evaluate(form, p, only_pictures(kHalfSize, options));
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  return options.huber * std::get<Look>(seen).misfit;
+  const Evaluation& pictures = std::get<Evaluation>(seen);
+  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
 }
 
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, double huber,
+                                               const VectorXd& start, const TrialScale& scale,
                                                const FitOptions& options) {
-  EvaluationOptions derivatives;
-  derivatives.level = kHalfSize;
-  derivatives.registered = true;
-  derivatives.huber = huber;
-  derivatives.cancel = options.cancel;
-  auto first = workspace.evaluate(form, start, derivatives);
+  EvaluationOptions derivatives = only_pictures(kHalfSize, options);
+  derivatives.derivatives = true;
+  derivatives.huber = scale.huber;
+  const auto first = workspace.evaluate(form, start, derivatives);
   if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const double from = std::get<Evaluation>(first).linear_chi(false);
+  // "from the null itself" comes back a little off: rays have changed triangles
+  if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
   const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
   EvaluationOptions pictures = only_pictures(kHalfSize, options);
   pictures.held_out = true;
   std::variant<Evaluation, NumericalFailure> seen;
-  for (double share : {1.0, 0.3, 0.1}) {
+  for (double share : {1.0, 0.3, 0.1, 0.0}) {
     const VectorXd p = after_step({form.parameters()}, start, sums, share);
     seen = workspace.evaluate(form, p, pictures);
     if (auto* evaluation = std::get_if<Evaluation>(&seen))
-      return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
+      if (share == 0.0 || evaluation->linear_chi(false) < from)
+        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
     if (options.cancel && options.cancel->load()) break;
   }
-  return std::get<NumericalFailure>(seen);
+  return NumericalFailure{"", 0.0, "cancelled"};
 }
 
 }  // namespace hookeye

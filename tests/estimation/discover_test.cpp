@@ -42,8 +42,10 @@ TEST(Fit, ReachesTheTruthFromPixelsAway) {
   EXPECT_NEAR(fitted.p[0], 0.02, 0.02 * 2e-3);
   EXPECT_LE(fitted.low[0], 0.02 * (1 + 1e-3));
   EXPECT_GE(fitted.high[0], 0.02 * (1 - 1e-3));
-  EXPECT_NEAR(fitted.evaluation.chi(false), 1.0, 0.08);
-  EXPECT_NEAR(fitted.evaluation.chi(true), 1.0, 0.08);
+  // the truth is photographed with other rays, so that contours keep a little more than noise
+  const Floor floor = measure_floor(*small.scene, fitted.evaluation);
+  EXPECT_LT(fitted.evaluation.chi(false), 1.3 * floor.chi);
+  EXPECT_LT(fitted.evaluation.chi(true), 1.3 * floor.chi);
   // Gauss-Newton on the motion converges in a few steps from anywhere that the flow can follow.
   EXPECT_LE(fitted.iterations, 14);
 }
