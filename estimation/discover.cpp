@@ -97,6 +97,18 @@ bool cancelled(const NumericalFailure& failure) { return failure.reason == "canc
 /// none.
 bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 2.0 * winner.chi(); }
 
+/// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
+/// two steps may still be right.
+void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
+  if (static_cast<int>(racers.size()) <= most) return;
+  const std::string& first = diagnosis.effects.front().effect;
+  const auto at = std::find_if(racers.begin(), racers.end(),
+                               [&](const Racer& racer) { return racer.effect == first; });
+  if (at != racers.end() && at - racers.begin() >= most)
+    std::rotate(racers.begin() + most - 1, at, at + 1);
+  racers.resize(most);
+}
+
 /// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
 /// of the best of them. Best first.
 std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& workspace,
@@ -107,7 +119,7 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
   auto raced = race(workspace, step.fitted, step.diagnosis, options.fit, events.tried);
   if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
   auto& racers = std::get<std::vector<Racer>>(raced);
-  if (static_cast<int>(racers.size()) > options.leaders) racers.resize(options.leaders);
+  keep_leaders(racers, step.diagnosis, options.leaders);
   for (const Racer& racer : racers) {
     // Nothing can do better than the floor; once it is reached only a tie is of use.
     if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
