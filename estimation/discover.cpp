@@ -93,9 +93,9 @@ struct Refit {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// A tie needs equals: a rival that after as many steps is left with twice the winner's misfit is
+/// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
 /// none.
-bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 2.0 * winner.chi(); }
+bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
 
 /// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
 /// two steps may still be right.

@@ -31,7 +31,7 @@ const Parameter& parameter(const Fitted& fitted, const std::string& name, double
 }
 
 TEST(Fit, ReachesTheTruthFromPixelsAway) {
-  const SmallScene small({.hidden = "", .told = "0.013", .truth_mesh = "1"});
+  const SmallScene small({.told = "0.013"});
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
   const auto before = assess(workspace, form, form.initial());
@@ -51,7 +51,7 @@ TEST(Fit, ReachesTheTruthFromPixelsAway) {
 }
 
 TEST(Discover, NothingIsMissingWhereNothingIsHidden) {
-  const Discovery found = discover(SmallScene({.hidden = "", .told = "0.023", .truth_mesh = "1"}));
+  const Discovery found = discover(SmallScene({.told = "0.023"}));
   EXPECT_EQ(found.verdict, Verdict::explained);
   EXPECT_EQ(found.steps.size(), 1u);
   EXPECT_THAT(found.sentence, testing::HasSubstr("nothing is missing"));
@@ -61,8 +61,7 @@ TEST(Discover, NamesTheHiddenWeightAndTheErrorFalls) {
   const Discovery found =
       discover(SmallScene({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, "
                                      "gravity.z: -9000}}\n",
-                           .told = "0.021",
-                           .truth_mesh = "1"}));
+                           .told = "0.021"}));
   ASSERT_EQ(found.steps.size(), 2u) << found.sentence;
   EXPECT_EQ(found.steps[1].added, "gravity");
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
@@ -84,15 +83,14 @@ TEST(Discover, NamesStiffeningAlthoughAFieldScoresHigher) {
   const Discovery found =
       discover(SmallScene({.hidden = "hidden:\n  - {effect: strain_stiffening, values: "
                                      "{strain_stiffening.c2: 0.02, strain_stiffening.c3: 0.01}}\n",
-                           .told = "0.021",
-                           .truth_mesh = "1"}));
+                           .told = "0.021"}));
   ASSERT_GE(found.steps.size(), 2u) << found.sentence;
   EXPECT_EQ(found.steps[1].added, "strain_stiffening");
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }
 
 TEST(Discover, CancelledSaysSo) {
-  const SmallScene small({.hidden = "", .told = "0.02", .truth_mesh = "1"});
+  const SmallScene small({.told = "0.02"});
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
   std::atomic<bool> cancel{true};
