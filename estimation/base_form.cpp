@@ -1,6 +1,7 @@
 // The base model of a capture: what the user believes, and what the capture leaves open.
 #include <Eigen/Geometry>
 
+#include "estimation/additive_material.h"
 #include "estimation/base_ingredients.h"
 #include "estimation/model.h"
 
@@ -45,8 +46,10 @@ Model told_model(std::shared_ptr<const Scene> scene) {
   const TetMesh& mesh = scene->body->mesh;
   Model model;
   model.scene = scene;
-  for (const auto& spec : capture.materials)
+  for (const auto& spec : capture.materials) {
     model.energy.parts.push_back({make_law(spec), elements_of_group(mesh, spec)});
+    set_frames(model.energy.parts.back(), mesh);
+  }
   for (const auto& spec : capture.examples) {
     ExampleModel example;
     example.loading = make_loading(capture, spec, mesh, scene->body->regions);
