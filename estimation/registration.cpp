@@ -31,6 +31,37 @@ float white_level(const Image& photo) {
   return std::max(sorted[high], 1e-4f);
 }
 
+/// Fourth-order central difference, as flow.cpp takes it: what is added to the residual here as
+/// gradient times motion is divided by the gradient there.
+float slope(const Image& model, int x, int y, int dx, int dy) {
+  return (8.0f * (model.at(x + dx, y + dy) - model.at(x - dx, y - dy)) -
+          (model.at(x + 2 * dx, y + 2 * dy) - model.at(x - 2 * dx, y - 2 * dy))) /
+         12.0f;
+}
+
+/// The search goes astray where the pictures differ in more than motion (rims, occlusions): a
+/// motion that does not lower the misfit of its cell is none.
+void drop_stray_motion(const Image& plain, Registration* out) {
+  constexpr int kCell = 16;
+  for (int y0 = 0; y0 < plain.height; y0 += kCell)
+    for (int x0 = 0; x0 < plain.width; x0 += kCell) {
+      const int x1 = std::min(x0 + kCell, plain.width), y1 = std::min(y0 + kCell, plain.height);
+      double before = 0.0, after = 0.0;
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+          if (std::isnan(plain.at(x, y))) continue;
+          before += std::pow(plain.at(x, y), 2);
+          after += std::pow(out->residual.at(x, y), 2);
+        }
+      if (after < before) continue;
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+          out->u.at(x, y) = out->v.at(x, y) = 0.0f;
+          out->residual.at(x, y) = out->linear.at(x, y) = plain.at(x, y);
+        }
+    }
+}
+
 }  // namespace
 
 Registration register_pictures(const Image& model, const Image& photo, const Image& residual,
@@ -58,15 +89,15 @@ Registration register_pictures(const Image& model, const Image& photo, const Ima
       const cv::Vec2f& f = flow.at<cv::Vec2f>(y, x);
       out.u.at(x, y) = -f[0];
       out.v.at(x, y) = -f[1];
-      if (std::isnan(residual.at(x, y)) || x == 0 || y == 0 || x + 1 == model.width ||
-          y + 1 == model.height)
+      if (std::isnan(residual.at(x, y)) || x < 2 || y < 2 || x + 2 >= model.width ||
+          y + 2 >= model.height)
         continue;
-      const float gx = 0.5f * (model.at(x + 1, y) - model.at(x - 1, y));
-      const float gy = 0.5f * (model.at(x, y + 1) - model.at(x, y - 1));
+      const float gx = slope(model, x, y, 1, 0), gy = slope(model, x, y, 0, 1);
       const float r = (moved.at<float>(y, x) - photo.at(x, y)) / sigma.at(x, y);
       out.residual.at(x, y) = r;
       out.linear.at(x, y) = r - (gx * f[0] + gy * f[1]) / sigma.at(x, y);
     }
+  drop_stray_motion(residual, &out);
   return out;
 }
 
