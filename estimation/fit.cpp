@@ -309,6 +309,7 @@ Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
   const Scaling scaling{parameters};
   const VectorXd scale = scaling.dp_dx(p);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
+  if (n == 0) return H;  // nothing may move: a model that is only looked at
   for (const auto& example : evaluation.examples) {
     if (example.held_out) continue;
     for (const auto& photo : example.photos) {
