@@ -46,8 +46,9 @@ TEST(Fit, ReachesTheTruthFromPixelsAway) {
   const Floor floor = measure_floor(*small.scene, fitted.evaluation);
   EXPECT_LT(fitted.evaluation.chi(false), 1.3 * floor.chi);
   EXPECT_LT(fitted.evaluation.chi(true), 1.3 * floor.chi);
-  // Gauss-Newton on the motion converges in a few steps from anywhere that the flow can follow.
-  EXPECT_LE(fitted.iterations, 14);
+  // Gauss-Newton on the motion converges in a few steps from anywhere that the flow can follow; on
+  // pixels it used up its 20 at full size alone.
+  EXPECT_LT(fitted.iterations, 20);
 }
 
 TEST(Discover, NothingIsMissingWhereNothingIsHidden) {
