@@ -136,18 +136,17 @@ class Reporter final : public ceres::IterationCallback {
 
  private:
   /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
-  /// white noise; below 1e-5 of |r|^2 rays that change triangles hide it (so much do two
-  /// evaluations 1e-6 apart in a modulus differ). A refused step that changed next to nothing has
-  /// met the same limit. A structured misfit moves the parameters by more than noise does: the
-  /// limit grows with its square. A coarse picture only has to lead the next one to the right
-  /// speckle.
+  /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
+  /// apart in a modulus differ by some 1e-5), and at 1e-5 moduli stopped a standard error short. A
+  /// refused step that changed next to nothing has met the same limit. A structured misfit moves
+  /// the parameters by more than noise does: the limit grows with its square. A coarse picture only
+  /// has to lead the next one to the right speckle.
   bool done(const ceres::IterationSummary& summary) const {
     if (stage_.level > 1 && cost_.promised() < 0.02 * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
     if (summary.step_is_successful)
-      return cost_.promised() <
-             std::max(0.01, std::max(1e-5, 1e-6 * misfit_ * misfit_) * cost_.r2());
+      return cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2());
     return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
   }
 
