@@ -12,6 +12,12 @@ namespace {
 /// What texture and shading errors of another renderer leave over the floor of the rest photos.
 constexpr double kAtFloor = 1.3;
 
+/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
+bool at_floor(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -64,15 +70,17 @@ double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& f
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why) {
-  const double chi = fitted.evaluation.chi(false);
+  const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
   bool something = false;
   for (const auto& effect : diagnosis.effects) something |= nameable(effect, diagnosis);
-  const bool at_floor = chi <= kAtFloor * diagnosis.floor.chi;
   if (why)
-    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
-                       something ? ", and an effect of the catalogue still stands out" : "");
+    *why = fmt::format(
+        "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
+        held_out > 0.0 ? fmt::format(" ({:.2f} on held-out photos)", held_out / diagnosis.floor.chi)
+                       : "",
+        something ? ", and an effect of the catalogue still stands out" : "");
   if (!tie.empty()) return Verdict::ambiguous;
-  return at_floor ? Verdict::explained : Verdict::unexplained;
+  return at_floor(fitted, diagnosis.floor) ? Verdict::explained : Verdict::unexplained;
 }
 
 namespace {
@@ -85,15 +93,21 @@ struct Refit {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
-bool at_floor(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
-}
-
-/// A tie needs equals: a rival that after as many steps is left with twice the winner's misfit is
+/// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
 /// none.
-bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 2.0 * winner.chi(); }
+bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
+
+/// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
+/// two steps may still be right.
+void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
+  if (static_cast<int>(racers.size()) <= most) return;
+  const std::string& first = diagnosis.effects.front().effect;
+  const auto at = std::find_if(racers.begin(), racers.end(),
+                               [&](const Racer& racer) { return racer.effect == first; });
+  if (at != racers.end() && at - racers.begin() >= most)
+    std::rotate(racers.begin() + most - 1, at, at + 1);
+  racers.resize(most);
+}
 
 /// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
 /// of the best of them. Best first.
@@ -105,7 +119,7 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
   auto raced = race(workspace, step.fitted, step.diagnosis, options.fit, events.tried);
   if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
   auto& racers = std::get<std::vector<Racer>>(raced);
-  if (static_cast<int>(racers.size()) > options.leaders) racers.resize(options.leaders);
+  keep_leaders(racers, step.diagnosis, options.leaders);
   for (const Racer& racer : racers) {
     // Nothing can do better than the floor; once it is reached only a tie is of use.
     if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&

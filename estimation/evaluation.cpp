@@ -206,7 +206,9 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     if (failures[e]) return *failures[e];
   if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
   const ReferenceState reference_state =
-      reference >= 0 ? ReferenceState{reference, &solved[reference]} : ReferenceState{};
+      reference >= 0 ? ReferenceState{reference, &solved[reference],
+                                      columns ? &derivative[reference] : nullptr}
+                     : ReferenceState{};
   tbb::parallel_for(size_t{0}, wanted.size(), [&](size_t i) {
     const int e = wanted[i];
     if (cancelled()) return;

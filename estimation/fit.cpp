@@ -138,18 +138,17 @@ class Reporter final : public ceres::IterationCallback {
 
  private:
   /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
-  /// white noise; below 1e-5 of |r|^2 rays that change triangles hide it (so much do two
-  /// evaluations 1e-6 apart in a modulus differ). A refused step that changed next to nothing has
-  /// met the same limit. A structured misfit moves the parameters by more than noise does: the
-  /// limit grows with its square. A coarse picture only has to lead the next one to the right
-  /// speckle.
+  /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
+  /// apart in a modulus differ by some 1e-5), and at 1e-5 moduli stopped a standard error short. A
+  /// refused step that changed next to nothing has met the same limit. A structured misfit moves
+  /// the parameters by more than noise does: the limit grows with its square. A coarse picture only
+  /// has to lead the next one to the right speckle.
   bool done(const ceres::IterationSummary& summary) const {
     if (stage_.level > 1 && cost_.promised() < 0.02 * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
     if (summary.step_is_successful)
-      return cost_.promised() <
-             std::max(0.01, std::max(1e-5, 1e-6 * misfit_ * misfit_) * cost_.r2());
+      return cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2());
     return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
   }
 
@@ -315,6 +314,7 @@ Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
   const Scaling scaling{parameters};
   const VectorXd scale = scaling.dp_dx(p);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
+  if (n == 0) return H;  // nothing may move: a model that is only looked at
   for (const auto& example : evaluation.examples) {
     if (example.held_out) continue;
     for (const auto& photo : example.photos) {
@@ -446,35 +446,39 @@ VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquat
 
 }  // namespace
 
-std::variant<double, NumericalFailure> trial_huber(Workspace& workspace, const ModelForm& form,
-                                                   const VectorXd& p, const FitOptions& options) {
-  auto seen = look(workspace, form, p, options, kHalfSize);
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options) {
+  const auto seen = workspace.evaluate(form, p, only_pictures(kHalfSize, options));
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  return options.huber * std::get<Look>(seen).misfit;
+  const Evaluation& pictures = std::get<Evaluation>(seen);
+  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
 }
 
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, double huber,
+                                               const VectorXd& start, const TrialScale& scale,
                                                const FitOptions& options) {
-  EvaluationOptions derivatives;
-  derivatives.level = kHalfSize;
-  derivatives.registered = true;
-  derivatives.huber = huber;
-  derivatives.cancel = options.cancel;
-  auto first = workspace.evaluate(form, start, derivatives);
+  EvaluationOptions derivatives = only_pictures(kHalfSize, options);
+  derivatives.derivatives = true;
+  derivatives.huber = scale.huber;
+  const auto first = workspace.evaluate(form, start, derivatives);
   if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const double from = std::get<Evaluation>(first).linear_chi(false);
+  // "from the null itself" comes back a little off: rays have changed triangles
+  if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
   const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
   EvaluationOptions pictures = only_pictures(kHalfSize, options);
   pictures.held_out = true;
   std::variant<Evaluation, NumericalFailure> seen;
-  for (double share : {1.0, 0.3, 0.1}) {
+  for (double share : {1.0, 0.3, 0.1, 0.0}) {
     const VectorXd p = after_step({form.parameters()}, start, sums, share);
     seen = workspace.evaluate(form, p, pictures);
     if (auto* evaluation = std::get_if<Evaluation>(&seen))
-      return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
+      if (share == 0.0 || evaluation->linear_chi(false) < from)
+        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
     if (options.cancel && options.cancel->load()) break;
   }
-  return std::get<NumericalFailure>(seen);
+  return NumericalFailure{"", 0.0, "cancelled"};
 }
 
 }  // namespace hookeye

@@ -13,41 +13,36 @@ bool cancelled(const NumericalFailure& failure) { return failure.reason == "canc
 /// The model with one effect more, and where to start it.
 struct Extension {
   ModelForm form;
+  VectorXd start;
 
-  Extension(const Fitted& current, const EffectScore& score)
-      : form(current.form), p_(current.p), values_(score.values) {
+  /// `share` of the scored step. The refit form may have other parameters than the scored one (log
+  /// stiffness for compliance): it is told where the scored one would start.
+  Extension(const Fitted& current, const EffectScore& score, double share) : form(current.form) {
+    const auto scored = score.best->parameters();
+    VectorXd values = score.values;
+    for (int i = 0; i < values.size(); ++i)
+      values[i] = scored[i].value + share * (values[i] - scored[i].value);
     const Model model = current.form.realise(current.p);
-    auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values_);
-    parameters_ = ingredient->parameters();
-    from_ = values_;
-    // the refit form may have other parameters than the scored one: then its own start counts
-    if (ingredient == score.best)
-      for (int i = 0; i < values_.size(); ++i) from_[i] = parameters_[i].value;
+    auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values);
+    const auto parameters = ingredient->parameters();
+    for (int i = 0; i < values.size(); ++i)
+      values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
     form.ingredients.push_back(std::move(ingredient));
+    start.resize(current.p.size() + values.size());
+    start << current.p, values;
   }
-  VectorXd start(double share) const {
-    VectorXd out(p_.size() + values_.size());
-    out.head(p_.size()) = p_;
-    for (int i = 0; i < values_.size(); ++i)
-      out[p_.size() + i] = std::clamp(from_[i] + share * (values_[i] - from_[i]),
-                                      parameters_[i].low, parameters_[i].high);
-    return out;
-  }
-
- private:
-  VectorXd p_, values_, from_;
-  std::vector<Parameter> parameters_;
 };
 
-/// The linear step is a direction more than a length: where even half of it has no equilibrium or
-/// is worse than the null, `run(start)` starts from the null.
+/// The linear step is a direction more than a length: where it has no equilibrium or is worse than
+/// the null, `run(extension)` starts nearer to the null.
 template <class Run>
-auto from_shares(const Extension& extension, const FitOptions& options, const Run& run) {
-  auto result = run(extension.start(1.0));
-  for (double share : {0.3, 0.0}) {
+auto from_shares(const Fitted& current, const EffectScore& score, const FitOptions& options,
+                 const Run& run) {
+  auto result = run(Extension(current, score, 1.0));
+  for (double share : {0.3, 0.1, 0.0}) {
     const auto* failure = std::get_if<NumericalFailure>(&result);
     if (!failure || cancelled(*failure) || (options.cancel && options.cancel->load())) break;
-    result = run(extension.start(share));
+    result = run(Extension(current, score, share));
   }
   return result;
 }
@@ -63,9 +58,8 @@ FitOptions warm(const FitOptions& options) {
 std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
                                                   const EffectScore& score,
                                                   const FitOptions& options) {
-  const Extension extension(current, score);
-  return from_shares(extension, options, [&](const VectorXd& start) {
-    return fit(workspace, extension.form, start, warm(options));
+  return from_shares(current, score, options, [&](const Extension& extension) {
+    return fit(workspace, extension.form, extension.start, warm(options));
   });
 }
 
@@ -73,21 +67,23 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
     Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
     const FitOptions& options, const std::function<void(const Racer&)>& tried) {
   std::vector<Racer> racers;
-  const auto huber = trial_huber(workspace, current.form, current.p, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&huber)) return *failure;
+  const auto scale = trial_scale(workspace, current.form, current.p, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
   auto step = [&](const ModelForm& form, const VectorXd& start) {
-    return try_step(workspace, form, start, std::get<double>(huber), options);
+    return try_step(workspace, form, start, std::get<TrialScale>(scale), options);
   };
   for (const EffectScore& score : diagnosis.effects) {
     if (!nameable(score, diagnosis)) continue;
-    const Extension extension(current, score);
-    auto result = from_shares(extension, options,
-                              [&](const VectorXd& start) { return step(extension.form, start); });
+    ModelForm form;
+    auto result = from_shares(current, score, options, [&](const Extension& extension) {
+      form = extension.form;
+      return step(form, extension.start);
+    });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;
     }
-    racers.push_back({score.effect, extension.form, std::get<Trial>(std::move(result))});
+    racers.push_back({score.effect, std::move(form), std::get<Trial>(std::move(result))});
     if (tried) tried(racers.back());
   }
   auto sort = [&] {
@@ -101,7 +97,6 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
       if (cancelled(*failure)) return *failure;
       continue;
     }
-    if (std::get<Trial>(result).chi_fit > racers[i].trial.chi_fit) continue;  // a step too far
     racers[i].trial = std::get<Trial>(std::move(result));
     if (tried) tried(racers[i]);
   }

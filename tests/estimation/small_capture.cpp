@@ -13,9 +13,8 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string recipe(const SmallCapture& capture) {
-  return R"(hookeye_recipe: 1
+  return "hookeye_recipe: 1\nseed: " + std::to_string(capture.seed) + R"(
 title: small block
-seed: 5
 body:
   shape: block
   size: [20, 16, 34]
@@ -38,7 +37,9 @@ examples:
   twist: {rotate: 20}
   poke: {use: validate, force: [-0.008, 0.01, 0.12]}
 )" + capture.hidden +
-         "truth: {edge_factor: " + capture.truth_mesh + ", rays_per_axis: 4}\n";
+         "truth: {edge_factor: " + capture.truth_mesh +
+         (capture.same_renderer ? ", rays_per_axis: 3, visibility_rays: 64}\n"
+                                : ", rays_per_axis: 4, visibility_rays: 256}\n");
 }
 
 }  // namespace

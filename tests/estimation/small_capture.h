@@ -10,9 +10,11 @@
 namespace hookeye::test {
 
 struct SmallCapture {
-  std::string hidden;            ///< lines of `hidden:`; empty: nothing is hidden
+  std::string hidden = "";       ///< lines of `hidden:`; empty: nothing is hidden
   std::string told = "0.02";     ///< mu that the capture tells; the true one is 0.02
   std::string truth_mesh = "1";  ///< edge of the truth's mesh over the told one
+  bool same_renderer = false;    ///< the truth's rays are those of the fit: noise alone is left
+  unsigned seed = 5;             ///< of texture and noise
 };
 
 /// Two cameras of 200 x 260 px; rest, pull, side, twist; poke held out. The truth is solved on the
