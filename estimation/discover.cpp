@@ -33,6 +33,13 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
   VectorXd values = score.values;
   auto ingredient = effect->refit_form(model, score.best, values);
   const auto parameters = ingredient->parameters();
+  if (effect->remeshes(ingredient->variant())) {
+    auto [form, p] = transfer(model, effect->refit_scene(*model.scene, ingredient->variant()));
+    form.ingredients.push_back(std::move(ingredient));
+    FitOptions warm = options;
+    warm.coarse_to_fine = false;
+    return fit(workspace, form, p, warm);
+  }
   ModelForm form = current.form;
   form.ingredients.push_back(ingredient);
   VectorXd start(current.p.size() + values.size());
@@ -112,11 +119,20 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
 
 namespace {
 
-/// Effects worth a refit, best first.
+EffectGroup group_of(const EffectScore& score) { return find_effect(score.effect)->group(); }
+
+/// Effects worth a refit, best first. A material is not named before the mesh is settled: a
+/// numerical effect that could be named is refitted beside it, whatever its rank.
 std::vector<const EffectScore*> leaders(const Diagnosis& diagnosis, int most) {
   std::vector<const EffectScore*> out;
-  for (const auto& effect : diagnosis.effects)
-    if (nameable(effect, diagnosis) && static_cast<int>(out.size()) < most) out.push_back(&effect);
+  bool material = false;
+  for (const auto& effect : diagnosis.effects) {
+    if (!nameable(effect, diagnosis)) continue;
+    const bool numerical = group_of(effect) == EffectGroup::numerical;
+    if (static_cast<int>(out.size()) >= most && !(material && numerical)) continue;
+    material |= group_of(effect) == EffectGroup::material;
+    out.push_back(&effect);
+  }
   return out;
 }
 
@@ -145,7 +161,8 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
   for (const EffectScore* leader : worth) {
     // Nothing can do better than the floor; once it is reached only a tie in evidence is of use.
     if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
-        leader->evidence < worth.front()->evidence - kTie)
+        leader->evidence < worth.front()->evidence - kTie &&
+        group_of(*leader) != EffectGroup::numerical)
       continue;
     if (events.refitting) events.refitting(leader->effect);
     auto result = add_effect(workspace, step.fitted, *leader, options.fit);
@@ -176,7 +193,9 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
   int offset = 0;
   for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
     const int n = static_cast<int>(current.form.ingredients[i]->parameters().size());
-    if (i >= first_effect) {
+    const Effect* effect = find_effect(current.form.ingredients[i]->name());
+    const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
+    if (i >= first_effect && !mesh) {
       ModelForm form = current.form;
       form.ingredients.erase(form.ingredients.begin() + i);
       VectorXd p(current.p.size() - n);

@@ -26,7 +26,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
   Step step;
   step.name = "base";
   step.fitted = value_or_fail(fit(bench.workspace, form, start, fit_options()));
-  const auto folder = record(run, *bench.scene, step);
+  const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { timeline["floor"] = to_json(floor); });
   session.document = run.timeline();
