@@ -177,7 +177,8 @@ struct Photo {
   std::string camera;
   PhotoSpec::Kind kind = PhotoSpec::Kind::image;
   std::vector<Image> planes;         ///< 1-channel, linear; luminance unless rgb
-  std::vector<Image> sigma;          ///< 1-channel, same shape: noise standard deviation
+  std::vector<Image> sigma;          ///< 1-channel, same shape: noise standard deviation, from the
+                                     ///< mean of the pixel's neighbours
   std::vector<unsigned char> valid;  ///< per pixel: 0 masked out (or saturated), 1 counts
   NoiseModel noise;
   std::vector<double> channel_weights;  ///< planes[k] = channel k (rgb) or the luminance weights

@@ -115,8 +115,8 @@ Units read_units(const YamlNode& node) {
 }
 
 BodySpec read_body(const YamlNode& node, const CaptureFolder& folder) {
-  const YamlSection section(node, "body",
-                            {"surface", "mesh", "volume", "density", "texture", "placement"});
+  const YamlSection section(
+      node, "body", {"surface", "mesh", "volume", "density", "texture", "placement", "shading"});
   BodySpec body;
   body.place = node.place;
   if (const YamlNode* surface = section.find("surface")) {
@@ -144,6 +144,8 @@ BodySpec read_body(const YamlNode& node, const CaptureFolder& folder) {
   if (const YamlNode* density = section.find("density"))
     body.density = read_positive(*density, "the density");
   if (const YamlNode* texture = section.find("texture")) read_texture(*texture, folder, body);
+  if (const YamlNode* shading = section.find("shading"))
+    body.flat_shading = read_choice(*shading, "the shading", {"smooth", "flat"}) == "flat";
   if (const YamlNode* placement = section.find("placement"))
     body.fit_placement = read_choice(*placement, "the placement", {"fit", "given"}) == "fit";
   return body;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "capture_io/capture.h"
@@ -28,8 +29,27 @@ Image plane_of(const Image& image, int channel) {
   return plane;
 }
 
+/// Every value replaced by the mean of its up to eight neighbours. A pixel's own noise must not
+/// decide its weight: photons that it happens to have too many of would make it count less, and the
+/// mean brightness of a photo would come out too low by 1/full_well (4.5 standard errors of an
+/// exposure at 2e5 pixels).
+Image without_own(const Image& image) {
+  if (image.width < 2 || image.height < 2) return image;
+  Image out = image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (int c = 0; c < image.channels; ++c) {
+        double sum = -image.at(x, y, c), count = -1.0;
+        for (int v = std::max(y - 1, 0); v <= std::min(y + 1, image.height - 1); ++v)
+          for (int u = std::max(x - 1, 0); u <= std::min(x + 1, image.width - 1); ++u)
+            sum += image.at(u, v, c), count += 1.0;
+        out.at(x, y, c) = static_cast<float>(sum / count);
+      }
+  return out;
+}
+
 Image sigma_of(const Image& plane, const NoiseModel& noise) {
-  Image sigma = plane;
+  Image sigma = without_own(plane);
   for (float& value : sigma.values) value = static_cast<float>(noise.sigma(value));
   return sigma;
 }
@@ -39,10 +59,11 @@ Image luminance_sigma(const Image& image, const NoiseModel& noise,
                       const std::vector<double>& weights) {
   Image sigma{image.width, image.height, 1, {}};
   sigma.values.resize(image.pixels());
+  const Image level = without_own(image);
   for (size_t p = 0; p < image.pixels(); ++p) {
     double variance = 0;
     for (int c = 0; c < image.channels; ++c)
-      variance += std::pow(weights[c] * noise.sigma(image.values[p * image.channels + c]), 2);
+      variance += std::pow(weights[c] * noise.sigma(level.values[p * image.channels + c]), 2);
     sigma.values[p] = static_cast<float>(std::sqrt(variance));
   }
   return sigma;

@@ -1,6 +1,7 @@
 // The base model of a capture: what the user believes, and what the capture leaves open.
 #include <Eigen/Geometry>
 
+#include "estimation/additive_material.h"
 #include "estimation/base_ingredients.h"
 #include "estimation/model.h"
 
@@ -40,13 +41,23 @@ PhotoState told_photo(const Capture& capture, const PhotoSpec& spec) {
   return state;
 }
 
+/// Silhouettes have neither light nor albedo.
+bool any_image(const Capture& capture) {
+  for (const auto& example : capture.examples)
+    for (const auto& photo : example.photos)
+      if (photo.kind == PhotoSpec::Kind::image) return true;
+  return false;
+}
+
 Model told_model(std::shared_ptr<const Scene> scene) {
   const Capture& capture = scene->capture;
   const TetMesh& mesh = scene->body->mesh;
   Model model;
   model.scene = scene;
-  for (const auto& spec : capture.materials)
+  for (const auto& spec : capture.materials) {
     model.energy.parts.push_back({make_law(spec), elements_of_group(mesh, spec)});
+    set_frames(model.energy.parts.back(), mesh);
+  }
   for (const auto& spec : capture.examples) {
     ExampleModel example;
     example.loading = make_loading(capture, spec, mesh, scene->body->regions);
@@ -66,11 +77,12 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
   if (auto material = material_ingredient(*scene, form.start.energy))
     form.ingredients.push_back(material);
   if (auto rigid = rigid_support_ingredient(*scene)) form.ingredients.push_back(rigid);
-  const bool shaded = capture.body.texture == BodySpec::Texture::image ||
-                      capture.body.texture == BodySpec::Texture::uniform;
+  const bool shaded = any_image(capture) && (capture.body.texture == BodySpec::Texture::image ||
+                                             capture.body.texture == BodySpec::Texture::uniform);
   if (shaded && !capture.light.given)
     form.ingredients.push_back(light_ingredient(*scene));
-  else if (capture.body.texture == BodySpec::Texture::uniform && !capture.body.uniform_albedo)
+  else if (shaded && capture.body.texture == BodySpec::Texture::uniform &&
+           !capture.body.uniform_albedo)
     form.ingredients.push_back(albedo_ingredient());
   if (capture.background.kind == BackgroundSpec::Kind::fit)
     form.ingredients.push_back(background_ingredient(*scene));

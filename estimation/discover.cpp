@@ -12,6 +12,12 @@ namespace {
 /// What texture and shading errors of another renderer leave over the floor of the rest photos.
 constexpr double kAtFloor = 1.3;
 
+/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
+bool at_floor(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
+}
+
 }  // namespace
 
 const char* to_string(Verdict verdict) {
@@ -23,48 +29,6 @@ const char* to_string(Verdict verdict) {
     default:
       return "unexplained";
   }
-}
-
-std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
-                                                  const EffectScore& score,
-                                                  const FitOptions& options) {
-  const Effect* effect = find_effect(score.effect);
-  const Model model = current.form.realise(current.p);
-  VectorXd values = score.values;
-  auto ingredient = effect->refit_form(model, score.best, values);
-  const auto parameters = ingredient->parameters();
-  if (effect->remeshes(ingredient->variant())) {
-    auto [form, p] = transfer(model, effect->refit_scene(*model.scene, ingredient->variant()));
-    form.ingredients.push_back(std::move(ingredient));
-    FitOptions warm = options;
-    warm.coarse_to_fine = false;
-    return fit(workspace, form, p, warm);
-  }
-  ModelForm form = current.form;
-  form.ingredients.push_back(ingredient);
-  VectorXd start(current.p.size() + values.size());
-  // The linear step is a direction more than a length: where even half of it has no equilibrium or
-  // is worse than the null, the fit starts from the null.
-  FitOptions warm = options;
-  warm.coarse_to_fine = false;
-  std::variant<Fitted, NumericalFailure> result = NumericalFailure{"", 0.0, "not started"};
-  for (double share : {1.0, 0.3, 0.0}) {
-    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
-    start.head(current.p.size()) = current.p;
-    for (int i = 0; i < values.size(); ++i) {
-      // the refit form may have other parameters than the scored one: then its own start counts
-      const double from =
-          parameters.size() == static_cast<size_t>(score.values.size()) && ingredient == score.best
-              ? parameters[i].value
-              : values[i];
-      const double v = from + share * (values[i] - from);
-      start[current.p.size() + i] = std::clamp(v, parameters[i].low, parameters[i].high);
-    }
-    result = fit(workspace, form, start, warm);
-    if (std::holds_alternative<Fitted>(result)) return result;
-    if (std::get<NumericalFailure>(result).reason == "cancelled") return result;
-  }
-  return result;
 }
 
 namespace {
@@ -106,35 +70,20 @@ double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& f
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why) {
-  const double chi = fitted.evaluation.chi(false);
+  const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
   bool something = false;
   for (const auto& effect : diagnosis.effects) something |= nameable(effect, diagnosis);
-  const bool at_floor = chi <= kAtFloor * diagnosis.floor.chi;
   if (why)
-    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
-                       something ? ", and an effect of the catalogue still stands out" : "");
+    *why = fmt::format(
+        "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
+        held_out > 0.0 ? fmt::format(" ({:.2f} on held-out photos)", held_out / diagnosis.floor.chi)
+                       : "",
+        something ? ", and an effect of the catalogue still stands out" : "");
   if (!tie.empty()) return Verdict::ambiguous;
-  return at_floor ? Verdict::explained : Verdict::unexplained;
+  return at_floor(fitted, diagnosis.floor) ? Verdict::explained : Verdict::unexplained;
 }
 
 namespace {
-
-EffectGroup group_of(const EffectScore& score) { return find_effect(score.effect)->group(); }
-
-/// Effects worth a refit, best first. A material is not named before the mesh is settled: a
-/// numerical effect that could be named is refitted beside it, whatever its rank.
-std::vector<const EffectScore*> leaders(const Diagnosis& diagnosis, int most) {
-  std::vector<const EffectScore*> out;
-  bool material = false;
-  for (const auto& effect : diagnosis.effects) {
-    if (!nameable(effect, diagnosis)) continue;
-    const bool numerical = group_of(effect) == EffectGroup::numerical;
-    if (static_cast<int>(out.size()) >= most && !(material && numerical)) continue;
-    material |= group_of(effect) == EffectGroup::material;
-    out.push_back(&effect);
-  }
-  return out;
-}
 
 struct Refit {
   std::string effect;
@@ -144,34 +93,56 @@ struct Refit {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
-bool at_floor(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
+/// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
+/// none.
+bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
+
+bool numerical(const Racer& racer) {
+  return find_effect(racer.effect)->group() == EffectGroup::numerical;
 }
 
-/// Refits the leaders and scores them on fitted and held-out photos with the correlation of the
-/// best of them. Best first.
+/// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
+/// two steps may still be right. A numerical error that comes near the first is refitted too,
+/// whatever its rank: nothing is named before the mesh is settled.
+void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
+  if (static_cast<int>(racers.size()) <= most) return;
+  const std::string& first = diagnosis.effects.front().effect;
+  const auto at = std::find_if(racers.begin(), racers.end(),
+                               [&](const Racer& racer) { return racer.effect == first; });
+  if (at != racers.end() && at - racers.begin() >= most)
+    std::rotate(racers.begin() + most - 1, at, at + 1);
+  const Racer winner = racers.front();
+  racers.erase(std::remove_if(racers.begin() + most, racers.end(),
+                              [&](const Racer& racer) {
+                                return !numerical(racer) || !may_tie(racer, winner);
+                              }),
+               racers.end());
+}
+
+/// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
+/// of the best of them. Best first.
 std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& workspace,
                                                                  const Step& step,
                                                                  const DiscoverOptions& options,
                                                                  const DiscoverEvents& events) {
   std::vector<Refit> refits;
-  const auto worth = leaders(step.diagnosis, options.leaders);
-  for (const EffectScore* leader : worth) {
-    // Nothing can do better than the floor; once it is reached only a tie in evidence is of use.
+  auto raced = race(workspace, step.fitted, step.diagnosis, options.fit, events.tried);
+  if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
+  auto& racers = std::get<std::vector<Racer>>(raced);
+  keep_leaders(racers, step.diagnosis, options.leaders);
+  for (const Racer& racer : racers) {
+    // Nothing can do better than the floor; once it is reached only a tie is of use.
     if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
-        leader->evidence < worth.front()->evidence - kTie &&
-        group_of(*leader) != EffectGroup::numerical)
+        !may_tie(racer, racers.front()))
       continue;
-    if (events.refitting) events.refitting(leader->effect);
-    auto result = add_effect(workspace, step.fitted, *leader, options.fit);
+    if (events.refitting) events.refitting(racer.effect);
+    auto result = refit(workspace, racer, options.fit);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;  // a model without equilibrium explains nothing
     }
-    if (events.refitted) events.refitted(leader->effect, std::get<Fitted>(result));
-    refits.push_back({leader->effect, std::get<Fitted>(std::move(result)), 0.0});
+    if (events.refitted) events.refitted(racer.effect, std::get<Fitted>(result));
+    refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
   }
   if (refits.empty()) return refits;
   auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };

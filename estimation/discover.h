@@ -8,13 +8,9 @@
 
 #include "estimation/diagnosis.h"
 #include "estimation/fit.h"
+#include "estimation/refit.h"
 
 namespace hookeye {
-
-/// Refits with one effect: the scored candidate moved to its refit form, warm-started.
-std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
-                                                  const EffectScore& score,
-                                                  const FitOptions& options);
 
 /// log-likelihood of a fitted model with the effective number of residuals: fitted and held-out
 /// photos and measurements; minus (dof/2) log N (BIC). `reference` gives the correlation.
@@ -23,7 +19,7 @@ double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& f
 struct DiscoverOptions {
   FitOptions fit;
   DiagnosisOptions diagnosis;
-  int leaders = 3;  ///< effects refitted at each step
+  int leaders = 3;  ///< effects refitted to the end at each step
   int max_effects = 4;
   const std::atomic<bool>* cancel = nullptr;
 };
@@ -51,6 +47,7 @@ struct Discovery {
 /// Called with every finished step and refit; what is printed and written is the caller's matter.
 struct DiscoverEvents {
   std::function<void(const Step&)> step;
+  std::function<void(const Racer&)> tried;
   std::function<void(const std::string& effect)> refitting;
   std::function<void(const std::string& effect, const Fitted&)> refitted;
 };

@@ -18,12 +18,25 @@ const ExampleEvaluation* Evaluation::find(int example) const {
   return nullptr;
 }
 
-double Evaluation::chi(bool held_out) const {
-  double r2 = 0.0, count = 0.0;
+namespace {
+
+double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out,
+                 double PhotoEvaluation::*r2) {
+  double sum = 0.0, count = 0.0;
   for (const auto& example : examples)
     if (example.held_out == held_out)
-      for (const auto& photo : example.photos) r2 += photo.r2, count += photo.count;
-  return count > 0.0 ? std::sqrt(r2 / count) : 0.0;
+      for (const auto& photo : example.photos) sum += photo.*r2, count += photo.count;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+}  // namespace
+
+double Evaluation::chi(bool held_out) const {
+  return root_mean(examples, held_out, &PhotoEvaluation::r2);
+}
+
+double Evaluation::linear_chi(bool held_out) const {
+  return root_mean(examples, held_out, &PhotoEvaluation::linear_r2);
 }
 
 double Evaluation::rms_px(bool held_out) const {
@@ -195,7 +208,9 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     if (failures[e]) return *failures[e];
   if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
   const ReferenceState reference_state =
-      reference >= 0 ? ReferenceState{reference, &solved[reference]} : ReferenceState{};
+      reference >= 0 ? ReferenceState{reference, &solved[reference],
+                                      columns ? &derivative[reference] : nullptr}
+                     : ReferenceState{};
   tbb::parallel_for(size_t{0}, wanted.size(), [&](size_t i) {
     const int e = wanted[i];
     if (cancelled()) return;

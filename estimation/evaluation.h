@@ -69,9 +69,10 @@ struct Evaluation {
   std::vector<ExampleEvaluation> examples;
   int columns = 0;
   const ExampleEvaluation* find(int example) const;
-  double chi(bool held_out) const;     ///< root mean square of photo residuals over noise
-  double rms_px(bool held_out) const;  ///< of the residual displacement (needs pictures)
-  double motion_px() const;            ///< the same, cruder, of fitted photos (needs registered)
+  double chi(bool held_out) const;         ///< root mean square of photo residuals over noise
+  double linear_chi(bool held_out) const;  ///< the same from linear_r2 (needs pictures)
+  double rms_px(bool held_out) const;      ///< of the residual displacement (needs pictures)
+  double motion_px() const;  ///< the same, cruder, of fitted photos (needs registered)
 };
 
 /// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.

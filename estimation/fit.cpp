@@ -137,11 +137,12 @@ class Reporter final : public ceres::IterationCallback {
  private:
   /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
   /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
-  /// apart in a modulus differ by some 1e-5). A refused step that changed next to nothing has met
-  /// the same limit. A structured misfit moves the parameters by more than noise does: the limit
-  /// grows with its square. A coarse picture only has to lead the next one to the right speckle.
+  /// apart in a modulus differ by some 1e-5), and at 1e-5 moduli stopped a standard error short. A
+  /// refused step that changed next to nothing has met the same limit. A structured misfit moves
+  /// the parameters by more than noise does: the limit grows with its square. A coarse picture only
+  /// has to lead the next one to the right speckle.
   bool done(const ceres::IterationSummary& summary) const {
-    if (stage_.level > 0 && cost_.promised() < 0.02 * cost_.r2()) return true;
+    if (stage_.level > 1 && cost_.promised() < 0.02 * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
     if (summary.step_is_successful)
@@ -189,15 +190,20 @@ struct Look {
   double motion_px = 0.0;
 };
 
-std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
-                                          const VectorXd& p, const FitOptions& options, int level) {
+/// Pictures without derivatives.
+EvaluationOptions only_pictures(int level, const FitOptions& options) {
   EvaluationOptions evaluation;
   evaluation.derivatives = false;
   evaluation.pictures = true;
   evaluation.level = level;
-  evaluation.registered = level == 0;
+  evaluation.registered = level <= 1;
   evaluation.cancel = options.cancel;
-  auto seen = workspace.evaluate(form, p, evaluation);
+  return evaluation;
+}
+
+std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
+                                          const VectorXd& p, const FitOptions& options, int level) {
+  auto seen = workspace.evaluate(form, p, only_pictures(level, options));
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
   const Evaluation& pictures = std::get<Evaluation>(seen);
   return Look{misfit_scale(pictures), photo_count(pictures), pictures.motion_px()};
@@ -231,8 +237,10 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
   solver.max_num_iterations = level > 0 ? 8 : options.max_iterations;
-  // A fall of |r|^2 by less than a pixel's worth of noise is nothing: 1e-6 of some 1e6 pixels.
-  solver.function_tolerance = level > 0 ? 1e-4 : 1e-6;
+  // A fall of |r|^2 by less than a pixel's worth of noise is nothing: 1e-6 of some 1e6 pixels. A
+  // misfit of some tenths of a pixel has some hundred effective residuals: 1e-3 of |r|^2 is a third
+  // of a parameter's standard error.
+  solver.function_tolerance = level > 0 ? 1e-4 : stage.registered ? 1e-3 : 1e-6;
   solver.parameter_tolerance = 1e-7;
   solver.logging_type = ceres::SILENT;
   solver.max_num_consecutive_invalid_steps = 8;
@@ -300,6 +308,7 @@ Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
   const Scaling scaling{parameters};
   const VectorXd scale = scaling.dp_dx(p);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
+  if (n == 0) return H;  // nothing may move: a model that is only looked at
   for (const auto& example : evaluation.examples) {
     if (example.held_out) continue;
     for (const auto& photo : example.photos) {
@@ -403,6 +412,64 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
     out->converged = converged;
   }
   return fitted;
+}
+
+namespace {
+
+constexpr int kHalfSize = 1;
+
+/// Parameters after `share` of the Gauss-Newton step, within bounds; no parameter moves by more
+/// than a factor e or by its typical size times ten.
+VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquations& sums,
+                    double share) {
+  const CondensedResidual condensed = condense(sums, scaling.dp_dx(p));
+  const VectorXd dx = -condensed.R.completeOrthogonalDecomposition().solve(condensed.z) * share;
+  VectorXd x = scaling.to_x(p);
+  for (int i = 0; i < x.size(); ++i) {
+    const double most = scaling.parameters[i].positive ? 1.0 : 10.0;
+    x[i] += std::clamp(dx[i], -most, most);
+  }
+  VectorXd out = scaling.to_p(x);
+  for (int i = 0; i < out.size(); ++i)
+    out[i] = std::clamp(out[i], scaling.parameters[i].low, scaling.parameters[i].high);
+  return out;
+}
+
+}  // namespace
+
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options) {
+  const auto seen = workspace.evaluate(form, p, only_pictures(kHalfSize, options));
+  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
+  const Evaluation& pictures = std::get<Evaluation>(seen);
+  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
+}
+
+std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
+                                               const VectorXd& start, const TrialScale& scale,
+                                               const FitOptions& options) {
+  EvaluationOptions derivatives = only_pictures(kHalfSize, options);
+  derivatives.derivatives = true;
+  derivatives.huber = scale.huber;
+  const auto first = workspace.evaluate(form, start, derivatives);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const double from = std::get<Evaluation>(first).linear_chi(false);
+  // "from the null itself" comes back a little off: rays have changed triangles
+  if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
+  const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
+  EvaluationOptions pictures = only_pictures(kHalfSize, options);
+  pictures.held_out = true;
+  std::variant<Evaluation, NumericalFailure> seen;
+  for (double share : {1.0, 0.3, 0.1, 0.0}) {
+    const VectorXd p = after_step({form.parameters()}, start, sums, share);
+    seen = workspace.evaluate(form, p, pictures);
+    if (auto* evaluation = std::get_if<Evaluation>(&seen))
+      if (share == 0.0 || evaluation->linear_chi(false) < from)
+        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
+    if (options.cancel && options.cancel->load()) break;
+  }
+  return NumericalFailure{"", 0.0, "cancelled"};
 }
 
 }  // namespace hookeye

@@ -42,6 +42,26 @@ struct Fitted {
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options = {});
 
+/// What one Gauss-Newton step on the motion in half-size pictures makes of a model.
+struct Trial {
+  VectorXd p;
+  /// Root mean square of residual over noise, made linear in the motion, half-size pictures.
+  double chi_fit = 0.0, chi_validate = 0.0;
+};
+/// What the trials of a race are measured against: the model that they start from.
+struct TrialScale {
+  double huber = 0.0;  ///< Huber's threshold in units of noise
+  double chi = 0.0;    ///< Trial::chi_fit of that model
+};
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options = {});
+/// The whole step, or the part of it that lowers the misfit. Fails where the start has no
+/// equilibrium or is worse than the model of `scale`.
+std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
+                                               const VectorXd& start, const TrialScale& scale,
+                                               const FitOptions& options = {});
+
 /// The starting point again without moving anything: pictures, intervals, what is undetermined.
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options = {});

@@ -6,32 +6,47 @@ namespace hookeye {
 
 namespace {
 
-/// 1, x, y, x^2, xy, y^2 of the cell's place, over the field's extent.
-Eigen::Matrix<double, 6, 1> quadratic(const FlowField& flow, const FlowCell& cell) {
+/// Monomials of a cell's place up to `degree`, over the field's extent.
+Eigen::VectorXd monomials(const FlowField& flow, const FlowCell& cell, int degree) {
   const auto& first = flow.cells.front().centre_px;
   const double x = (cell.centre_px.x() - first.x()) / 300.0;
   const double y = (cell.centre_px.y() - first.y()) / 300.0;
-  return (Eigen::Matrix<double, 6, 1>() << 1.0, x, y, x * x, x * y, y * y).finished();
+  Eigen::VectorXd out((degree + 1) * (degree + 2) / 2);
+  int k = 0;
+  for (int n = 0; n <= degree; ++n)
+    for (int i = 0; i <= n; ++i) out[k++] = std::pow(x, n - i) * std::pow(y, i);
+  return out;
 }
 
-/// Sum of |z|^2 that is left when motion and brightness follow the best quadratic of the place:
+struct SmoothPart {
+  double explained = 0.0;  ///< of |r|^2
+  double numbers = 0.0;
+};
+
+/// What motion and brightness that are polynomials of the place explain of a photo's residual:
 /// weight, swelling, placement and exposure are smooth, what a renderer gets wrong is not.
-void add_rough_part(const FlowField& flow, double& sum, double& count) {
-  if (flow.cells.size() < 20) return;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(18, 18);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(18);
-  double z2 = 0.0;
+SmoothPart smooth_part(const FlowField& flow, int degree) {
+  const int size = 3 * (degree + 1) * (degree + 2) / 2;
+  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
   for (const auto& cell : flow.cells) {
-    const auto phi = quadratic(flow, cell);
-    Eigen::Matrix<double, 3, 18> basis = Eigen::Matrix<double, 3, 18>::Zero();
-    for (int k = 0; k < 6; ++k) basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
+    const Eigen::VectorXd phi = monomials(flow, cell, degree);
+    Eigen::MatrixXd basis(3, size);
+    for (int k = 0; k < phi.size(); ++k)
+      basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
     A += basis.transpose() * cell.information * basis;
     b += basis.transpose() * (cell.information * cell.estimate);
-    z2 += cell.z.squaredNorm();
   }
-  const double smooth = b.dot(A.completeOrthogonalDecomposition().solve(b));
-  sum += std::max(z2 - smooth, 0.0);
-  count += 3.0 * static_cast<double>(flow.cells.size()) - 18.0;
+  return {b.dot(A.completeOrthogonalDecomposition().solve(b)), static_cast<double>(size)};
+}
+
+/// Highest degree for which a polynomial has a third of the cells' numbers at most, up to cubic;
+/// -1: too few cells.
+int degree_for(const FlowField& flow) {
+  int degree = -1;
+  while (degree < 3 && (degree + 2) * (degree + 3) / 2 * 3 <= static_cast<int>(flow.cells.size()))
+    ++degree;
+  return degree;
 }
 
 }  // namespace
@@ -42,18 +57,24 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
     for (const auto& photo : example.photos) {
-      add_rough_part(photo.aligned, cells, cell_count);
+      const int degree = degree_for(photo.flow);
+      if (degree < 0) continue;
+      const SmoothPart moved = smooth_part(photo.flow, degree);
+      r2 -= moved.explained;
+      count -= moved.numbers;
+      for (const auto& cell : photo.flow.cells) r2 += cell.r2, count += cell.pixels;
+      // Cells are judged after the motion that the registration found, however rough, is out.
+      const SmoothPart aligned = smooth_part(photo.aligned, degree);
+      cells -= aligned.explained;
+      cell_count -= aligned.numbers;
+      for (const auto& cell : photo.aligned.cells) cells += cell.z.squaredNorm(), cell_count += 3.0;
       inflation += flow_statistics(photo.aligned).inflation;
       photos += 1.0;
-      for (const auto& cell : photo.aligned.cells) {
-        r2 += cell.r2 - cell.explained;
-        count += cell.pixels - 3.0;  // three numbers were fitted to each cell
-      }
     }
   }
-  // A hundred cells' worth of pixels at least, else the told noise is the better witness.
+  // Some cells' worth of pixels at least, else the told noise is the better witness.
   if (count < 1000.0) return floor;
-  floor.chi = std::sqrt(r2 / count);
+  floor.chi = std::sqrt(std::max(r2, 0.0) / count);
   floor.source = "rest photos";
   floor.cell_inflation = std::max(1.0, inflation / photos);
   if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);

@@ -19,9 +19,10 @@ struct Floor {
   std::string source = "noise model";  ///< or "rest photos"
 };
 
-/// From the rest photos, after the residual displacement of every cell is taken out of them
-/// (weight, swelling and placement act at rest too, so the raw residual is no floor). Needs
-/// pictures. Without compared rest photos: 1, "noise model".
+/// From the rest photos, after motion and brightness that are smooth over a photo (up to cubic in
+/// the place) are taken out of them: weight, swelling and placement act at rest too, so the raw
+/// residual is no floor, and what a renderer gets wrong is rough. Needs pictures. Without compared
+/// rest photos: 1, "noise model".
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation);
 
 }  // namespace hookeye

@@ -99,7 +99,8 @@ struct ModelForm {
   Model realise(const VectorXd& p) const;
 };
 
-/// No loads and no moving support: the photos of this example show the body at rest.
+/// Nothing strains the body: no loads, and supports that stand still or one that moves it as a
+/// whole.
 bool is_rest(const ExampleSpec& example);
 
 /// Scene of a capture: reads photos and builds the body (edge_factor as make_body).

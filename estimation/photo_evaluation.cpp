@@ -1,5 +1,6 @@
 #include "estimation/photo_evaluation.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -17,10 +18,14 @@ RenderOptions render_options(const Scene& scene) {
 namespace {
 
 /// Photos of coarse levels are means over squares of pixels: a wider filter with rays enough to see
-/// every speckle once (a box has 2.5 times the variance of the 1.5 px window).
-RenderOptions at_level(RenderOptions options, int level) {
+/// every speckle once (a box has 2.5 times the variance of the 1.5 px window). A texture that is a
+/// photo went through the camera's aperture once already: one ray a pixel, or the model would be
+/// blurred twice and every motion come out too long.
+RenderOptions at_level(RenderOptions options, int level, const Texture& texture) {
+  if (level == 0 && texture.source == Texture::Source::photo)
+    options.rays_per_axis = 1, options.filter_width_px = 1.0;
   if (level == 0) return options;
-  options.rays_per_axis = std::min(3 + 3 * level, 15);
+  options.rays_per_axis = std::min(1 + 3 * level, 15);
   options.filter_width_px = 2.4;
   return options;
 }
@@ -103,10 +108,10 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
   return true;
 }
 
-/// Silhouettes are rendered as plain coverage.
+/// Silhouettes are rendered as plain coverage: no light, and no sky that concave parts miss.
 PhotoState coverage_state(PhotoState state) {
   state.gain = 1.0;
-  state.ambient = 1.0;
+  state.shaded = false;
   state.sun.setZero();
   state.specular = 0.0;
   state.background = 0.0;
@@ -132,9 +137,37 @@ VertexSensitivity vertex_sensitivity(const Renderer& renderer, const RenderSurfa
   return out;
 }
 
+/// The texture is looked up with the reference photo's camera and divided by its gain, and a
+/// parameter may change those as well (a set-up placed elsewhere, a focal length). The camera's
+/// motion x_c' = exp([w]x) x_c + v is the opposite of one of the reference points, and so is a
+/// zoom.
+void add_reference_photo(const Camera& camera, const Matrix3Xd& x_reference,
+                         const Eigen::MatrixXd& by_reference_photo, VertexSensitivity* S) {
+  const auto& d = by_reference_photo;
+  if (d.topRows(kLogGain + 1).isZero(0.0)) return;
+  S->photo.row(kLogGain) -= d.row(kLogGain);
+  Camera local = camera;
+  local.R.setIdentity();
+  local.t.setZero();
+  for (int v = 0; v < x_reference.cols(); ++v) {
+    const Vector3d p = camera.R * x_reference.col(v) + camera.t;
+    Camera::Jacobian3 by_point;
+    Camera::Jacobian7 by_camera;
+    local.project(p, &by_point, &by_camera);
+    Vector3d zoom = Vector3d::Zero();
+    zoom.head<2>() = by_point.leftCols<2>().inverse() * by_camera.col(6);
+    for (int j = 0; j < d.cols(); ++j)
+      S->reference.block<3, 1>(3 * v, j) +=
+          camera.R.transpose() *
+          (d.block<3, 1>(kRotate, j).cross(p) + d.block<3, 1>(kMove, j) + d(kZoom, j) * zoom);
+  }
+}
+
 /// Where the photo shows something that is not the told background although the model has none
-/// there: such pixels count, else a body that left the model's silhouette would cost nothing.
-bool shows_body(const PhotoPlane& photo, size_t i, double background) {
+/// there: such pixels count, else a body that left the model's silhouette would cost nothing. A
+/// binary silhouette's noise is that of rounding, a third of its contrast: the half decides there.
+bool shows_body(const PhotoPlane& photo, size_t i, double background, bool mask) {
+  if (mask) return photo.I.values[i] > 0.5f;
   return std::abs(photo.I.values[i] - background) > 6.0 * photo.sigma.values[i];
 }
 
@@ -163,15 +196,15 @@ Image compared_sigma(const PhotoPlane& photo, const Texture& texture) {
 }
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
-                          bool silhouette, double background) {
+                          bool silhouette, bool mask, double background) {
   Comparison out;
   out.residual = Image{photo.I.width, photo.I.height, 1, {}};
   out.residual.values.assign(photo.I.pixels(), std::numeric_limits<float>::quiet_NaN());
   for (size_t i = 0; i < photo.I.pixels(); ++i) {
     if (!photo.valid.empty() && !photo.valid[i]) continue;
     const double coverage = rendering.coverage.values[i];
-    const bool counts =
-        silhouette ? coverage > 0.0 || shows_body(photo, i, background) : coverage > 1.0 - 1e-6;
+    const bool counts = silhouette ? coverage > 0.0 || shows_body(photo, i, background, mask)
+                                   : coverage > 1.0 - 1e-6;
     if (!counts) continue;
     const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
     out.residual.values[i] = static_cast<float>(r);
@@ -227,8 +260,8 @@ Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const Vec
   if (q_reference) x_reference = surface.deformed(scene.body->mesh, *q_reference);
   PhotoState state = model.examples[impl_->example].photos[photo];
   if (is_silhouette(scene, impl_->example, photo)) state = coverage_state(state);
-  return impl_->renderer.render(x, q_reference ? &x_reference : nullptr, texture, state, options,
-                                true);
+  return impl_->renderer.render(x, q_reference ? &x_reference : nullptr, texture, state,
+                                at_level(options, 0, texture), true);
 }
 
 std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
@@ -251,6 +284,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
   if (columns)
     S = vertex_sensitivity(impl_->renderer, surface, x, example.S,
                            reference.state ? &reference.state->S : nullptr, has_light);
+  const Eigen::MatrixXd reference_on_vertices = S.reference;
 
   for (size_t k = 0; k < scene.photos[e].size(); ++k)
     for (size_t plane = 0; plane < scene.photos[e][k].planes.size(); ++plane) {
@@ -266,7 +300,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
           impl_->plane(static_cast<int>(k), static_cast<int>(plane), options.level);
       PhotoState state = state_at_level(model.examples[e].photos[k], options.level);
       if (mask_photo) state = coverage_state(state);
-      RenderOptions render_options = at_level(base_options, options.level);
+      RenderOptions render_options = at_level(base_options, options.level, texture);
       render_options.derivatives = columns != nullptr;
       render_options.gloss_derivative =
           columns != nullptr && !columns->dphoto[k].row(kSpecular).isZero(0.0);
@@ -276,7 +310,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       composite_background(scene, rendering);
       const Image sigma = compared_sigma(photo, texture);
       const Comparison comparison =
-          compare_pixels(rendering, photo, sigma, silhouette, state.background);
+          compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state.background);
       PhotoEvaluation one;
       one.example = e;
       one.photo = static_cast<int>(k);
@@ -291,6 +325,13 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       if (columns) {
         S.photo = columns->dphoto[k];
         S.photo.row(kBlur) *= std::pow(0.25, options.level);  // px^2 of this level
+        if (reference.columns && texture.source == Texture::Source::photo) {
+          S.reference = reference_on_vertices;
+          const int source =
+              reference_photo(scene, reference.example, model.examples[e].photos[k].camera.name);
+          add_reference_photo(texture.reference_camera, x_reference,
+                              reference.columns->dphoto[source], &S);
+        }
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
         one.sums = condense(rendering, residual, sigma, surface.mesh, state.blur_variance,
                             options.huber, has_light, reference.state != nullptr)

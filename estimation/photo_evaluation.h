@@ -15,6 +15,7 @@ namespace hookeye {
 struct ReferenceState {
   int example = -1;
   const ExampleEvaluation* state = nullptr;
+  const ExampleColumns* columns = nullptr;  ///< its photos move with the parameters too
 };
 
 /// Keeps renderer and pyramids of one example.

@@ -31,11 +31,47 @@ float white_level(const Image& photo) {
   return std::max(sorted[high], 1e-4f);
 }
 
-/// Fourth-order central difference, as in flow.cpp.
+/// Fourth-order central difference, as flow.cpp takes it: what is added to the residual here as
+/// gradient times motion is divided by the gradient there.
 float slope(const Image& model, int x, int y, int dx, int dy) {
   return (8.0f * (model.at(x + dx, y + dy) - model.at(x - dx, y - dy)) -
           (model.at(x + 2 * dx, y + 2 * dy) - model.at(x - 2 * dx, y - 2 * dy))) /
          12.0f;
+}
+
+/// The search goes astray where the pictures differ in more than motion (rims, occlusions): a
+/// motion that does not lower the misfit of its cell is none. Nor is one below kLinear: pictures
+/// are linear in it already (a pattern of 6 px period to 0.2 %), and the interpolation that would
+/// take it out and put it back errs alike in all pixels of a kind, which a small signature adds up.
+/// Returns the rms motion that is left.
+double drop_stray_motion(const Image& plain, const cv::Rect& box, const cv::Mat& flow,
+                         Registration* out) {
+  constexpr int kCell = 16;
+  constexpr double kLinear = 0.1;  // px
+  double motion = 0.0, count = 0.0;
+  for (int y0 = box.y; y0 < box.br().y; y0 += kCell)
+    for (int x0 = box.x; x0 < box.br().x; x0 += kCell) {
+      const int x1 = std::min(x0 + kCell, box.br().x), y1 = std::min(y0 + kCell, box.br().y);
+      double before = 0.0, after = 0.0, moved = 0.0, pixels = 0.0;
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+          if (std::isnan(plain.at(x, y))) continue;
+          before += std::pow(plain.at(x, y), 2);
+          after += std::pow(out->residual.at(x, y), 2);
+          const cv::Vec2f& f = flow.at<cv::Vec2f>(y - box.y, x - box.x);
+          moved += f.dot(f);
+          pixels += 1.0;
+        }
+      count += pixels;
+      if (after < before && moved > kLinear * kLinear * pixels) {
+        motion += moved;
+        continue;
+      }
+      for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x)
+          out->residual.at(x, y) = out->linear.at(x, y) = plain.at(x, y);
+    }
+  return count > 0.0 ? std::sqrt(motion / count) : 0.0;
 }
 
 /// Box around the pixels that count, widened by what the search may look at beyond them.
@@ -79,7 +115,6 @@ Registration register_pictures(const Image& model, const Image& photo, const Ima
     for (int x = 0; x < flow.cols; ++x)
       from.at<cv::Vec2f>(y, x) = flow.at<cv::Vec2f>(y, x) + cv::Vec2f(x + box.x, y + box.y);
   cv::remap(wrap(model), moved, from, cv::noArray(), cv::INTER_LANCZOS4, cv::BORDER_REPLICATE);
-  double motion = 0.0, count = 0.0;
   for (int y = std::max(box.y, 2); y < std::min(box.br().y, model.height - 2); ++y)
     for (int x = std::max(box.x, 2); x < std::min(box.br().x, model.width - 2); ++x) {
       if (std::isnan(residual.at(x, y))) continue;
@@ -89,10 +124,8 @@ Registration register_pictures(const Image& model, const Image& photo, const Ima
       const float r = (moved.at<float>(y - box.y, x - box.x) - photo.at(x, y)) / sigma.at(x, y);
       out.residual.at(x, y) = r;
       out.linear.at(x, y) = r - (gx * f[0] + gy * f[1]) / sigma.at(x, y);
-      motion += f.dot(f);
-      count += 1.0;
     }
-  if (count > 0.0) out.rms_px = std::sqrt(motion / count);
+  out.rms_px = drop_stray_motion(residual, box, flow, &out);
   return out;
 }
 

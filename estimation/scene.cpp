@@ -51,6 +51,10 @@ int Scene::example_index(const std::string& name) const {
 
 bool is_rest(const ExampleSpec& example) {
   if (!example.loads.empty()) return false;
+  // Held by one jaw alone a body moves as a whole, wherever the jaw goes.
+  if (example.supports.size() == 1 &&
+      example.supports.front().kind != SupportSpec::Kind::components)
+    return true;
   for (const auto& support : example.supports) {
     if (support.kind != SupportSpec::Kind::components) return false;
     for (const auto& u : support.displacement)

@@ -174,7 +174,11 @@ std::vector<GripForce> measure(const Recipe& recipe, const SynthBody& body,
   return measured;
 }
 
-Json vector_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+/// Nine digits: further ones depend on where arrays happen to lie in memory (sums are vectorised),
+/// and the same seed must give the same file.
+double rounded(double value) { return std::stod(fmt::format("{:.9g}", value)); }
+
+Json vector_json(const Vector3d& v) { return {rounded(v.x()), rounded(v.y()), rounded(v.z())}; }
 
 Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
   const Scene& scene = *truth.model.scene;
@@ -185,11 +189,12 @@ Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
   for (const detail::PutIn& put : truth.hidden) {
     Json values = Json::object();
     const auto parameters = put.ingredient->parameters();
-    for (size_t i = 0; i < parameters.size(); ++i) values[parameters[i].name] = put.values[i];
+    for (size_t i = 0; i < parameters.size(); ++i)
+      values[parameters[i].name] = rounded(put.values[i]);
     out["hidden"].push_back({{"effect", put.effect->name()},
                              {"variant", put.ingredient->variant()},
                              {"values", values},
-                             {"rms_px", put.rms_px},
+                             {"rms_px", rounded(put.rms_px)},
                              {"sentence", put.sentence}});
   }
   out["mesh"] = {{"nodes", scene.body->mesh.nodes()},

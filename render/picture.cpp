@@ -103,14 +103,11 @@ class PixelSum {
     double I = 0, coverage = 0, missing = 0;
     for (int j = 0; j < taps; ++j) {
       const RayShade* ray = band_.at(x, y, 0, j);
-      double row_I = 0, row_coverage = 0, row_missing = 0;
       for (int i = 0; i < taps; ++i) {
-        row_I += filter.axis[i] * ray[i].I;
-        (ray[i].triangle >= 0 ? row_coverage : row_missing) += filter.axis[i];
+        const double w = filter.weight(i, j);
+        I += w * ray[i].I;
+        (ray[i].triangle >= 0 ? coverage : missing) += w;
       }
-      I += filter.axis[j] * row_I;
-      coverage += filter.axis[j] * row_coverage;
-      missing += filter.axis[j] * row_missing;
     }
     if (coverage == 0) return;
     const int pixel = y * out->I.width + x;
@@ -124,8 +121,7 @@ class PixelSum {
     for (int j = 0; j < taps; ++j) {
       const RayShade* ray = band_.at(x, y, 0, j);
       for (int i = 0; i < taps; ++i)
-        if (ray[i].triangle >= 0)
-          add_ray(ray[i], static_cast<float>(filter.axis[i] * filter.axis[j]));
+        if (ray[i].triangle >= 0) add_ray(ray[i], static_cast<float>(filter.weight(i, j)));
     }
     photo_[kBackground] = static_cast<float>(missing);
     store(pixel, derivative);

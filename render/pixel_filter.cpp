@@ -14,16 +14,19 @@ double blackman_harris(double v) {
 }
 
 PixelFilter::PixelFilter(int rays_per_axis, double width_px) : n(rays_per_axis) {
-  const auto weight = [&](int tap) { return blackman_harris(offset_px(tap) / width_px); };
   const double least = 0.01 * blackman_harris(0.0);
   // Offsets of the first ray outside the pixel: (n+1)/2/n px, then one more ray each.
   while (blackman_harris(((n + 1) / 2.0 + margin) / n / width_px) > least) ++margin;
+  const auto along = [&](int tap, int other) {
+    const double px = (tap - margin - (n - 1) / 2.0 + shift(other - margin, n)) / n;
+    return blackman_harris(px / width_px);
+  };
   double sum = 0;
-  for (int i = 0; i < taps(); ++i) axis.push_back(weight(i));
-  for (double w : axis) sum += w;
+  for (int j = 0; j < taps(); ++j)
+    for (int i = 0; i < taps(); ++i) sum += weights_.emplace_back(along(i, j) * along(j, i));
   if (sum <= 0)  // A window narrower than the ray spacing of an even pattern: the plain mean.
-    axis.assign(taps(), 1.0), sum = taps();
-  for (double& w : axis) w /= sum;
+    weights_.assign(weights_.size(), 1.0), sum = static_cast<double>(weights_.size());
+  for (double& w : weights_) w /= sum;
 }
 
 namespace {

@@ -5,17 +5,28 @@
 
 namespace hookeye {
 
-/// Rays lie on a grid with n per pixel and axis, at (i - (n-1)/2)/n px from the pixel centre. A
-/// pixel is the weighted mean of its n^2 rays and, where the window reaches them, of `margin`
-/// further rays on each side. Rays whose weight is below 1 % of the centre's are left out (at
-/// n = 3 and 1.5 px width: the outer taps at 2/3 px, of 0.2 %).
+/// Rays lie on a lattice with n per pixel and axis: ray (i, j) of a pixel at
+///   ((i - (n-1)/2 + shift(j))/n, (j - (n-1)/2 + shift(i))/n) px from its centre.
+/// The shift gives all n^2 rays different columns and rows (a canonical arrangement: Kensler,
+/// Correlated Multi-Jittered Sampling, 2013): an upright edge is seen to 1/n^2 px, on a plain grid
+/// to 1/n, and bodies stand upright. A pixel is the weighted mean of its rays and, where the window
+/// reaches them, of `margin` further rays on each side. Rays whose weight along an axis is below
+/// 1 % of the centre's are left out.
 struct PixelFilter {
   PixelFilter(int rays_per_axis, double width_px);
   int n = 1, margin = 0;
   int taps() const { return n + 2 * margin; }
-  /// Weights along one axis, sum 1; tap i is at (i - margin - (n-1)/2)/n px.
-  std::vector<double> axis;
-  double offset_px(int tap) const { return (tap - margin - (n - 1) / 2.0) / n; }
+  /// Offset of a ray along one axis by its index along the other, in units of 1/n px; |.| < 1/2.
+  /// Indices may be negative.
+  static double shift(int index, int n) {
+    const int k = index % n < 0 ? index % n + n : index % n;
+    return (k - (n - 1) / 2.0) / n;
+  }
+  /// Weight of tap (i, j), sum 1; taps count from -margin.
+  double weight(int i, int j) const { return weights_[static_cast<size_t>(j) * taps() + i]; }
+
+ private:
+  std::vector<double> weights_;
 };
 
 /// Blackman-Harris window (Harris 1978, 4 terms), v in units of the width; 0 for |v| >= 1/2.

@@ -106,8 +106,12 @@ double contrast(const Frame& f, const EdgePoint& q, const Sample& inside, const 
 void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, double weight,
             std::vector<EdgeSegment>* out) {
   const int n = filter.n, taps = filter.taps();
-  const int ix = static_cast<int>(std::lround(q.px.x() * n + (n - 1) / 2.0)) + filter.margin;
-  const int iy = static_cast<int>(std::lround(q.px.y() * n + (n - 1) / 2.0)) + filter.margin;
+  const double at_x = q.px.x() * n + (n - 1) / 2.0, at_y = q.px.y() * n + (n - 1) / 2.0;
+  const auto nearest = [&](double at, double other) {
+    return static_cast<int>(
+        std::lround(at - PixelFilter::shift(static_cast<int>(std::lround(other)), n)));
+  };
+  const int ix = nearest(at_x, at_y) + filter.margin, iy = nearest(at_y, at_x) + filter.margin;
   const auto floor_div = [](int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); };
   EdgeSegment segment;
   segment.triangle = q.inside;
@@ -122,7 +126,7 @@ void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, doubl
   for (int y = floor_div(iy - taps, n) + 1; y <= floor_div(iy, n); ++y)
     for (int x = floor_div(ix - taps, n) + 1; x <= floor_div(ix, n); ++x) {
       if (x < 0 || y < 0 || x >= f.view.camera.width || y >= f.view.camera.height) continue;
-      const double w = filter.axis[ix - x * n] * filter.axis[iy - y * n] * n * n;
+      const double w = filter.weight(ix - x * n, iy - y * n) * n * n;
       const int pixel = y * f.view.camera.width + x;
       // Neighbouring points of one edge mostly meet the same pixel.
       EdgeSegment* same = nullptr;

@@ -32,7 +32,7 @@ RayGrid::RayGrid(const Camera& camera, const PixelFilter& filter)
   undone_.resize(static_cast<size_t>(rows) * columns_);
   for (int iy = 0; iy < rows; ++iy)
     for (int ix = 0; ix < columns_; ++ix) {
-      const Ray ray = camera_.ray({px(ix - margin_), px(iy - margin_)});
+      const Ray ray = camera_.ray({px(ix - margin_, iy - margin_), px(iy - margin_, ix - margin_)});
       const Vector2d h = camera.projection == Camera::Projection::perspective
                              ? Vector2d(ray.direction.head<2>() / ray.direction.z())
                              : Vector2d(ray.origin.head<2>());

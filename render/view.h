@@ -25,13 +25,16 @@ class RayGrid {
  public:
   RayGrid(const Camera& camera, const PixelFilter& filter);
   bool serves(const Camera& camera, const PixelFilter& filter) const;
-  /// Ray (ix, iy) lies at pixel ((ix - (n-1)/2)/n, ...); -margin <= ix < width n + margin.
+  /// Ray (ix, iy) of the lattice of pixel_filter.h; -margin <= ix < width n + margin.
   Vector2d h(int ix, int iy) const {
     if (!undone_.empty())
       return undone_[static_cast<size_t>(iy + margin_) * columns_ + ix + margin_].cast<double>();
-    return {(px(ix) - camera_.cx) / camera_.fx, (px(iy) - camera_.cy) / camera_.fy};
+    return {(px(ix, iy) - camera_.cx) / camera_.fx, (px(iy, ix) - camera_.cy) / camera_.fy};
   }
-  double px(int i) const { return (i - (n_ - 1) / 2.0) / n_; }
+  /// Coordinate of ray i along one axis, `other` its index along the other [px].
+  double px(int i, int other) const {
+    return (i - (n_ - 1) / 2.0 + PixelFilter::shift(other, n_)) / n_;
+  }
 
  private:
   Camera camera_;

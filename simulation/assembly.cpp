@@ -19,21 +19,21 @@ double swelling_of(const EnergyModel& model, int e) {
 double energy_density(const EnergyModel& model, int e, const Matrix3d& F) {
   const double g = swelling_of(model, e);
   double sum = 0;
-  for (const auto& part : model.parts) sum += weight_of(part, e) * part.term->psi(F / g);
+  for (const auto& part : model.parts) sum += weight_of(part, e) * part.psi(e, F / g);
   return g * g * g * sum;
 }
 
 Matrix3d stress(const EnergyModel& model, int e, const Matrix3d& F) {
   const double g = swelling_of(model, e);
   Matrix3d sum = Matrix3d::Zero();
-  for (const auto& part : model.parts) sum += weight_of(part, e) * part.term->P(F / g);
+  for (const auto& part : model.parts) sum += weight_of(part, e) * part.P(e, F / g);
   return g * g * sum;
 }
 
 Matrix9d stiffness(const EnergyModel& model, int e, const Matrix3d& F) {
   const double g = swelling_of(model, e);
   Matrix9d sum = Matrix9d::Zero();
-  for (const auto& part : model.parts) sum += weight_of(part, e) * part.term->dP_dF(F / g);
+  for (const auto& part : model.parts) sum += weight_of(part, e) * part.dP_dF(e, F / g);
   return g * sum;
 }
 
@@ -212,9 +212,33 @@ VectorXd Assembly::dR_dtheta(const EnergyModel& model, const VectorXd& q, int pa
       if (w == 0) continue;
       kernel.scatter(kernel.force(q, e,
                                   [&](const Matrix3d& F) -> Matrix3d {
-                                    return w * chosen.term->dP_dtheta(F / g, k);
+                                    return w * chosen.dP_dtheta(e, F / g, k);
                                   }),
                      e, R);
+    }
+    return 0;
+  });
+  return R;
+}
+
+MatrixXd Assembly::all_dR_dtheta(const EnergyModel& model, const VectorXd& q, int part) const {
+  const auto& chosen = model.parts[part];
+  MatrixXd R = MatrixXd::Zero(3 * n_, chosen.term->size());
+  dispatch([&](auto kernel) {
+    for (int e = 0; e < elements(); ++e) {
+      const double g = swelling_of(model, e), w = weight_of(chosen, e) * g * g;
+      if (w == 0) continue;
+      const auto x = kernel.gather(q, e);
+      for (int p = 0; p < points_; ++p) {
+        const auto G = kernel.gradient(e, p);
+        const auto dP = chosen.all_dP_dtheta(e, x * G / g);
+        for (Eigen::Index k = 0; k < dP.cols(); ++k) {
+          if (dP.col(k).isZero(0.0)) continue;
+          const Matrix3d P = (w * volume(e, p)) * dP.col(k).reshaped(3, 3);
+          for (int i = 0; i < npe_; ++i)
+            R.col(k).segment<3>(3 * nodes_(i, e)) += P * G.row(i).transpose();
+        }
+      }
     }
     return 0;
   });

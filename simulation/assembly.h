@@ -17,6 +17,8 @@ class Assembly {
   void add_forces(const EnergyModel& model, const VectorXd& q, VectorXd& R) const;
   MatrixXd element_forces(const EnergyModel& model, const VectorXd& q) const;
   VectorXd dR_dtheta(const EnergyModel& model, const VectorXd& q, int part, int k) const;
+  /// All parameters of the part's term in one pass: 3n x size.
+  MatrixXd all_dR_dtheta(const EnergyModel& model, const VectorXd& q, int part) const;
 
   /// Empty matrix with the pattern: full 3x3 blocks of all node pairs that share an element.
   /// Computed at the first call.

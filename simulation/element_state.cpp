@@ -23,13 +23,31 @@ Local local_response(const EnergyModel& model, int e, const Matrix3d& F) {
   Local sum;
   for (const auto& part : model.parts) {
     const double w = part.weight.size() ? part.weight[e] : 1.0;
-    sum.psi += w * g * g * g * part.term->psi(F / g);
-    sum.P += w * g * g * part.term->P(F / g);
+    sum.psi += w * g * g * g * part.psi(e, F / g);
+    sum.P += w * g * g * part.P(e, F / g);
   }
   return sum;
 }
 
 }  // namespace
+
+std::vector<Matrix3d> deformation_gradients(const TetMesh& mesh, const VectorXd& q) {
+  std::vector<MatrixXd> dN;
+  for (const auto& point : stiffness_rule(mesh.order).points)
+    dN.push_back(shape_derivatives(mesh.order, point));
+  const int npe = mesh.nodes_per_element();
+  std::vector<Matrix3d> all;
+  all.reserve(dN.size() * static_cast<size_t>(mesh.size()));
+  MatrixXd X(3, npe), x(3, npe);
+  for (int e = 0; e < mesh.size(); ++e) {
+    for (int i = 0; i < npe; ++i) {
+      X.col(i) = mesh.X.col(mesh.elements(i, e));
+      x.col(i) = q.segment<3>(3 * mesh.elements(i, e));
+    }
+    for (const MatrixXd& d : dN) all.push_back((x * d) * Matrix3d(X * d).inverse());
+  }
+  return all;
+}
 
 ElementState element_state(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {
   const MatrixXd dN = shape_derivatives(mesh.order, Eigen::Vector4d::Constant(0.25));

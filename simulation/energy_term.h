@@ -34,7 +34,14 @@ class EnergyTerm {
   virtual Matrix9d dP_dF(const Matrix3d& F) const = 0;
   /// dP / dtheta_k.
   virtual Matrix3d dP_dtheta(const Matrix3d& F, int k) const = 0;
+  /// All of them: column k is vec(dP / dtheta_k). A law with many parameters overrides it.
+  virtual Eigen::Matrix<double, 9, Eigen::Dynamic> all_dP_dtheta(const Matrix3d& F) const;
+  /// Number of parameters.
+  virtual int size() const { return static_cast<int>(parameters(Units{}).size()); }
 };
+
+/// dP/dF in rest axes of D told in a frame: P = P'(F A) A^T, A orthonormal with columns a1 a2 a3.
+Matrix9d stiffness_from_frame(const Matrix9d& D, const Matrix3d& A);
 
 /// Builds a law from a capture's `material:`; names the fault with its place (unknown law or
 /// parameter with the nearest known one, missing, wrong count, out of range). Throws InputError.
@@ -50,6 +57,9 @@ std::shared_ptr<const EnergyTerm> mooney_rivlin(double c10, double c01, double k
 std::shared_ptr<const EnergyTerm> yeoh(double c1, double c2, double c3, double kappa);
 std::shared_ptr<const EnergyTerm> ogden(const std::vector<double>& mu,
                                         const std::vector<double>& alpha, double kappa);
+/// b = b11 b22 b33 b12 b23 b13 g12 g23 g13.
+std::shared_ptr<const EnergyTerm> fung(double c, const Eigen::Matrix<double, 9, 1>& b,
+                                       double kappa);
 /// Fibre term stiffness/2 (I4bar - 1)^2, I4bar = J^(-2/3) a.C a, a unit, along a (all strains).
 std::shared_ptr<const EnergyTerm> fibre(double stiffness, const Eigen::Vector3d& direction);
 

@@ -26,6 +26,12 @@ Eigen::MatrixXd element_forces(const TetMesh& mesh, const EnergyModel& energy, c
 /// d(internal force)/dtheta_k of part `part`'s term at fixed q (3n).
 VectorXd dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q, int part,
                    int k);
+/// The same for all of its parameters: 3n x size.
+Eigen::MatrixXd all_dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q,
+                              int part);
+/// F at the points where the energy is evaluated, element by element (elements x points, point
+/// fastest).
+std::vector<Matrix3d> deformation_gradients(const TetMesh& mesh, const VectorXd& q);
 
 /// State of the elements for pictures and vtu: at the centroid, 6 x m in the order xx yy zz xy yz
 /// xz.

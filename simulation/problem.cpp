@@ -99,4 +99,9 @@ VectorXd dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorX
   return Assembly(mesh).dR_dtheta(energy, q, part, k);
 }
 
+Eigen::MatrixXd all_dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q,
+                              int part) {
+  return Assembly(mesh).all_dR_dtheta(energy, q, part);
+}
+
 }  // namespace hookeye

@@ -31,6 +31,10 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
       if (nameable(effect, step.diagnosis))
         spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
   };
+  events.tried = [](const Racer& racer) {
+    spdlog::info("a step with {}: half-size chi {:.3f} fitted, {:.3f} held out", racer.effect,
+                 racer.trial.chi_fit, racer.trial.chi_validate);
+  };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
   events.refitted = [](const std::string& effect, const Fitted& fitted) {
     spdlog::info("  {}: chi {:.3f} fitted, {:.3f} held out", effect, fitted.evaluation.chi(false),

@@ -165,6 +165,8 @@ class MeshResolution final : public Effect {
     const Capture& capture = model.scene->capture;
     const bool linear = model.scene->body->mesh.order == 1;
     std::string reason;
+    for (const auto& [ingredient, values] : model.applied)
+      if (ingredient->name() == name()) reason = "the mesh has been refined already";
     if (!linear && capture.body.surface.empty())
       reason = "the volume is told without a surface, so that it cannot be meshed anew";
     for (const auto& material : capture.materials)

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 
-#include "simulation/energy_term.h"
+#include "simulation/additive.h"
 
 namespace hookeye {
 namespace {
@@ -25,6 +26,8 @@ struct Form {
   std::vector<Key> keys;
   std::function<std::shared_ptr<const EnergyTerm>(const Values&)> make;
   std::function<std::string(const Values&)> check = nullptr;
+  /// A law whose keys are the user's own reads and checks them itself.
+  std::function<std::shared_ptr<const EnergyTerm>(const MaterialSpec&)> read = nullptr;
 };
 
 double number(const Values& v, const char* key) { return v.at(key)[0]; }
@@ -46,6 +49,21 @@ std::string check_mooney(const Values& v) {
   return number(v, "c10") + number(v, "c01") > 0
              ? ""
              : "the small-strain shear modulus 2 (c10 + c01) is not positive";
+}
+
+using Vector9d = Eigen::Matrix<double, 9, 1>;
+
+std::string check_fung(const Values& v) {
+  const auto& b = v.at("b");
+  if (b.size() != 9)
+    return fmt::format("`b` has {} numbers, not 9: b11 b22 b33 b12 b23 b13 g12 g23 g13", b.size());
+  Matrix3d B;
+  B << b[0], b[3], b[5], b[3], b[1], b[4], b[5], b[4], b[2];
+  if (Eigen::LLT<Matrix3d>(B).info() != Eigen::Success)
+    return "the matrix (b11 b12 b13; b12 b22 b23; b13 b23 b33) is not positive definite";
+  if (!(b[6] > 0 && b[7] > 0 && b[8] > 0))
+    return "a shear coefficient g12, g23, g13 is not above 0";
+  return "";
 }
 
 const std::vector<Form>& known_laws() {
@@ -77,6 +95,18 @@ const std::vector<Form>& known_laws() {
        {{"mu", K::list}, {"alpha", K::list}, {"kappa", K::positive}},
        [](const Values& v) { return ogden(v.at("mu"), v.at("alpha"), number(v, "kappa")); },
        check_ogden},
+      {"fung",
+       {{"c", K::positive}, {"b", K::list}, {"kappa", K::positive}},
+       [](const Values& v) {
+         return fung(number(v, "c"), Eigen::Map<const Vector9d>(v.at("b").data()),
+                     number(v, "kappa"));
+       },
+       check_fung},
+      {"additive",
+       {{"E11: {at: [...], stiffness: [...]}, ...", K::list}},
+       nullptr,
+       nullptr,
+       [](const MaterialSpec& spec) { return additive(read_additive(spec)); }},
   };
   return forms;
 }
@@ -84,7 +114,7 @@ const std::vector<Form>& known_laws() {
 std::string usage(const Form& form) {
   std::vector<std::string> keys;
   for (const Key& k : form.keys)
-    keys.push_back(k.name + (k.kind == Key::Kind::list ? ": [...]" : ""));
+    keys.push_back(k.name + (k.kind == Key::Kind::list && !form.read ? ": [...]" : ""));
   return fmt::format("{} {{{}}}", form.law, fmt::join(keys, ", "));
 }
 
@@ -162,6 +192,7 @@ void check_value(const MaterialSpec& spec, const Key& key) {
 
 std::shared_ptr<const EnergyTerm> make_law(const MaterialSpec& spec) {
   const Form& form = best_form(spec);
+  if (form.read) return form.read(spec);
   check_keys(spec, form);
   Values values;
   for (const Key& k : form.keys) {

@@ -333,7 +333,7 @@ const BrokenCase broken_cases[] = {
        c.yaml.erase(c.yaml.find("  surface"), c.yaml.find("model:") - c.yaml.find("  surface"));
      },
      "capture.yaml:5:1: body is empty\n"
-     "  write a map with the keys surface, mesh, volume, density, texture, placement"},
+     "  write a map with the keys surface, mesh, volume, density, texture, placement, shading"},
     {"MaskMissing", swap("mask: photos/mask.png", "mask: mask.png"),
      "capture.yaml:56:43: mask is `mask.png`\n"
      "  there is no such file"},

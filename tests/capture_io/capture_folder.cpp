@@ -1,7 +1,6 @@
 #include "capture_io/capture_folder.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <stdexcept>
@@ -107,18 +106,6 @@ T: !!opencv-matrix
 )";
 
 }  // namespace
-
-TemporaryFolder::TemporaryFolder() {
-  static int count = 0;
-  path_ = fs::canonical(fs::temp_directory_path()) /
-          fmt::format("hookeye-test-{}-{}", ::getpid(), count++);
-  fs::create_directories(path_);
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
 
 CaptureFixture::CaptureFixture() : yaml(valid_yaml) {
   fs::create_directories(folder() / "photos");

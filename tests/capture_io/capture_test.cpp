@@ -32,6 +32,7 @@ TEST(CaptureTest, HeadBodyAndModel) {
   EXPECT_EQ(c.body.texture_image, fixture.folder() / "albedo.png");
   EXPECT_EQ(c.body.texture_encoding->kind, Encoding::Kind::srgb);
   EXPECT_TRUE(c.body.fit_placement);
+  EXPECT_FALSE(c.body.flat_shading);
   ASSERT_EQ(c.materials.size(), 1u);
   EXPECT_EQ(c.materials[0].law, "neo-hookean");
   EXPECT_EQ(c.materials[0].parameters.at("mu").numbers, std::vector<double>{0.05});
@@ -40,6 +41,12 @@ TEST(CaptureTest, HeadBodyAndModel) {
   EXPECT_EQ(c.fit, (std::vector<std::string>{"mu", "kappa"}));
   EXPECT_EQ(c.fit_places[1].column, 13);
   EXPECT_EQ(*c.gravity, Vector3d(0, 0, -9810));
+}
+
+TEST(CaptureTest, FlatShading) {
+  CaptureFixture fixture;
+  fixture.replace("  placement: fit", "  shading: flat");
+  EXPECT_TRUE(read_fixture(fixture).body.flat_shading);
 }
 
 TEST(CaptureTest, CamerasAndLight) {

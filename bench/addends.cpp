@@ -1,0 +1,142 @@
+// Draws one addend of every kind from the law itself: bench_addends > docs/images/addends.svg
+// Blue: energy; red: its slope, the stress; dots: control points. Each scaled to its own panel.
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <iostream>
+
+#include "simulation/additive.h"
+
+namespace hookeye {
+namespace {
+
+constexpr double kWide = 220, kHigh = 150, kMargin = 34;
+
+struct Panel {
+  std::string title, axis;
+  AdditiveModel model;
+  double low, high;
+};
+
+Panel one(const std::string& title, const std::string& component, std::vector<double> at,
+          std::vector<double> values, double low, double high) {
+  Panel panel{title, component, {}, low, high};
+  add_addend(
+      panel.model, component, std::move(at), {},
+      Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
+  return panel;
+}
+
+std::vector<Panel> panels() {
+  std::vector<Panel> all = {
+      one("quadratic: one control point", "E11", {0}, {1}, -0.4, 0.4),
+      one("stiffening", "E11", {-0.3, 0, 0.15, 0.3}, {1, 1, 2, 5}, -0.4, 0.4),
+      one("tension unlike compression", "E11", {-0.05, 0.05}, {0.3, 2}, -0.4, 0.4),
+      one("shear: an even function", "E12", {0, 0.15, 0.3}, {0.5, 1, 3}, -0.4, 0.4),
+      one("rubber that softens, then stiffens", "I1bar", {0, 0.6, 1.5}, {1, 0.5, 1.5}, 0, 1.8),
+      one("volume: J - 1", "J", {-0.3, 0, 0.3}, {5, 2, 1}, -0.5, 0.5),
+      one("a limit: wall from 0.2 over 0.05", "E11", {0}, {1}, -0.4, 0.4)};
+  AdditiveModel& wall = all.back().model;
+  add_addend(wall, "E11", {0.2, 0.25}, {}, Eigen::Vector2d(0, 30));
+  wall.addends.back().name = "E11.wall";
+  wall.addends.back().fixed = true;
+  return all;
+}
+
+/// Polyline of values over [low, high] in the panel at (x0, y0), between `least` and `most`.
+std::string line(const std::vector<double>& values, double x0, double y0, double least, double most,
+                 const char* colour) {
+  std::string points;
+  for (size_t i = 0; i < values.size(); ++i)
+    points +=
+        fmt::format("{:.1f},{:.1f} ",
+                    x0 + kWide * static_cast<double>(i) / static_cast<double>(values.size() - 1),
+                    y0 + kHigh * (1 - (values[i] - least) / (most - least)));
+  return fmt::format("<polyline fill='none' stroke='{}' stroke-width='2' points='{}'/>\n", colour,
+                     points);
+}
+
+std::string draw(const Panel& panel, double x0, double y0) {
+  constexpr int kPoints = 161;
+  std::vector<double> energy, stress;
+  const auto sum = [&](double e) {
+    Eigen::Vector3d all = Eigen::Vector3d::Zero();
+    for (size_t a = 0; a < panel.model.addends.size(); ++a)
+      all += addend_curve(panel.model, static_cast<int>(a), e);
+    return all;
+  };
+  for (int i = 0; i < kPoints; ++i) {
+    const Eigen::Vector3d here = sum(panel.low + (panel.high - panel.low) * i / (kPoints - 1));
+    energy.push_back(here[0]);
+    stress.push_back(here[1]);
+  }
+  const double most = *std::max_element(energy.begin(), energy.end());
+  double steep = 0;
+  for (double s : stress) steep = std::max(steep, std::abs(s));
+  const double least = panel.low < 0 ? -most : 0.0;
+  std::string out = fmt::format(
+      "<text x='{}' y='{}' font-weight='bold'>{}</text><text x='{}' y='{}'>{}</text>\n"
+      "<rect x='{}' y='{}' width='{}' height='{}' fill='none' stroke='#999'/>\n",
+      x0, y0 - 6, panel.title, x0 + kWide - 34, y0 + kHigh + 14, panel.axis, x0, y0, kWide, kHigh);
+  out += line(stress, x0, y0, panel.low < 0 ? -steep : 0, steep, "#d1495b");
+  out += line(energy, x0, y0, least, most, "#2166ac");
+  for (const Addend& a : panel.model.addends)
+    for (double e : a.at)
+      out += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4' fill='#2166ac'/>\n",
+                         x0 + kWide * (e - panel.low) / (panel.high - panel.low),
+                         y0 + kHigh * (1 - (sum(e)[0] - least) / (most - least)));
+  return out;
+}
+
+/// The addend of two components as a map: blue below zero, red above.
+std::string draw_pair(double x0, double y0) {
+  AdditiveModel model;
+  Eigen::VectorXd grid(4);
+  grid << 0.2, 0.5, 1.0, 2.5;
+  add_addend(model, "E11_E22", {-0.1, 0.3}, {-0.1, 0.3}, grid);
+  std::string out = fmt::format(
+      "<text x='{}' y='{}' font-weight='bold'>two components: zero on both axes</text>\n", x0,
+      y0 - 6);
+  constexpr int kCells = 30;
+  double most = 0;
+  const auto psi = [&](double a, double b) {
+    return addend_energy_basis(model, 0, a, b).dot(grid);
+  };
+  for (double s : {-0.4, 0.4}) most = std::max({most, std::abs(psi(s, s)), std::abs(psi(s, -s))});
+  for (int i = 0; i < kCells; ++i)
+    for (int j = 0; j < kCells; ++j) {
+      const double v = psi(-0.4 + 0.8 * (i + 0.5) / kCells, -0.4 + 0.8 * (j + 0.5) / kCells) / most;
+      const int fade = static_cast<int>(255 * (1 - std::sqrt(std::abs(v))));
+      out += fmt::format(
+          "<rect x='{:.1f}' y='{:.1f}' width='{:.2f}' height='{:.2f}' fill='rgb({},{},{})'/>",
+          x0 + kWide * i / kCells, y0 + kHigh * (kCells - 1 - j) / kCells, kWide / kCells + 0.3,
+          kHigh / kCells + 0.3, v > 0 ? 255 : fade, fade, v > 0 ? fade : 255);
+    }
+  for (double a : {-0.1, 0.3})
+    for (double b : {-0.1, 0.3})
+      out += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='4' fill='black'/>\n",
+                         x0 + kWide * (a + 0.4) / 0.8, y0 + kHigh * (0.4 - b) / 0.8);
+  return out + fmt::format("<text x='{}' y='{}'>E11</text><text x='{}' y='{}'>E22</text>\n",
+                           x0 + kWide - 28, y0 + kHigh + 14, x0 - 26, y0 + 12);
+}
+
+void draw_all() {
+  const std::vector<Panel> all = panels();
+  const double column = kWide + kMargin, row = kHigh + 2 * kMargin - 18;
+  std::cout << fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {} {}' font-family='sans-serif' "
+      "font-size='12'>\n<rect width='100%' height='100%' fill='white'/>\n",
+      4 * column + kMargin, 2 * row + 8);
+  for (size_t i = 0; i <= all.size(); ++i) {
+    const double x0 = kMargin + column * static_cast<double>(i % 4);
+    const double y0 = 24 + row * static_cast<double>(i / 4);
+    std::cout << (i < all.size() ? draw(all[i], x0, y0) : draw_pair(x0, y0));
+  }
+  std::cout << "</svg>\n";
+}
+
+}  // namespace
+}  // namespace hookeye
+
+int main() { hookeye::draw_all(); }

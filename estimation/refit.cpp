@@ -1,0 +1,150 @@
+#include "estimation/refit.h"
+
+#include <algorithm>
+
+namespace hookeye {
+
+namespace {
+
+constexpr size_t kSecondRound = 4;
+
+bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
+
+/// The effect that has its own mesh in this form. Null: the mesh stays.
+const Effect* remeshed_by(const Ingredient& ingredient) {
+  const Effect* effect = find_effect(ingredient.name());
+  return effect && effect->remeshes(ingredient.variant()) ? effect : nullptr;
+}
+
+/// The model with one effect more on the present mesh, and where to start it.
+struct Extension {
+  ModelForm form;
+  VectorXd start;
+
+  /// `share` of the scored step. The refit form may have other parameters than the scored one (log
+  /// stiffness for compliance): it is told where the scored one would start.
+  Extension(const Fitted& current, const EffectScore& score, double share) : form(current.form) {
+    const auto scored = score.best->parameters();
+    VectorXd values = score.values;
+    for (int i = 0; i < values.size(); ++i)
+      values[i] = scored[i].value + share * (values[i] - scored[i].value);
+    const Model model = current.form.realise(current.p);
+    auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values);
+    if (remeshed_by(*ingredient)) {  // what the other mesh changes, linear, stands for it here
+      ingredient = score.best;
+      values = score.values;
+    }
+    const auto parameters = ingredient->parameters();
+    for (int i = 0; i < values.size(); ++i)
+      values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
+    form.ingredients.push_back(std::move(ingredient));
+    start.resize(current.p.size() + values.size());
+    start << current.p, values;
+  }
+};
+
+/// The linear step is a direction more than a length: where it has no equilibrium or is worse than
+/// the null, `run(extension)` starts nearer to the null.
+template <class Run>
+auto from_shares(const Fitted& current, const EffectScore& score, const FitOptions& options,
+                 const Run& run) {
+  auto result = run(Extension(current, score, 1.0));
+  for (double share : {0.3, 0.1, 0.0}) {
+    const auto* failure = std::get_if<NumericalFailure>(&result);
+    if (!failure || cancelled(*failure) || (options.cancel && options.cancel->load())) break;
+    result = run(Extension(current, score, share));
+  }
+  return result;
+}
+
+FitOptions warm(const FitOptions& options) {
+  FitOptions out = options;
+  out.coarse_to_fine = false;
+  return out;
+}
+
+/// The refit form of `scored`, when it lives on a mesh of its own. Null: it does not.
+std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
+                                                 const std::shared_ptr<const Ingredient>& scored,
+                                                 VectorXd values) {
+  auto form = find_effect(scored->name())->refit_form(model, scored, values);
+  return remeshed_by(*form) ? form : nullptr;
+}
+
+/// Fits `model` on the mesh of `remeshing`, which is added to it.
+std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, const Model& model,
+                                                       std::shared_ptr<const Ingredient> remeshing,
+                                                       const FitOptions& options) {
+  const Effect& effect = *remeshed_by(*remeshing);
+  auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing->variant()));
+  form.ingredients.push_back(std::move(remeshing));
+  return fit(workspace, form, start, warm(options));
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
+                                                  const EffectScore& score,
+                                                  const FitOptions& options) {
+  const Model model = current.form.realise(current.p);
+  if (auto remeshing = remeshing_form(model, score.best, score.values))
+    return fit_on_its_mesh(workspace, model, remeshing, options);
+  return from_shares(current, score, options, [&](const Extension& extension) {
+    return fit(workspace, extension.form, extension.start, warm(options));
+  });
+}
+
+std::variant<std::vector<Racer>, NumericalFailure> race(
+    Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
+    const FitOptions& options, const std::function<void(const Racer&)>& tried) {
+  std::vector<Racer> racers;
+  const auto scale = trial_scale(workspace, current.form, current.p, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+  auto step = [&](const ModelForm& form, const VectorXd& start) {
+    return try_step(workspace, form, start, std::get<TrialScale>(scale), options);
+  };
+  for (const EffectScore& score : diagnosis.effects) {
+    if (!nameable(score, diagnosis)) continue;
+    ModelForm form;
+    auto result = from_shares(current, score, options, [&](const Extension& extension) {
+      form = extension.form;
+      return step(form, extension.start);
+    });
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (cancelled(*failure)) return *failure;
+      continue;
+    }
+    racers.push_back({score.effect, std::move(form), std::get<Trial>(std::move(result))});
+    if (tried) tried(racers.back());
+  }
+  auto sort = [&] {
+    std::stable_sort(racers.begin(), racers.end(),
+                     [](const Racer& a, const Racer& b) { return a.chi() < b.chi(); });
+  };
+  sort();
+  for (size_t i = 0; racers.size() > 1 && i < std::min(kSecondRound, racers.size()); ++i) {
+    auto result = step(racers[i].form, racers[i].trial.p);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (cancelled(*failure)) return *failure;
+      continue;
+    }
+    racers[i].trial = std::get<Trial>(std::move(result));
+    if (tried) tried(racers[i]);
+  }
+  sort();
+  return racers;
+}
+
+std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& racer,
+                                             const FitOptions& options) {
+  const auto& scored = racer.form.ingredients.back();
+  const auto added = static_cast<Eigen::Index>(scored->parameters().size());
+  ModelForm before = racer.form;
+  before.ingredients.pop_back();
+  const Model model = before.realise(racer.trial.p.head(racer.trial.p.size() - added));
+  if (auto remeshing = remeshing_form(model, scored, racer.trial.p.tail(added)))
+    return fit_on_its_mesh(workspace, model, remeshing, options);
+  return fit(workspace, racer.form, racer.trial.p, warm(options));
+}
+
+}  // namespace hookeye

@@ -1,0 +1,40 @@
+// Fitting again with one effect more: to the end, or a few steps to see who gets far.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimation/diagnosis.h"
+#include "estimation/fit.h"
+
+namespace hookeye {
+
+/// Refits with one effect: the scored candidate moved to its refit form, warm-started.
+std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
+                                                  const EffectScore& score,
+                                                  const FitOptions& options);
+
+/// An effect after some steps of its refit.
+struct Racer {
+  std::string effect;
+  ModelForm form;
+  Trial trial;
+  double chi() const { return trial.chi_fit + trial.chi_validate; }
+};
+
+/// All nameable effects, each given one Gauss-Newton step from its linear step and the first four
+/// another, by falling success on fitted and held-out photos together. The linear score knows a
+/// model's first step only: an effect that needs three (stiffening, a clamp) loses there to a field
+/// that needs one. Effects without equilibrium on the way drop out. A finer mesh runs as what it
+/// changes, to first order: only its refit is on that mesh.
+std::variant<std::vector<Racer>, NumericalFailure> race(
+    Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
+    const FitOptions& options, const std::function<void(const Racer&)>& tried = {});
+
+/// Goes on from where the race has left off.
+std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& racer,
+                                             const FitOptions& options);
+
+}  // namespace hookeye

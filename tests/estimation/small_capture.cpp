@@ -1,0 +1,58 @@
+#include "tests/estimation/small_capture.h"
+
+#include <unistd.h>
+
+#include <atomic>
+
+#include "estimation/synth.h"
+
+namespace hookeye::test {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string recipe(const SmallCapture& capture) {
+  return "hookeye_recipe: 1\nseed: " + std::to_string(capture.seed) + R"(
+title: small block
+body:
+  shape: block
+  size: [20, 16, 34]
+  bumps: 0.05
+  facet: 7
+  mesh: {edge: 8}
+  density: 1.07e-9
+  texture: {texel: 0.12, speckle: 1.4}
+material:
+  law: neo-hookean
+  true: {mu: 0.02, kappa_over_mu: 10}
+  told: {mu: )" +
+         capture.told + R"(}
+  fit: [mu]
+cameras: {count: 2, size: [200, 260], distance: 6, focal: 950}
+examples:
+  rest: {}
+  pull: {force: [0, 0, 0.3]}
+  side: {force: [0.012, 0.006, 0]}
+  twist: {rotate: 20}
+  poke: {use: validate, force: [-0.008, 0.01, 0.12]}
+)" + capture.hidden +
+         "truth: {edge_factor: " + capture.truth_mesh +
+         (capture.same_renderer ? ", rays_per_axis: 3, visibility_rays: 64}\n"
+                                : ", rays_per_axis: 4, visibility_rays: 256}\n");
+}
+
+}  // namespace
+
+SmallScene::SmallScene(const SmallCapture& capture) {
+  static std::atomic<int> count{0};
+  folder_ = fs::temp_directory_path() /
+            ("hookeye_small_" + std::to_string(getpid()) + "_" + std::to_string(count++));
+  fs::create_directories(folder_);
+  const auto made = synthesize(parse_recipe(recipe(capture), "recipe.yaml"), folder_ / "capture");
+  scene = load_scene(read_capture(std::get<Synthesis>(made).capture));
+}
+
+SmallScene::~SmallScene() { fs::remove_all(folder_); }
+
+}  // namespace hookeye::test

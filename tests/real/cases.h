@@ -1,0 +1,43 @@
+// What is measured on the real captures: shared by the tests and by the figures of docs/.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "estimation/diagnosis.h"
+#include "real/captures.h"
+
+namespace hookeye::real {
+
+/// A capture folder, opened and fitted from what it tells.
+struct Case {
+  std::shared_ptr<const Scene> scene;
+  std::unique_ptr<Workspace> workspace;
+  Fitted fitted;
+  /// Value and interval of a parameter by name; throws std::out_of_range.
+  struct Value {
+    double value, low, high;
+  };
+  Value parameter(const std::string& name) const;
+};
+/// Throws std::runtime_error with example and reason where the numbers fail.
+Case fit_capture(const fs::path& folder);
+Diagnosis diagnose_case(Case& fitted);
+/// Every effect that could be tested, best first: evidence, share, sentence. One line each.
+std::string table(const Diagnosis& diagnosis);
+
+/// Published displacements of an openhole step against the model's, and against the model's plus
+/// the residual displacement that its picture shows [px rms of a component].
+struct DicDifference {
+  double model_px = 0, with_residual_px = 0, largest_px = 0;
+  int points = 0, outside = 0;  ///< outside: no cell of the residual displacement there
+};
+DicDifference compare_with_dic(const Case& openhole, const fs::path& data, int step);
+
+/// Intersection over union of a silhouette with the model's, over the pixels that count.
+double overlap(const Case& fitted, int example);
+
+/// Width [px] of the upper notch's mouth, `below` px under its lips; 0: none found.
+double mouth_px(const Image& inside, int below);
+
+}  // namespace hookeye::real

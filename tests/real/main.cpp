@@ -1,0 +1,98 @@
+// real_data_figures SHARED_DATA/real OUT [CASE]: the captures of the shared real data
+// (OUT/capture/...), what Hookeye makes of them (standard output) and the pictures of
+// docs/real-data.md (OUT/*.png).
+#include <fmt/format.h>
+
+#include <exception>
+
+#include "estimation/discover.h"
+#include "real/cases.h"
+#include "real/pictures.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace hookeye;
+
+void print_parameters(const real::Case& fitted) {
+  const auto all = fitted.fitted.form.parameters();
+  for (size_t i = 0; i < all.size(); ++i)
+    fmt::print("  {:18} {:11.5g}   {:11.5g} .. {:11.5g} {}\n", all[i].name, fitted.fitted.p[i],
+               fitted.fitted.low[i], fitted.fitted.high[i], all[i].unit);
+  for (const auto& sentence : fitted.fitted.undetermined) fmt::print("  {}\n", sentence);
+}
+
+void openhole(const fs::path& data, const fs::path& out) {
+  real::write_openhole(data, out / "capture" / "openhole", {4, 9, 11});
+  real::Case bar = real::fit_capture(out / "capture" / "openhole");
+  print_parameters(bar);
+  auto show = [&](const std::string& name) {
+    for (int step : {4, 9, 11}) {
+      const auto dic = real::compare_with_dic(bar, data, step);
+      fmt::print("  step {:2}: model {:.4f} px, with residual {:.4f} px rms, most {:.3f} px\n",
+                 step, dic.model_px, dic.with_residual_px, dic.largest_px);
+    }
+    const int e = bar.scene->example_index("step11");
+    real::write_motion(out / ("openhole-" + name + ".png"),
+                       bar.fitted.evaluation.find(e)->photos.at(0).flow, 0.2);
+  };
+  show("isotropic");
+  const Diagnosis diagnosis = real::diagnose_case(bar);
+  fmt::print("{}", real::table(diagnosis));
+  for (const auto& effect : diagnosis.effects) {
+    if (effect.effect != "anisotropy" || !effect.testable) continue;
+    auto refit = add_effect(*bar.workspace, bar.fitted, effect, {});
+    if (!std::holds_alternative<Fitted>(refit)) continue;
+    const double before = bar.fitted.evaluation.chi(false);
+    bar.fitted = std::get<Fitted>(std::move(refit));
+    fmt::print("with anisotropy: chi {:.4f} -> {:.4f}\n", before, bar.fitted.evaluation.chi(false));
+    print_parameters(bar);
+    show("anisotropic");
+  }
+}
+
+void silicone(const fs::path& data, const fs::path& out, real::Silicone told) {
+  const std::string name = fmt::format("silicone-{}", told.material);
+  real::write_diffcal(data, out / "capture" / name, told);
+  real::Case bar = real::fit_capture(out / "capture" / name);
+  fmt::print("{}: overlap {:.4f}, E/rho {:.1f} m2/s2, {} iterations, {}\n", name,
+             real::overlap(bar, 0), 2.98e4 * bar.parameter("mu").value / told.density_si,
+             bar.fitted.iterations, bar.fitted.converged ? "converged" : "not converged");
+  print_parameters(bar);
+  real::write_overlay(out / (name + ".png"),
+                      bar.fitted.evaluation.examples.at(0).photos.at(0).model,
+                      bar.scene->photos[0][0].planes[0], bar.scene->photos[0][0].valid);
+}
+
+void tango(const fs::path& data, const fs::path& out) {
+  // No picture of these: the data has no licence.
+  real::write_tango_holes(data, out / "capture" / "tango", {20, 60}, 0.17);
+  print_parameters(real::fit_capture(out / "capture" / "tango"));
+}
+
+void run(const fs::path& data, const fs::path& out, const std::string& only) {
+  fs::create_directories(out);
+  auto wanted = [&](const char* name) { return only.empty() || only == name; };
+  if (wanted("openhole")) openhole(data / "openhole_cfrp", out);
+  real::Silicone red, blue;
+  blue.material = 'm', blue.density_si = 1180.0, blue.start_mu_si = 80000.0;
+  if (wanted("red")) silicone(data / "diffcal_silicone", out, red);
+  if (wanted("blue")) silicone(data / "diffcal_silicone", out, blue);
+  if (wanted("tango")) tango(data / "tango_elastomer_sheet", out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3 && argc != 4) {
+    fmt::print(stderr, "usage: real_data_figures SHARED_DATA/real OUT [openhole|red|blue|tango]\n");
+    return 2;
+  }
+  try {
+    run(argv[1], argv[2], argc == 4 ? argv[3] : "");
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,49 @@
+// Open-hole tension of a carbon/epoxy bar: the standard use of digital image correlation, on photos
+// of the 2D DIC Challenge.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "real/cases.h"
+#include "support/shared_data.h"
+#include "support/temporary_folder.h"
+
+namespace hookeye {
+namespace {
+
+const char* const kData = "real/openhole_cfrp";
+
+class OpenHole : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const auto data = test::shared_data() / kData;
+    if (!std::filesystem::exists(data)) return;
+    folder_ = std::make_unique<test::TemporaryFolder>();
+    real::write_openhole(data, folder_->path(), {4, 9, 11});
+    bar_ = std::make_unique<real::Case>(real::fit_capture(folder_->path()));
+  }
+  static void TearDownTestSuite() {
+    bar_.reset();
+    folder_.reset();
+  }
+  void SetUp() override { HOOKEYE_NEEDS_DATA(kData); }
+
+  inline static std::unique_ptr<test::TemporaryFolder> folder_;
+  inline static std::unique_ptr<real::Case> bar_;
+};
+
+/// What the model has plus what it lacks is the published displacement, point by point.
+TEST_F(OpenHole, ModelPlusResidualIsThePublishedDisplacement) {
+  for (int step : {4, 9, 11}) {
+    const auto seen = real::compare_with_dic(*bar_, test::shared_data() / kData, step);
+    fmt::print(
+        "step {}: model {:.4f} px rms from the published, with its residual {:.4f} (most "
+        "{:.3f}), {} points, {} outside\n",
+        step, seen.model_px, seen.with_residual_px, seen.largest_px, seen.points, seen.outside);
+    ASSERT_EQ(seen.points + seen.outside, 230);
+    EXPECT_GE(seen.points, 225);
+    EXPECT_LT(seen.with_residual_px, 0.05) << "step " << step;
+  }
+}
+
+}  // namespace
+}  // namespace hookeye

@@ -1,0 +1,404 @@
+// The additive law: against textbook laws, automatic differentiation and finite differences.
+#include "simulation/additive.h"
+
+#include <ceres/jet.h>
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "simulation/blocks.h"
+#include "simulation/ellipticity.h"
+#include "simulation/energy_model.h"
+#include "support/derivative.h"
+
+namespace hookeye {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Law = std::shared_ptr<const EnergyTerm>;
+
+Matrix3d some_frame() { return Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()).matrix(); }
+
+/// One addend of every kind, control points on both sides, a wall, a barrier.
+AdditiveModel every_kind() {
+  AdditiveModel model;
+  model.frame = some_frame();
+  add_addend(model, "E11", {-0.2, 0.05, 0.3}, {}, Vector3d(0.8, 1.0, 3.0));
+  add_addend(model, "E22", {-0.1, 0.4}, {}, Eigen::Vector2d(1.2, 2.5));
+  add_addend(model, "E12", {0.0, 0.1, 0.3}, {}, Vector3d(0.7, 0.9, 2.0));
+  add_addend(model, "E13", {-0.1, 0.1}, {}, Eigen::Vector2d(0.3, 0.6));
+  add_addend(model, "E23", {0.05}, {}, VectorXd::Constant(1, 0.4));
+  add_addend(model, "E33", {0.0}, {}, VectorXd::Constant(1, 0.9));
+  VectorXd grid(6);
+  grid << 0.1, 0.2, 0.15, 0.3, 0.1, 0.25;
+  add_addend(model, "E11_E22", {-0.1, 0.2}, {-0.2, 0.02, 0.3}, grid);
+  add_addend(model, "E22_E33", {0.0}, {0.0}, VectorXd::Constant(1, 0.2));
+  add_addend(model, "trE", {-0.3, 0.2, 0.5}, {}, Vector3d(0.2, 0.5, 0.7));
+  add_addend(model, "I1bar", {0.0, 0.3, 0.8}, {}, Vector3d(0.5, 0.2, 0.6));
+  add_addend(model, "J", {-0.3, 0.1}, {}, Eigen::Vector2d(5.0, 3.0));
+  add_addend(model, "fibre1", {-0.2, 0.0, 0.3}, {}, Vector3d(0.0, 0.5, 2.0));
+  model.components[component_index(model, "fibre1")].direction = Vector3d(1, 1, 0.5).normalized();
+  add_addend(model, "E11", {0.35, 0.4}, {}, Eigen::Vector2d(0.0, 20.0));
+  model.addends.back().name = "E11.wall";
+  model.addends.back().fixed = true;
+  model.barrier_modulus = 0.7;
+  model.barrier_below = 0.6;
+  return model;
+}
+
+/// The energy written anew from additive.h: values of Psi'' integrated by Simpson's rule over the
+/// pieces, exact for the linear integrand times a linear weight.
+template <class T>
+T curvature(const Addend& a, T x) {
+  const auto& at = a.at;
+  const auto n = static_cast<int>(at.size());
+  if (x <= at.front()) return T(a.stiffness[0]);
+  if (x >= at.back()) return T(a.stiffness[n - 1]);
+  int i = 0;
+  while (x > at[i + 1]) ++i;
+  const T t = (x - at[i]) / (at[i + 1] - at[i]);
+  return a.stiffness[i] * (1.0 - t) + a.stiffness[i + 1] * t;
+}
+/// int_0^x (x - s) f(s) ds, by pieces between the points.
+template <class T, class F>
+T twice_integrated(const std::vector<double>& at, T x, const F& f) {
+  std::vector<T> breaks = {T(0.0), x};
+  for (double p : at)
+    if ((p > 0.0 && p < x) || (p < 0.0 && p > x)) breaks.push_back(T(p));
+  std::sort(breaks.begin(), breaks.end(),
+            [&](const T& a, const T& b) { return x > 0.0 ? a < b : a > b; });
+  T sum(0.0);
+  for (size_t i = 0; i + 1 < breaks.size(); ++i) {
+    const T a = breaks[i], b = breaks[i + 1], m = 0.5 * (a + b);
+    sum += (b - a) / 6.0 * ((x - a) * f(a) + 4.0 * (x - m) * f(m) + (x - b) * f(b));
+  }
+  return sum;
+}
+template <class T>
+T once_integrated(const std::vector<double>& at, T x, int index) {
+  Addend hat;
+  hat.at = at;
+  hat.stiffness = VectorXd::Unit(static_cast<Eigen::Index>(at.size()), index);
+  std::vector<T> breaks = {T(0.0), x};
+  for (double p : at)
+    if ((p > 0.0 && p < x) || (p < 0.0 && p > x)) breaks.push_back(T(p));
+  std::sort(breaks.begin(), breaks.end(),
+            [&](const T& a, const T& b) { return x > 0.0 ? a < b : a > b; });
+  T sum(0.0);
+  for (size_t i = 0; i + 1 < breaks.size(); ++i)
+    sum += 0.5 * (breaks[i + 1] - breaks[i]) *
+           (curvature(hat, breaks[i]) + curvature(hat, breaks[i + 1]));
+  return sum;
+}
+
+template <class T>
+T energy_anew(const AdditiveModel& model, const Eigen::Matrix<T, 3, 3>& F0) {
+  using std::pow;
+  using std::sqrt;
+  const Eigen::Matrix<T, 3, 3> F = F0 * model.frame.cast<T>();
+  const Eigen::Matrix<T, 3, 3> C = F.transpose() * F;
+  const T J = F.row(0).dot(F.row(1).cross(F.row(2)));
+  const auto component = [&](int c) -> T {
+    using K = StrainComponent::Kind;
+    const auto E = [&](int i, int j) -> T { return 0.5 * (C(i, j) - (i == j ? 1.0 : 0.0)); };
+    switch (model.components[c].kind) {
+      case K::e11:
+        return E(0, 0);
+      case K::e22:
+        return E(1, 1);
+      case K::e33:
+        return E(2, 2);
+      case K::e12:
+        return E(0, 1);
+      case K::e13:
+        return E(0, 2);
+      case K::e23:
+        return E(1, 2);
+      case K::trace:
+        return E(0, 0) + E(1, 1) + E(2, 2);
+      case K::i1bar:
+        return sqrt(pow(J, -2.0 / 3) * C.trace() - 3.0);
+      case K::volume:
+        return J - 1.0;
+      case K::fibre:
+        return sqrt((F0 * model.components[c].direction.cast<T>()).squaredNorm()) - 1.0;
+    }
+    return T(0.0);
+  };
+  T sum(0.0);
+  for (const Addend& a : model.addends) {
+    T x = component(a.first);
+    if (a.even && x < 0.0) x = -x;
+    if (a.second < 0) {
+      sum += twice_integrated(a.at, x, [&](const T& s) { return curvature(a, s); });
+      continue;
+    }
+    const T y = component(a.second);
+    for (size_t i = 0; i < a.at.size(); ++i)
+      for (size_t j = 0; j < a.at_second.size(); ++j)
+        sum += a.stiffness[static_cast<Eigen::Index>(i * a.at_second.size() + j)] *
+               once_integrated(a.at, x, static_cast<int>(i)) *
+               once_integrated(a.at_second, y, static_cast<int>(j));
+  }
+  using std::log;
+  if (model.barrier_modulus > 0 && J < model.barrier_below) {
+    const T d = J - model.barrier_below;
+    sum -= model.barrier_modulus * d * d * log(J / model.barrier_below);
+  }
+  return sum;
+}
+
+std::vector<std::pair<std::string, Matrix3d>> deformations() {
+  std::vector<std::pair<std::string, Matrix3d>> all;
+  const Matrix3d turn = Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.5).normalized()).matrix();
+  for (unsigned seed = 1; seed <= 6; ++seed)
+    all.emplace_back("random " + std::to_string(seed),
+                     turn * (Matrix3d::Identity() + 0.25 * test::noise(9, seed).reshaped(3, 3)));
+  all.emplace_back("small", Matrix3d::Identity() + 1e-3 * test::noise(9, 11).reshaped(3, 3));
+  all.emplace_back("strong compression", turn * Vector3d(0.45, 0.9, 0.8).asDiagonal());
+  return all;
+}
+
+TEST(Additive, AgreesWithAutomaticDifferentiation) {
+  using Jet = ceres::Jet<double, 9>;
+  const AdditiveModel model = every_kind();
+  ASSERT_FALSE(fault(model)) << fault(model)->wrong;
+  const Law law = additive(model);
+  for (const auto& [what, F] : deformations()) {
+    Eigen::Matrix<Jet, 3, 3> x;
+    for (int k = 0; k < 9; ++k) x(k % 3, k / 3) = Jet(F(k % 3, k / 3), k);
+    const Jet y = energy_anew<Jet>(model, x);
+    const double scale = law->dP_dF(F).norm();
+    EXPECT_NEAR(law->psi(F), y.a, 1e-13 * scale) << what;
+    EXPECT_LE((law->P(F).reshaped() - y.v).norm(), 1e-12 * scale) << what;
+  }
+}
+
+TEST(Additive, StressAndStiffnessAreDerivatives) {
+  const Law law = additive(every_kind());
+  for (const auto& [what, F] : deformations()) {
+    const Matrix9d D = law->dP_dF(F);
+    EXPECT_LE((D - D.transpose()).norm(), 1e-13 * D.norm()) << what;
+    for (int k = 0; k < 9; ++k) {
+      Matrix3d direction = Matrix3d::Zero();
+      direction(k % 3, k / 3) = 1;
+      const auto P = [&, &F = F](double h) {
+        return VectorXd(law->P(F + h * direction).reshaped());
+      };
+      // The third derivative of a cubic spline jumps at control points: second order, so h is
+      // small.
+      test::expect_derivative(P, D.col(k), 1e-6, 1e-5, what);
+      const auto psi = [&, &F = F](double h) {
+        return VectorXd::Constant(1, law->psi(F + h * direction));
+      };
+      test::expect_derivative(psi, VectorXd::Constant(1, law->P(F)(k % 3, k / 3)), 1e-5, 1e-5,
+                              what);
+    }
+  }
+}
+
+TEST(Additive, ForcesAreLinearInTheControlValues) {
+  const AdditiveModel model = every_kind();
+  const Law law = additive(model);
+  const VectorXd p = model.values();
+  ASSERT_EQ(static_cast<int>(law->parameters(Units{"mm", "N"}).size()), law->size());
+  for (const auto& [what, F] : deformations()) {
+    const auto all = law->all_dP_dtheta(F);
+    for (int k = 0; k < p.size(); ++k) {
+      VectorXd v = p;
+      v[k] += 1.0;
+      const VectorXd change = (law->with(v)->P(F) - law->P(F)).reshaped();
+      EXPECT_LE((change - all.col(k)).norm(), 1e-12 * law->P(F).norm()) << what << ", " << k;
+      EXPECT_EQ(law->dP_dtheta(F, k).reshaped(), all.col(k));
+    }
+    // Without wall and barrier the stress is nothing but the sum.
+    AdditiveModel plain = model;
+    plain.addends.pop_back();
+    plain.barrier_modulus = 0;
+    const Law sum = additive(plain);
+    EXPECT_LE((all * p - VectorXd(sum->P(F).reshaped())).norm(), 1e-12 * sum->P(F).norm()) << what;
+  }
+}
+
+TEST(Additive, NineAddendsAreStVkToRounding) {
+  const Law a = additive(additive_stvk(0.3, 0.05)), b = stvk(0.3, 0.05);
+  EXPECT_EQ(a->size(), 9);
+  for (const auto& [what, F] : deformations()) {
+    const double scale = b->dP_dF(F).norm();
+    EXPECT_NEAR(a->psi(F), b->psi(F), 1e-15 * scale) << what;
+    EXPECT_LE((a->P(F) - b->P(F)).norm(), 1e-15 * scale) << what;
+    EXPECT_LE((a->dP_dF(F) - b->dP_dF(F)).norm(), 1e-15 * scale) << what;
+  }
+}
+
+TEST(Additive, PlaneStVkIsFourAddends) {
+  // Eq. 3 of the paper: W = (lambda/2 + mu)(E11^2 + E22^2) + lambda E11 E22 + 2 mu E12^2.
+  const double lambda = 0.3, mu = 0.05;
+  AdditiveModel plane;
+  const auto one = [](double v) { return VectorXd::Constant(1, v); };
+  add_addend(plane, "E11", {0.0}, {}, one(lambda + 2 * mu));
+  add_addend(plane, "E22", {0.0}, {}, one(lambda + 2 * mu));
+  add_addend(plane, "E11_E22", {0.0}, {0.0}, one(lambda));
+  add_addend(plane, "E12", {0.0}, {}, one(4 * mu));
+  const Law law = additive(plane);
+  for (const auto& [what, F] : deformations()) {
+    const Matrix3d E = 0.5 * (F.transpose() * F - Matrix3d::Identity());
+    const double expected = (lambda / 2 + mu) * (E(0, 0) * E(0, 0) + E(1, 1) * E(1, 1)) +
+                            lambda * E(0, 0) * E(1, 1) + 2 * mu * E(0, 1) * E(0, 1);
+    EXPECT_NEAR(law->psi(F), expected, 1e-16) << what;
+  }
+}
+
+TEST(Additive, ConstantInvariantAddendsAreNeoHooke) {
+  const Law a = additive(additive_neo_hookean(0.05, 0.6)), b = neo_hookean(0.05, 0.6);
+  for (const auto& [what, F] : deformations()) {
+    const double scale = b->dP_dF(F).norm();
+    EXPECT_NEAR(a->psi(F), b->psi(F), 1e-15 * scale) << what;
+    EXPECT_LE((a->P(F) - b->P(F)).norm(), 2e-14 * scale) << what;
+    EXPECT_LE((a->dP_dF(F) - b->dP_dF(F)).norm(), 2e-14 * scale) << what;
+  }
+  const Matrix3d I = Matrix3d::Identity();
+  EXPECT_LE((a->dP_dF(I) - b->dP_dF(I)).norm(), 1e-15);
+  for (const Law& law : {a, b}) {
+    const auto model = as_additive(*law);
+    ASSERT_TRUE(model);
+    EXPECT_LE((model->values() - Eigen::Vector2d(0.05, 0.6)).norm(), 1e-15);
+  }
+  EXPECT_FALSE(as_additive(*yeoh(0.03, 0, 0.001, 0.6)));
+}
+
+TEST(Additive, UniaxialBiaxialShearAndVolumetricCurves) {
+  // Control values are tangent moduli of these very curves.
+  AdditiveModel model;
+  add_addend(model, "E11", {0.0, 0.5}, {}, Eigen::Vector2d(1.0, 5.0));
+  add_addend(model, "E12", {0.0, 0.2}, {}, Eigen::Vector2d(0.4, 0.8));
+  add_addend(model, "I1bar", {0.0, 1.0}, {}, Eigen::Vector2d(0.3, 0.9));
+  add_addend(model, "J", {-0.5, 0.0, 0.5}, {}, Vector3d(4.0, 2.0, 1.0));
+  const auto only = [&](const char* name) {
+    AdditiveModel one = model;
+    one.addends = {*model.find(name)};
+    return additive(one);
+  };
+  for (double l : {1.1, 1.3, 1.5}) {  // E11 = (l^2-1)/2, P11 = l S11, S11 = e + 4 e^2
+    const double e = 0.5 * (l * l - 1);
+    const double S = e <= 0.5 ? e + 4 * e * e : 1.5 + 5 * (e - 0.5);
+    EXPECT_NEAR(only("E11")->P(Vector3d(l, 1, 1).asDiagonal())(0, 0), l * S, 1e-14);
+    EXPECT_NEAR(only("E11")->P(Vector3d(l, l, 1).asDiagonal())(1, 1), 0.0, 1e-15);
+  }
+  for (double g : {0.1, 0.35, -0.35}) {  // simple shear: E12 = g/2; sqrt(I1bar - 3) = |g|
+    Matrix3d F = Matrix3d::Identity();
+    F(0, 1) = g;
+    const double e = std::abs(g) / 2, sign = g < 0 ? -1 : 1;
+    EXPECT_NEAR(only("E12")->P(F)(0, 1), sign * 0.5 * (0.4 * e + e * e), 1e-15);
+    EXPECT_NEAR(only("I1bar")->P(F)(0, 1), sign * (0.3 * std::abs(g) + 0.3 * g * g), 1e-14);
+  }
+  for (double J : {0.7, 1.2, 1.8}) {  // pressure dPsi/dJ
+    const double e = J - 1;
+    const double p = e < 0 ? 2 * e - 2 * e * e : e <= 0.5 ? 2 * e - e * e : 0.75 + (e - 0.5);
+    const double l = std::cbrt(J);
+    EXPECT_NEAR(only("J")->P(l * Matrix3d::Identity())(0, 0), p * l * l, 1e-14);
+  }
+}
+
+TEST(Additive, RefinementLeavesTheFunctionAlone) {
+  const AdditiveModel model = every_kind();
+  AdditiveModel fine = model;
+  const int n = static_cast<int>(model.addends.size()) - 1;  // all but the wall
+  for (int a = 0; a < n; ++a)
+    for (double x : {-0.3, -0.05, 0.0, 0.12, 0.2, 0.6}) {
+      if (model.addends[a].even && x < 0) continue;
+      fine = refined(fine, a, x);
+      if (fine.addends[a].second >= 0) fine = refined(fine, a, x + 0.01, true);
+    }
+  ASSERT_GT(fine.size(), 2 * model.size());
+  EXPECT_EQ(refined(fine, 0, 0.12).size(), fine.size());
+  const Law a = additive(model), b = additive(fine);
+  for (const auto& [what, F] : deformations()) {
+    const double scale = a->dP_dF(F).norm();
+    EXPECT_NEAR(a->psi(F), b->psi(F), 1e-14 * scale) << what;
+    EXPECT_LE((a->P(F) - b->P(F)).norm(), 1e-13 * scale) << what;
+    EXPECT_LE((a->dP_dF(F) - b->dP_dF(F)).norm(), 1e-13 * scale) << what;
+  }
+}
+
+TEST(Additive, FramesOfElementsTurnTheMaterial) {
+  // A frame in the law, the same frame on the part, and a body turned the other way agree.
+  AdditiveModel model = every_kind();
+  model.components[component_index(model, "fibre1")].direction = model.frame.col(0);
+  const Law own = additive(model);
+  AdditiveModel straight = model;
+  straight.frame = Matrix3d::Identity();
+  straight.components[component_index(straight, "fibre1")].direction = Vector3d::UnitX();
+  EnergyModel::Part part{additive(straight), {}, {}};
+  part.frames = model.frame.reshaped(9, 1);
+  for (const auto& [what, F] : deformations()) {
+    EXPECT_NEAR(own->psi(F), part.psi(0, F), 1e-13) << what;
+    EXPECT_LE((own->P(F) - part.P(0, F)).norm(), 1e-12) << what;
+    EXPECT_LE((own->dP_dF(F) - part.dP_dF(0, F)).norm(), 1e-11) << what;
+    EXPECT_LE((own->all_dP_dtheta(F) - part.all_dP_dtheta(0, F)).norm(), 1e-12) << what;
+    EXPECT_LE((own->dP_dtheta(F, 3) - part.dP_dtheta(0, F, 3)).norm(), 1e-13) << what;
+  }
+  const CylinderFrame tube{Vector3d::UnitZ(), Vector3d(1, 0, 0)};
+  const Eigen::MatrixXd frames = cylinder_frames(tube, Vector3d(1, 2, 5));
+  EXPECT_LE((frames.reshaped(3, 3).col(0) - Vector3d::UnitY()).norm(), 1e-15);
+  EXPECT_LE((frames.reshaped(3, 3).col(1) + Vector3d::UnitX()).norm(), 1e-15);
+}
+
+TEST(Additive, CountsStrainsBeyondTheControlPoints) {
+  const AdditiveModel model = every_kind();
+  VectorXd e = VectorXd::Zero(static_cast<Eigen::Index>(model.components.size()));
+  for (bool beyond : beyond_control_points(model, e)) EXPECT_FALSE(beyond);
+  e[model.find("E11")->first] = 0.31;
+  e[model.find("E12")->first] = -0.31;
+  const auto beyond = beyond_control_points(model, e);
+  EXPECT_TRUE(beyond[0]);       // E11
+  EXPECT_TRUE(beyond[2]);       // E12, mirrored
+  EXPECT_TRUE(beyond[6]);       // E11_E22
+  EXPECT_FALSE(beyond[5]);      // E33: a constant
+  EXPECT_FALSE(beyond.back());  // the wall
+}
+
+TEST(Ellipticity, StVkLosesItAtUniaxialStretchOfOneOverRootThree) {
+  const auto at = [](double lambda, double l) {
+    return ellipticity(stvk(lambda, 0.05)->dP_dF(Vector3d(l, 1, 1).asDiagonal())).smallest;
+  };
+  // P11 = (lambda/2 + mu)(l^3 - l) has its minimum at l = 1/sqrt(3) = 0.57735, where the wave along
+  // the stretch stands still; oblique waves do so a little before.
+  const double critical = 1 / std::sqrt(3.0);
+  for (double lambda : {0.0, 0.1, 0.3})
+    EXPECT_NEAR(stvk(lambda, 0.05)->dP_dF(Vector3d(critical, 1, 1).asDiagonal())(0, 0), 0.0, 1e-16);
+  EXPECT_LT(at(0, critical), 0.0);
+  EXPECT_GT(at(0, critical + 0.03), 0.0);
+  EXPECT_NEAR(at(0, 0.5), 0.05 * (3 * 0.25 - 1), 1e-9);
+  // With lambda the pressure across the stretch is first: m along, n across it,
+  // S22 + mu l^2 = lambda (l^2 - 1)/2 + mu l^2 = 0 at l^2 = 0.75 for lambda = 6 mu.
+  EXPECT_GT(at(0.3, std::sqrt(0.75) + 0.02), 0.0);
+  EXPECT_LT(at(0.3, std::sqrt(0.75) - 1e-4), 0.0);
+  EXPECT_LT(at(0.3, critical), 0.0);
+  // At rest: mu, the slower of the two waves.
+  EXPECT_NEAR(at(0.3, 1.0), 0.05, 1e-12);
+}
+
+TEST(Ellipticity, NoPairOfDirectionsLiesBelow) {
+  const Law law = additive(every_kind());
+  for (const auto& [what, F] : deformations()) {
+    const Matrix9d D = law->dP_dF(F);
+    const Ellipticity found = ellipticity(D);
+    double least = std::numeric_limits<double>::infinity();
+    for (unsigned seed = 1; seed <= 3000; ++seed) {
+      const VectorXd r = test::noise(6, seed);
+      const VectorXd mn =
+          (r.head<3>().normalized() * r.tail<3>().normalized().transpose()).reshaped();
+      least = std::min(least, mn.dot(D * mn));
+    }
+    EXPECT_LE(found.smallest, least + 1e-12) << what;
+    EXPECT_GE(found.smallest, least - 0.1 * D.norm()) << what;
+    const VectorXd own = (found.m * found.n.transpose()).reshaped();
+    EXPECT_NEAR(own.dot(D * own), found.smallest, 1e-9 * D.norm()) << what;
+  }
+}
+
+}  // namespace
+}  // namespace hookeye
