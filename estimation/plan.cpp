@@ -68,8 +68,8 @@ struct Judged {
   VectorXd difference;  ///< the effect at its size minus its imitation, over all columns
 };
 
-Judged separate(const Prediction& prediction, const Eigen::MatrixXd& H, const PlanHypothesis& a,
-                const PlanHypothesis& b) {
+Judged separate(const Prediction& prediction, const Eigen::MatrixXd& H, double count,
+                const PlanHypothesis& a, const PlanHypothesis& b) {
   std::vector<int> columns(static_cast<size_t>(prediction.base));
   for (int i = 0; i < prediction.base; ++i) columns[i] = i;
   VectorXd step = VectorXd::Zero(H.rows());
@@ -85,19 +85,20 @@ Judged separate(const Prediction& prediction, const Eigen::MatrixXd& H, const Pl
   out.separation.rival = b.name;
   if (alone.left > 0.0)
     out.separation.cosine = std::sqrt(std::clamp(1.0 - both.left / alone.left, 0.0, 1.0));
-  out.separation.margin = 0.5 * both.left / prediction.noise;
+  // what refit_score() would lose with the rival in the effect's place
+  out.separation.margin = 0.5 * count * std::log1p(both.left / (count * prediction.noise));
   out.difference = both.step;
   return out;
 }
 
 /// The pair that is told apart worst, either of the two being the truth.
-Judged worst_pair(const Prediction& prediction, const Eigen::MatrixXd& H) {
+Judged worst_pair(const Prediction& prediction, const Eigen::MatrixXd& H, double count) {
   Judged worst;
   worst.separation.margin = std::numeric_limits<double>::infinity();
   for (const auto& a : prediction.confused)
     for (const auto& b : prediction.confused) {
       if (&a == &b) continue;
-      Judged one = separate(prediction, H, a, b);
+      Judged one = separate(prediction, H, count, a, b);
       if (one.separation.margin < worst.separation.margin) worst = std::move(one);
     }
   return worst;
@@ -135,7 +136,7 @@ PlanRating rate(const Prediction& prediction, const PredictedPhotos& photos,
   out.photos = static_cast<int>(photos.views.size());
   const Eigen::MatrixXd H = prediction.H + photos.H;
   if (prediction.confused.size() > 1) {
-    const Judged judged = worst_pair(prediction, H);
+    const Judged judged = worst_pair(prediction, H, prediction.count + photos.count);
     out.worst = judged.separation;
     const Difference difference = difference_of(photos, judged.difference);
     out.px = difference.px;
@@ -191,7 +192,8 @@ std::variant<Plan, NumericalFailure> plan(const Fitted& fitted, const Diagnosis&
   auto result = predict(fitted, diagnosis, out.confused, out.untestable, options);
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   const Prediction& prediction = std::get<Prediction>(result);
-  if (prediction.confused.size() > 1) out.now = worst_pair(prediction, prediction.H).separation;
+  if (prediction.confused.size() > 1)
+    out.now = worst_pair(prediction, prediction.H, prediction.count).separation;
   for (const auto& photos : prediction.photos)
     out.ratings.push_back(rate(prediction, photos, out.now));
   std::stable_sort(out.ratings.begin(), out.ratings.end(), better);

@@ -110,8 +110,12 @@ Shares sum_present(const Scene& scene, const ViewPhotos& of_photo, const Evaluat
       const double w = flow.effective / flow.count;
       shares.add(photos[photo.photo].camera, w);
       out.H += w * photo.sums.JtJ;
+      out.count += flow.effective;
     }
-    for (const auto& measured : example.measured) out.H += measured.J.transpose() * measured.J;
+    for (const auto& measured : example.measured) {
+      out.H += measured.J.transpose() * measured.J;
+      out.count += 3.0;
+    }
   }
   return shares;
 }
@@ -120,6 +124,7 @@ void add_view(const PhotoEvaluation& photo, double share, PredictedPhotos& to) {
   if (photo.count == 0.0) return;
   if (to.H.size() == 0) to.H = Eigen::MatrixXd::Zero(photo.sums.JtJ.rows(), photo.sums.JtJ.cols());
   to.H += share * photo.sums.JtJ;
+  to.count += share * photo.count;
   to.views.push_back({photo.example, photo.photo, photo.count, photo.sums.JtJ});
 }
 
@@ -232,8 +237,10 @@ void predict_load(const Planner& planner, PredictedPhotos& out) {
     photo.sums.JtJ = spread(photo.sums.JtJ, planned->global, columns);
     add_view(photo, planner.shares.of(scene->capture.examples[e].photos[photo.photo].camera), out);
   }
-  for (const auto& measured : example.measured)
+  for (const auto& measured : example.measured) {
     out.H += spread(measured.J.transpose() * measured.J, planned->global, columns);
+    out.count += 3.0;
+  }
   out.planned = planned;
 }
 

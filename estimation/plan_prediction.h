@@ -30,6 +30,7 @@ struct PredictedPhotos {
   PlanCandidate candidate;
   std::string why_not;  ///< no equilibrium, out of sight
   Eigen::MatrixXd H;    ///< sum of J^T J with the effective share, as EffectiveSums::H
+  double count = 0.0;   ///< effective number of residuals
   struct View {
     int example = 0, photo = 0;
     double count = 0.0;
@@ -44,7 +45,8 @@ struct Prediction {
   int base = 0;
   double noise = 1.0;  ///< variance of a cell's standardised estimate
   std::vector<PlanHypothesis> confused, untestable;
-  Eigen::MatrixXd H;  ///< of the photos there are
+  Eigen::MatrixXd H;   ///< of the photos there are
+  double count = 0.0;  ///< their effective number of residuals
   std::vector<PredictedPhotos> photos;
 };
 
