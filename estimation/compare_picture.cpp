@@ -108,6 +108,27 @@ void write_residual_png(const std::filesystem::path& png, const Image& residual)
   write(png, residual_picture(residual));
 }
 
+void write_removed_picture(const std::filesystem::path& png, const Image& residual,
+                           const Image& left, const std::string& title, const std::string& effect) {
+  Image removed = residual;
+  double was = 0.0, is = 0.0, count = 0.0;
+  for (size_t i = 0; i < removed.values.size(); ++i) {
+    const double a = residual.values[i], b = left.values[i];
+    removed.values[i] -= left.values[i];
+    if (std::isnan(a) || std::isnan(b)) continue;
+    was += a * a, is += b * b, count += 1.0;
+  }
+  auto chi = [&](double sum) { return std::sqrt(sum / std::max(count, 1.0)); };
+  cv::Mat now = residual_picture(residual), gone = residual_picture(removed),
+          rest = residual_picture(left), all;
+  label(now, fmt::format("{}  residual, chi = {:.2f}", title, chi(was)), {10, 22}, 0.5);
+  label(gone, fmt::format("{} would remove", effect), {10, 22}, 0.5);
+  label(rest, fmt::format("would be left, chi = {:.2f}", chi(is)), {10, 22}, 0.5);
+  colour_bar(now);
+  cv::hconcat(std::vector<cv::Mat>{now, gone, rest}, all);
+  write(png, all);
+}
+
 void write_compare_picture(const std::filesystem::path& png, const Image& photo,
                            const PhotoEvaluation& evaluation, const std::string& title,
                            double length_per_px, const std::string& length_unit) {

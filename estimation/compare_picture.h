@@ -17,6 +17,11 @@ void write_compare_picture(const std::filesystem::path& png, const Image& photo,
                            const PhotoEvaluation& evaluation, const std::string& title,
                            double length_per_px, const std::string& length_unit);
 
+/// Residual there is, what an effect would remove of it (the difference), and what would be left,
+/// side by side on the same scale.
+void write_removed_picture(const std::filesystem::path& png, const Image& residual,
+                           const Image& left, const std::string& title, const std::string& effect);
+
 /// The residual alone, same colours; transparent pixels do not count (drawn grey).
 void write_residual_png(const std::filesystem::path& png, const Image& residual);
 

@@ -56,6 +56,7 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
         one.hypothesis.typical[i] =
             parameters[i].positive ? std::abs(parameters[i].value) : parameters[i].typical;
       one.hypothesis.one_sided = parameters.size() == 1 && parameters[0].low >= parameters[0].value;
+      if (one.hypothesis.one_sided) one.hypothesis.most = parameters[0].high - parameters[0].value;
       column += one.hypothesis.count;
       all.push_back(std::move(one));
     }
@@ -188,6 +189,20 @@ VectorXd joint_step(int columns, const ProjectedHypothesis& hypothesis, const Ef
   return step;
 }
 
+VectorXd nulls(const Ingredient& ingredient) {
+  const auto parameters = ingredient.parameters();
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) values[i] = parameters[i].value;
+  return values;
+}
+
+void displace(const Evaluation& evaluation, const ProjectedHypothesis& hypothesis,
+              EffectScore& score) {
+  const VectorXd step = joint_step(evaluation.columns, hypothesis, score, nulls(*score.best));
+  for (const auto& example : evaluation.examples)
+    score.displaced[example.example] = example.equilibrium->q + example.S * step;
+}
+
 /// "seen in both cameras, most in 'side'": where the step removes misfit.
 std::string where_seen(const Scene& scene, const Evaluation& evaluation, const VectorXd& step) {
   std::map<std::string, double> by_camera, by_example;
@@ -228,8 +243,7 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   score.best = candidate.ingredient;
   score.dof = candidate.hypothesis.count;
   const auto parameters = candidate.ingredient->parameters();
-  VectorXd null_values(score.dof);
-  for (int i = 0; i < score.dof; ++i) null_values[i] = parameters[i].value;
+  const VectorXd null_values = nulls(*candidate.ingredient);
   // The step and its share come from the plain sums: that is what a refit will minimise.
   const ProjectedHypothesis plain =
       project(context.sums.fitted.JtJ, weighted.base, candidate.hypothesis);
@@ -316,7 +330,7 @@ bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options) {
   Diagnosis out;
-  const Scene& scene = workspace.scene();
+  const Scene& scene = *fitted.form.scene;
   std::vector<EffectScore> idle;
   const std::vector<Candidate> candidates = collect(fitted, options, idle);
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
@@ -369,6 +383,9 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
     return std::pair(a.testable, a.evidence) > std::pair(b.testable, b.evidence);
   });
+  for (int i = 0; i < kPictured && i < static_cast<int>(out.effects.size()); ++i)
+    if (out.effects[i].testable)
+      displace(evaluation, projected[best[out.effects[i].effect]], out.effects[i]);
   out.effects.insert(out.effects.end(), idle.begin(), idle.end());
   return out;
 }

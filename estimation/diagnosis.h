@@ -2,6 +2,7 @@
 // refitting (method.md, "Which effect is missing").
 #pragma once
 
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -34,6 +35,8 @@ struct EffectScore {
   double p_value = 1.0;  ///< of the largest evidence in the catalogue under the simulated null
   double weight = 0.0;   ///< evidence among the tested effects, summing to one
   std::vector<Confusion> confused_with;
+  /// Where the linear step takes the examples (3n each), for the kPictured leading effects.
+  std::map<int, VectorXd> displaced;
   std::string why;  ///< one plain sentence
 };
 
@@ -64,6 +67,9 @@ double without_base(const EffectiveSums& sums, int base);
 /// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
 constexpr double kNameable = 5.0;
 constexpr double kTie = 3.0;
+
+/// So many leading effects have pictures of what they would remove (removed.h).
+constexpr int kPictured = 3;
 
 /// Fall of chi^2 below which an effect is not named although noise alone would not give it: a tenth
 /// of what the rest photos keep over their noise after alignment. That part is texture and shading

@@ -97,8 +97,13 @@ bool cancelled(const NumericalFailure& failure) { return failure.reason == "canc
 /// none.
 bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
 
+bool numerical(const Racer& racer) {
+  return find_effect(racer.effect)->group() == EffectGroup::numerical;
+}
+
 /// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
-/// two steps may still be right.
+/// two steps may still be right. A numerical error that comes near the first is refitted too,
+/// whatever its rank: nothing is named before the mesh is settled.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (static_cast<int>(racers.size()) <= most) return;
   const std::string& first = diagnosis.effects.front().effect;
@@ -106,7 +111,12 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
                                [&](const Racer& racer) { return racer.effect == first; });
   if (at != racers.end() && at - racers.begin() >= most)
     std::rotate(racers.begin() + most - 1, at, at + 1);
-  racers.resize(most);
+  const Racer winner = racers.front();
+  racers.erase(std::remove_if(racers.begin() + most, racers.end(),
+                              [&](const Racer& racer) {
+                                return !numerical(racer) || !may_tie(racer, winner);
+                              }),
+               racers.end());
 }
 
 /// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
@@ -154,7 +164,9 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
   int offset = 0;
   for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
     const int n = static_cast<int>(current.form.ingredients[i]->parameters().size());
-    if (i >= first_effect) {
+    const Effect* effect = find_effect(current.form.ingredients[i]->name());
+    const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
+    if (i >= first_effect && !mesh) {
       ModelForm form = current.form;
       form.ingredients.erase(form.ingredients.begin() + i);
       VectorXd p(current.p.size() - n);

@@ -14,6 +14,12 @@ std::shared_ptr<const Ingredient> Effect::rebuild(const Model&, const std::strin
   return nullptr;
 }
 
+bool Effect::remeshes(const std::string&) const { return false; }
+
+std::shared_ptr<const Scene> Effect::refit_scene(const Scene&, const std::string&) const {
+  return nullptr;
+}
+
 std::shared_ptr<const Ingredient> Effect::refit_form(const Model&,
                                                      std::shared_ptr<const Ingredient> scored,
                                                      Eigen::VectorXd&) const {

@@ -40,6 +40,11 @@ class Effect {
   virtual std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                        std::shared_ptr<const Ingredient> scored,
                                                        Eigen::VectorXd& values) const;
+  /// Whether the form of this variant lives on another mesh than the capture tells; then
+  /// refit_scene() makes the scene to fit on, from the capture of `scene`.
+  virtual bool remeshes(const std::string& variant) const;
+  virtual std::shared_ptr<const Scene> refit_scene(const Scene& scene,
+                                                   const std::string& variant) const;
   /// One plain clause from figures: "self-weight, 9.6 m/s2 towards (0.5, -0.2, -0.8)".
   virtual std::string sentence(const Model& model, const Ingredient& ingredient,
                                const Eigen::VectorXd& values) const = 0;

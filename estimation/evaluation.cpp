@@ -88,7 +88,8 @@ struct Workspace::Impl {
   }
 
   std::vector<int> wanted(const EvaluationOptions& options) const {
-    std::vector<int> examples;
+    std::vector<int> examples = options.only;
+    if (!examples.empty()) return examples;
     for (size_t e = 0; e < scene->capture.examples.size(); ++e)
       if (scene->capture.examples[e].validate ? options.held_out : options.fitted)
         examples.push_back(static_cast<int>(e));
@@ -178,6 +179,7 @@ const Scene& Workspace::scene() const { return *impl_->scene; }
 std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
     const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
+  if (form.scene != impl_->scene) impl_ = std::make_unique<Impl>(form.scene);
   const Model model = form.realise(p);
   std::optional<ColumnSet> columns;
   if (options.derivatives) columns.emplace(form, p, candidates);

@@ -18,9 +18,11 @@ namespace hookeye {
 
 struct EvaluationOptions {
   bool derivatives = true;
-  bool pictures = false;  ///< keep model, residual and flow
-  bool fitted = true;     ///< examples with use: fit
-  bool held_out = false;  ///< examples with use: validate
+  bool pictures = false;   ///< keep model, residual and flow
+  bool residuals = false;  ///< keep model and residual, without the flow
+  bool fitted = true;      ///< examples with use: fit
+  bool held_out = false;   ///< examples with use: validate
+  std::vector<int> only;   ///< these examples whatever their use; empty: by the two flags above
   /// Residuals made linear in the motion (registration.h): `sums`, their cost and the pictures.
   /// Where only pictures are asked for, `sums` alone are of those.
   bool registered = false;
@@ -35,7 +37,9 @@ struct PhotoEvaluation {
   CondensedPhoto sums;  ///< over all columns; r2 is the Huber cost when that is on
   double r2 = 0.0;      ///< plain sum of squared residuals over noise
   double count = 0.0;
-  Image model, residual;  ///< pictures only: linear intensity; over noise, NaN = not counted
+  /// Pictures or residuals only: linear intensity; over noise, NaN = not counted.
+  Image model, residual;
+  std::vector<int> triangle;  ///< pictures only: of the render surface, by pixel; -1: none
   /// Pictures only: what motion would remove the residual (large motions included,
   /// registration.h), what is left once the pictures are aligned, and the sum of squares of the
   /// residual made linear, which `sums` hold too when pictures are on.
@@ -72,6 +76,7 @@ struct Evaluation {
 };
 
 /// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.
+/// Evaluating a form of another scene (a finer mesh) moves the workspace there.
 class Workspace {
  public:
   explicit Workspace(std::shared_ptr<const Scene> scene);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 namespace hookeye {
 
@@ -21,6 +22,7 @@ struct Hypothesis {
   int first = 0, count = 0;
   Eigen::VectorXd typical;  ///< prior scale of each parameter
   bool one_sided = false;   ///< one parameter that may only grow from its null
+  double most = std::numeric_limits<double>::infinity();  ///< and by no more than this
 };
 
 /// Quadratic form left after the base columns: M = H_cc - H_ca H_aa^+ H_ac, eigen-decomposed in
@@ -33,6 +35,7 @@ struct ProjectedHypothesis {
   Eigen::VectorXd typical;
   int first = 0, base = 0;
   bool one_sided = false;
+  double most = std::numeric_limits<double>::infinity();
   /// Largest squared signal over noise that a change of typical size makes: below 4 (two standard
   /// deviations) these photos cannot test the effect.
   double best_signal() const;

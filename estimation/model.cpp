@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "estimation/effect.h"
+
 namespace hookeye {
 
 EnergyModel Model::energy_of(int example) const {
@@ -46,10 +48,49 @@ Model ModelForm::realise(const VectorXd& p) const {
   int offset = 0;
   for (const auto& ingredient : ingredients) {
     const int n = static_cast<int>(ingredient->parameters().size());
-    ingredient->apply(p.segment(offset, n), model);
+    const VectorXd values = p.segment(offset, n);
+    ingredient->apply(values, model);
+    model.applied.emplace_back(ingredient, values);
     offset += n;
   }
   return model;
+}
+
+namespace {
+
+std::shared_ptr<const Ingredient> same_ingredient(const ModelForm& base, const ModelForm& so_far,
+                                                  const VectorXd& p, const Ingredient& wanted) {
+  for (const auto& ingredient : base.ingredients)
+    if (ingredient->name() == wanted.name()) return ingredient;
+  const Effect* effect = find_effect(wanted.name());
+  return effect ? effect->candidate(so_far.realise(p), wanted.variant()) : nullptr;
+}
+
+}  // namespace
+
+std::pair<ModelForm, VectorXd> transfer(const Model& model, std::shared_ptr<const Scene> scene) {
+  const ModelForm base = base_form(std::move(scene));
+  ModelForm form = base;
+  form.ingredients.clear();
+  VectorXd p(0);
+  for (const auto& [ingredient, values] : model.applied) {
+    auto same = same_ingredient(base, form, p, *ingredient);
+    if (!same)
+      throw std::runtime_error("no " + ingredient->name() + " [" + ingredient->variant() +
+                               "] on another mesh");
+    std::map<std::string, double> known;
+    const auto before = ingredient->parameters(), declared = same->parameters();
+    for (size_t i = 0; i < before.size(); ++i) known[before[i].name] = values[i];
+    const Eigen::Index offset = p.size();
+    p.conservativeResize(offset + static_cast<Eigen::Index>(declared.size()));
+    for (size_t i = 0; i < declared.size(); ++i) {
+      const auto found = known.find(declared[i].name);
+      p[offset + static_cast<Eigen::Index>(i)] =
+          found == known.end() ? declared[i].value : found->second;
+    }
+    form.ingredients.push_back(std::move(same));
+  }
+  return {form, p};
 }
 
 }  // namespace hookeye

@@ -36,6 +36,8 @@ struct ExampleModel {
   Vector3d force_offset = Vector3d::Zero();  ///< added to predicted measured forces (force_zero)
 };
 
+class Ingredient;
+
 /// The realised model: what equilibrium and rendering need. Ingredients write into it.
 struct Model {
   std::shared_ptr<const Scene> scene;
@@ -47,6 +49,8 @@ struct Model {
   /// Acceleration of the self-weight already among the forces, in the world [length/s^2]: what
   /// turns the set-up afterwards (place) turns the body against it.
   Vector3d gravity = Vector3d::Zero();
+  /// What has been written into it, in order: enough to make the same model of another scene.
+  std::vector<std::pair<std::shared_ptr<const Ingredient>, VectorXd>> applied;
   /// Energy of example e: energy with all weights times examples[e].stiffness.
   EnergyModel energy_of(int example) const;
 };
@@ -102,13 +106,23 @@ bool is_rest(const ExampleSpec& example);
 /// Scene of a capture: reads photos and builds the body (edge_factor as make_body).
 std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_factor = 1.0,
                                         bool with_photos = true);
+/// The scene with another mesh of the same body: `edge_factor` times the told edge, `order` 1 or 2
+/// (0: as told). Without its photos where they are not needed. Throws InputError as make_body.
+std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, int order,
+                                      bool with_photos);
 /// The base model: material (what `fit:` names), light where it is not told, rigid: fit supports,
 /// placement: fit, uniform albedo, background: fit.
 ModelForm base_form(std::shared_ptr<const Scene> scene);
 
+/// The same model of another scene of the same body (another mesh, more examples): ingredients are
+/// rebuilt by name and variant, values carried over by the parameters' names; what is new starts at
+/// its declared value. Throws std::runtime_error where the scene has no such ingredient.
+std::pair<ModelForm, VectorXd> transfer(const Model& model, std::shared_ptr<const Scene> scene);
+
 /// model.yaml of a run step: base values, added effects with variants and values. Usable as -m.
 std::string write_model(const ModelForm& form, const VectorXd& p);
-/// Throws InputError with the place.
+/// `scene` as the capture tells; the form may live on a finer mesh of it. Throws InputError with
+/// the place.
 std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
                                           std::shared_ptr<const Scene> scene);
 

@@ -83,6 +83,25 @@ std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, co
 
 }  // namespace
 
+namespace {
+
+/// The scene on whose mesh the ingredients live: an effect may have asked for a finer one.
+std::shared_ptr<const Scene> scene_of(const std::vector<YamlNode>& ingredients,
+                                      std::shared_ptr<const Scene> told) {
+  for (const YamlNode& node : ingredients) {
+    const YamlSection section(node, "an ingredient", {"name", "variant", "values"});
+    const YamlNode* name = section.find("name");
+    const YamlNode* variant = section.find("variant");
+    const Effect* effect = name ? find_effect(read_string(*name, "name")) : nullptr;
+    if (!effect || !variant) continue;
+    const std::string wanted = read_string(*variant, "variant");
+    if (effect->remeshes(wanted)) return effect->refit_scene(*told, wanted);
+  }
+  return told;
+}
+
+}  // namespace
+
 std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
                                           std::shared_ptr<const Scene> scene) {
   const YamlNode root = parse_yaml(read_text(file), file.string());
@@ -91,11 +110,12 @@ std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
   const YamlNode& version = top.need("hookeye_model", right);
   if (read_integer(version, "hookeye_model") != 1)
     throw InputError(version.place, "a model of another version", right);
-  const ModelForm base = base_form(scene);
+  const auto& ingredients = read_list(top.need("ingredients", right), "ingredients", right);
+  const ModelForm base = base_form(scene_of(ingredients, std::move(scene)));
   ModelForm form = base;
   form.ingredients.clear();
   std::vector<double> values;
-  for (const YamlNode& node : read_list(top.need("ingredients", right), "ingredients", right)) {
+  for (const YamlNode& node : ingredients) {
     const YamlSection section(node, "an ingredient", {"name", "variant", "values"});
     // variants are chosen on the model so far, as they were when the effect was added
     const Model so_far = form.realise(Eigen::Map<const VectorXd>(values.data(), values.size()));

@@ -343,6 +343,9 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
         one.aligned =
             residual_flow(rendering.I, registered ? registered->residual : residual, sigma);
         one.linear_r2 = loss(residual, 0.0);
+        one.triangle = std::move(rendering.triangle);
+      }
+      if (options.pictures || options.residuals) {
         one.model = std::move(rendering.I);
         one.residual = options.registered ? residual : comparison.residual;
       }

@@ -10,7 +10,13 @@ constexpr size_t kSecondRound = 4;
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// The model with one effect more, and where to start it.
+/// The effect that has its own mesh in this form. Null: the mesh stays.
+const Effect* remeshed_by(const Ingredient& ingredient) {
+  const Effect* effect = find_effect(ingredient.name());
+  return effect && effect->remeshes(ingredient.variant()) ? effect : nullptr;
+}
+
+/// The model with one effect more on the present mesh, and where to start it.
 struct Extension {
   ModelForm form;
   VectorXd start;
@@ -24,6 +30,10 @@ struct Extension {
       values[i] = scored[i].value + share * (values[i] - scored[i].value);
     const Model model = current.form.realise(current.p);
     auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values);
+    if (remeshed_by(*ingredient)) {  // what the other mesh changes, linear, stands for it here
+      ingredient = score.best;
+      values = score.values;
+    }
     const auto parameters = ingredient->parameters();
     for (int i = 0; i < values.size(); ++i)
       values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
@@ -53,11 +63,32 @@ FitOptions warm(const FitOptions& options) {
   return out;
 }
 
+/// The refit form of `scored`, when it lives on a mesh of its own. Null: it does not.
+std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
+                                                 const std::shared_ptr<const Ingredient>& scored,
+                                                 VectorXd values) {
+  auto form = find_effect(scored->name())->refit_form(model, scored, values);
+  return remeshed_by(*form) ? form : nullptr;
+}
+
+/// Fits `model` on the mesh of `remeshing`, which is added to it.
+std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, const Model& model,
+                                                       std::shared_ptr<const Ingredient> remeshing,
+                                                       const FitOptions& options) {
+  const Effect& effect = *remeshed_by(*remeshing);
+  auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing->variant()));
+  form.ingredients.push_back(std::move(remeshing));
+  return fit(workspace, form, start, warm(options));
+}
+
 }  // namespace
 
 std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
                                                   const EffectScore& score,
                                                   const FitOptions& options) {
+  const Model model = current.form.realise(current.p);
+  if (auto remeshing = remeshing_form(model, score.best, score.values))
+    return fit_on_its_mesh(workspace, model, remeshing, options);
   return from_shares(current, score, options, [&](const Extension& extension) {
     return fit(workspace, extension.form, extension.start, warm(options));
   });
@@ -106,6 +137,13 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
 
 std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& racer,
                                              const FitOptions& options) {
+  const auto& scored = racer.form.ingredients.back();
+  const auto added = static_cast<Eigen::Index>(scored->parameters().size());
+  ModelForm before = racer.form;
+  before.ingredients.pop_back();
+  const Model model = before.realise(racer.trial.p.head(racer.trial.p.size() - added));
+  if (auto remeshing = remeshing_form(model, scored, racer.trial.p.tail(added)))
+    return fit_on_its_mesh(workspace, model, remeshing, options);
   return fit(workspace, racer.form, racer.trial.p, warm(options));
 }
 

@@ -27,7 +27,8 @@ struct Racer {
 /// All nameable effects, each given one Gauss-Newton step from its linear step and the first four
 /// another, by falling success on fitted and held-out photos together. The linear score knows a
 /// model's first step only: an effect that needs three (stiffening, a clamp) loses there to a field
-/// that needs one. Effects without equilibrium on the way drop out.
+/// that needs one. Effects without equilibrium on the way drop out. A finer mesh runs as what it
+/// changes, to first order: only its refit is on that mesh.
 std::variant<std::vector<Racer>, NumericalFailure> race(
     Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
     const FitOptions& options, const std::function<void(const Racer&)>& tried = {});

@@ -80,4 +80,17 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_fact
   return scene;
 }
 
+std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, int order,
+                                      bool with_photos) {
+  auto out = std::make_shared<Scene>();
+  out->capture = scene.capture;
+  out->photos.resize(scene.capture.examples.size());
+  out->body = std::make_shared<const Body>(make_body(scene.capture, edge_factor, order));
+  if (!with_photos) return out;
+  out->photos = scene.photos;
+  out->albedo = scene.albedo;
+  out->backgrounds = scene.backgrounds;
+  return out;
+}
+
 }  // namespace hookeye

@@ -4,15 +4,23 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
 #include "estimation/energy_curves.h"
 #include "estimation/page_data.h"
+#include "estimation/removed.h"
 
 namespace hookeye {
 
 using nlohmann::json;
+
+namespace {
+
+constexpr double kNormal95 = 1.959964;  ///< half a 95 % interval in standard deviations
+
+}  // namespace
 
 json to_json(const Floor& floor) {
   return {{"chi", floor.chi}, {"cell_variance", floor.cell_variance}, {"source", floor.source}};
@@ -53,8 +61,9 @@ json effect_json(const EffectScore& score) {
     out["confusion"].push_back({{"effect", other.effect}, {"cosine", other.cosine}});
   }
   out["why"] = score.why;
-  const VectorXd low = score.values - 1.959964 * score.standard_error;
-  const VectorXd high = score.values + 1.959964 * score.standard_error;
+  if (!score.displaced.empty()) out["pictures"] = "removed/" + score.effect;
+  const VectorXd low = score.values - kNormal95 * score.standard_error;
+  const VectorXd high = score.values + kNormal95 * score.standard_error;
   out["predicted"] = parameters_json(score.best->parameters(), score.values, &low, &high);
   return out;
 }
@@ -69,6 +78,96 @@ json to_json(const Diagnosis& diagnosis) {
           {"effective_count", diagnosis.effective_count},
           {"whiteness_p", diagnosis.whiteness_p},
           {"effects", std::move(effects)}};
+}
+
+namespace {
+
+EffectScore score_from_json(const json& one, const Model& model) {
+  EffectScore score;
+  score.effect = one.at("effect");
+  score.testable = one.at("testable");
+  score.why_not = one.value("why_not", "");
+  if (!one.contains("variant")) return score;
+  const Effect* effect = find_effect(score.effect);
+  if (effect) score.best = effect->candidate(model, one.at("variant"));
+  const json& predicted = one.at("predicted");
+  if (!score.best || score.best->parameters().size() != predicted.size())
+    throw std::runtime_error("effect " + score.effect);
+  score.dof = one.at("dof");
+  score.values.resize(score.dof);
+  score.standard_error.resize(score.dof);
+  for (int i = 0; i < score.dof; ++i) {
+    score.values[i] = predicted[i].at("value");
+    score.standard_error[i] = (predicted[i].at("high").get<double>() - score.values[i]) / kNormal95;
+  }
+  score.explains = one.at("explains");
+  score.explains_held_out = one.at("explains_held_out");
+  score.fall = one.at("fall");
+  score.evidence = one.at("evidence");
+  score.p_value = one.at("p_value");
+  score.weight = one.at("weight");
+  for (const auto& other : one.at("confusion"))
+    score.confused_with.push_back({other.at("effect"), other.at("cosine")});
+  score.why = one.at("why");
+  return score;
+}
+
+}  // namespace
+
+Diagnosis diagnosis_from_json(const json& document, const Model& model,
+                              const std::filesystem::path& file) {
+  Diagnosis out;
+  try {
+    const json& floor = document.at("floor");
+    out.floor.chi = floor.at("chi");
+    out.floor.cell_variance = floor.at("cell_variance");
+    out.floor.source = floor.at("source");
+    out.gate = document.at("gate");
+    out.effective_count = document.at("effective_count");
+    out.whiteness_p = document.at("whiteness_p");
+    for (const auto& one : document.at("effects"))
+      out.effects.push_back(score_from_json(one, model));
+  } catch (const std::exception& error) {
+    throw InputError({file.string()}, std::string("not a diagnosis of this model: ") + error.what(),
+                     "make it anew with `hookeye diagnose RUN`");
+  }
+  return out;
+}
+
+json to_json(const Plan& plan) {
+  auto separation = [](const Separation& s) -> json {
+    if (s.effect.empty()) return {};
+    return {{"effect", s.effect},
+            {"rival", s.rival},
+            {"cosine", s.cosine},
+            {"angle_deg", s.angle_deg()},
+            {"evidence", s.margin}};
+  };
+  json ratings = json::array();
+  for (const auto& rating : plan.ratings) {
+    const bool load = rating.candidate.kind == PlanCandidate::Kind::load;
+    json one = {{"name", rating.candidate.name},
+                {"kind", load ? "load" : "view"},
+                {"words", rating.candidate.words},
+                {"told", rating.candidate.told},
+                {"capture", capture_lines(rating.candidate)}};
+    if (!rating.why_not.empty()) {
+      one["why_not"] = rating.why_not;
+    } else {
+      one["photos"] = rating.photos;
+      one["worst_pair"] = separation(rating.worst);
+      one["difference"] = {{"px", rating.px}, {"chi", rating.chi}, {"most", rating.most}};
+      one["makes_testable"] = rating.makes_testable;
+      one["sentence"] = rating.sentence;
+    }
+    ratings.push_back(std::move(one));
+  }
+  return {{"hookeye", 1},
+          {"confused", plan.confused},
+          {"now", separation(plan.now)},
+          {"untestable", plan.untestable},
+          {"candidates", std::move(ratings)},
+          {"sentence", plan.sentence}};
 }
 
 json timeline_entry(const Step& step) {
@@ -106,6 +205,41 @@ json chi_table(const std::map<std::string, std::pair<double, double>>& sums) {
   return out;
 }
 
+/// Regions that hold each triangle of the render surface: those with all nodes that carry it.
+std::vector<std::vector<std::string>> regions_of_triangles(const Body& body) {
+  const RenderSurface& surface = body.surface;
+  std::vector<std::vector<std::string>> out(surface.mesh.triangles.size());
+  for (const auto& [name, region] : body.regions.all()) {
+    const std::set<int> nodes(region.nodes.begin(), region.nodes.end());
+    std::vector<bool> inside(static_cast<size_t>(surface.W.rows()), true);
+    for (int v = 0; v < surface.W.rows(); ++v)
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(surface.W, v); it; ++it)
+        if (!nodes.count(static_cast<int>(it.col()))) inside[v] = false;
+    for (size_t t = 0; t < out.size(); ++t) {
+      const auto& corners = surface.mesh.triangles[t];
+      if (inside[corners[0]] && inside[corners[1]] && inside[corners[2]]) out[t].push_back(name);
+    }
+  }
+  return out;
+}
+
+using ChiSums = std::map<std::string, std::pair<double, double>>;
+
+/// Pixels by the region of the surface that they show; "elsewhere": in none.
+void add_by_region(const PhotoEvaluation& photo,
+                   const std::vector<std::vector<std::string>>& regions, ChiSums& sums) {
+  for (size_t i = 0; i < photo.triangle.size(); ++i) {
+    const double r = photo.residual.values[i];
+    if (std::isnan(r) || photo.triangle[i] < 0) continue;
+    auto add = [&](const std::string& name) {
+      sums[name].first += r * r, sums[name].second += 1.0;
+    };
+    const auto& names = regions[photo.triangle[i]];
+    for (const auto& name : names) add(name);
+    if (names.empty()) add("elsewhere");
+  }
+}
+
 json measured_json(const Scene& scene, const Fitted& fitted) {
   json all = json::array();
   for (const auto& example : fitted.evaluation.examples)
@@ -131,7 +265,8 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
 
 json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
   json photos = json::array();
-  std::map<std::string, std::pair<double, double>> by_example, by_camera;
+  ChiSums by_example, by_camera, by_region;
+  const auto regions = regions_of_triangles(*scene.body);
   for (const auto& example : fitted.evaluation.examples)
     for (const auto& photo : example.photos) {
       const auto& spec = scene.capture.examples[example.example];
@@ -149,6 +284,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
                         {"only_noise", flow.whiteness_p > 0.01}});
       for (auto* sum : {&by_example[spec.name], &by_camera[camera]})
         sum->first += photo.r2, sum->second += photo.count;
+      add_by_region(photo, regions, by_region);
     }
   const MeshQuality mesh = quality(scene.body->mesh);
   json out = {{"chi_fit", fitted.evaluation.chi(false)},
@@ -159,6 +295,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
               {"photos", std::move(photos)},
               {"chi_by_example", chi_table(by_example)},
               {"chi_by_camera", chi_table(by_camera)},
+              {"chi_by_region", chi_table(by_region)},
               {"measured", measured_json(scene, fitted)},
               {"undetermined", fitted.undetermined},
               {"converged", fitted.converged},
@@ -254,6 +391,7 @@ void write_step(const std::filesystem::path& folder, const Scene& scene, const S
   write_text(folder / "metrics.json", metrics(scene, fitted, floor).dump(1) + "\n");
   if (!step.diagnosis.effects.empty())
     write_text(folder / "diagnosis.json", to_json(step.diagnosis).dump(1) + "\n");
+  if (has_pictures(step.diagnosis)) write_removed(folder / "removed", step);
   write_text(folder / "parameters.csv", parameters_csv(fitted));
   for (const auto& example : fitted.evaluation.examples) {
     for (const auto& photo : example.photos) write_photo(folder, scene, model, photo);

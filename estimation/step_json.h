@@ -4,11 +4,17 @@
 #include <nlohmann/json.hpp>
 
 #include "estimation/discover.h"
+#include "estimation/plan.h"
 
 namespace hookeye {
 
 nlohmann::json to_json(const Floor& floor);
 nlohmann::json to_json(const Diagnosis& diagnosis);
+/// A diagnosis as to_json() wrote it, for the model it was made of: what `plan` and `add` need of
+/// it (no base_step). Throws InputError (`file`) where it is not one.
+Diagnosis diagnosis_from_json(const nlohmann::json& document, const Model& model,
+                              const std::filesystem::path& file);
+nlohmann::json to_json(const Plan& plan);
 /// The step's entry of run.json.
 nlohmann::json timeline_entry(const Step& step);
 /// metrics.json: chi, rms_px and whiteness of every photo, by camera, example and region, measured

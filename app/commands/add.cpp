@@ -47,7 +47,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   options.diagnosis.cancel = &interrupted();
   options.note = [&session](const std::string& sentence) { session.say("{}\n", sentence); };
   const Step step = next_step(bench, current, arguments.request, options);
-  const auto folder = record(run, *bench.scene, step);
+  const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
   session.document = run.timeline()["steps"].back();
   say_outcome(current, step, floor, session);

@@ -42,12 +42,13 @@ Step without_effect(Bench& bench, const Step& current, const std::string& name,
   ModelForm form = current.fitted.form;
   std::vector<double> p;
   int offset = 0;
-  bool found = false;
+  bool found = false, mesh = false;
   form.ingredients.clear();
   for (const auto& ingredient : current.fitted.form.ingredients) {
     const int n = static_cast<int>(ingredient->parameters().size());
     if (ingredient->name() == name) {
       found = true;
+      mesh = find_effect(name) && find_effect(name)->remeshes(ingredient->variant());
     } else {
       form.ingredients.push_back(ingredient);
       for (int i = 0; i < n; ++i) p.push_back(current.fitted.p[offset + i]);
@@ -61,8 +62,9 @@ Step without_effect(Bench& bench, const Step& current, const std::string& name,
   step.name = "without-" + name;
   FitOptions options = wanted;
   options.coarse_to_fine = false;
-  step.fitted = value_or_fail(
-      fit(bench.workspace, form, Eigen::Map<const VectorXd>(p.data(), p.size()), options));
+  VectorXd start = Eigen::Map<const VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
+  if (mesh) std::tie(form, start) = transfer(form.realise(start), bench.scene);
+  step.fitted = value_or_fail(fit(bench.workspace, form, start, options));
   return step;
 }
 

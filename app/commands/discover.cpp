@@ -22,7 +22,7 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
     if (*recorded)
       record_diagnosis(run, step);
     else
-      record(run, *bench.scene, step);
+      record(run, step);
     *recorded = false;
     spdlog::info("{}: chi {:.3f} fitted, {:.3f} held out (floor {:.3f})", step.name,
                  step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true),

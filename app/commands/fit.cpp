@@ -63,7 +63,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
                         asks_for_additive(bench.scene->capture);
   step.fitted = additive ? fit_additive(bench, form, start, session)
                          : value_or_fail(fit(bench.workspace, form, start, fit_options()));
-  const auto folder = record(run, *bench.scene, step);
+  const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { timeline["floor"] = to_json(floor); });
   session.document = run.timeline();

@@ -7,6 +7,7 @@
 
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "estimation/removed.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -52,13 +53,12 @@ DiscoverOptions discover_options() {
   return options;
 }
 
-std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
-                             const std::string& command) {
+std::filesystem::path record(Run& run, const Step& step, const std::string& command) {
   nlohmann::json entry = timeline_entry(step);
   entry["command"] = command;
   entry["made_by"] = versions();
   return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {
-    write_step(folder, scene, step);
+    write_step(folder, *step.fitted.form.scene, step);
   });
 }
 
@@ -70,6 +70,10 @@ void record_diagnosis(Run& run, const Step& step) {
         write_text(file, to_json(step.diagnosis).dump(1) + "\n");
       },
       true);
+  if (has_pictures(step.diagnosis))
+    run.add_file(
+        folder, "removed",
+        [&](const std::filesystem::path& pictures) { write_removed(pictures, step); }, true);
   run.update([&](nlohmann::json& timeline) {
     const auto entry = timeline_entry(step);
     timeline["steps"].back()["diagnosis"] = entry["diagnosis"];

@@ -10,7 +10,8 @@
 
 namespace hookeye {
 
-/// A capture opened for estimation.
+/// A capture opened for estimation. The scene is as told; the workspace follows the model, which
+/// may live on a finer mesh.
 struct Bench {
   std::shared_ptr<const Scene> scene;
   Workspace workspace;
@@ -32,8 +33,7 @@ Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_o
 DiscoverOptions discover_options();
 
 /// Writes the step's folder and the timeline's entry, which keeps the command that made it.
-std::filesystem::path record(Run& run, const Scene& scene, const Step& step,
-                             const std::string& command = invocation());
+std::filesystem::path record(Run& run, const Step& step, const std::string& command = invocation());
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 

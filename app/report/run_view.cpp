@@ -163,6 +163,10 @@ json RunView::step_json(const fs::path& step, json& faults, int factor) {
     if (entry.path().extension() == ".json")
       out["fields"][entry.path().stem().string()] =
           "field/" + name + "/" + entry.path().filename().string();
+  for (const auto& entry : fs::directory_iterator(step / "removed", none))
+    if (entry.path().extension() == ".json")
+      out["fields"]["removes-" + entry.path().stem().string()] =
+          "field/" + name + "/removes-" + entry.path().filename().string();
   for (const auto& entry : fs::recursive_directory_iterator(step, none))
     if (entry.is_regular_file() && entry.path().parent_path().filename() != "page")
       out["files"].push_back(fs::relative(entry.path(), folder_).generic_string());
@@ -239,7 +243,10 @@ std::optional<RunView::Blob> RunView::blob(const std::string& request) {
   if (!plain(step) || !plain(name)) return {};
   if (kind == "residual") return residual_blob(step, name, factor);
   if (kind != "field") return {};
-  const fs::path file = folder_ / "steps" / step / "page" / name;
+  const std::string removes = "removes-";
+  const fs::path file = name.rfind(removes, 0) == 0
+                            ? folder_ / "steps" / step / "removed" / name.substr(removes.size())
+                            : folder_ / "steps" / step / "page" / name;
   if (!fs::is_regular_file(file)) return {};
   return Blob{read_text(file), "application/json", true};
 }

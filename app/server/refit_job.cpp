@@ -79,7 +79,7 @@ void RefitJob::refit(const AddRequest& request) {
   stage(request.take_back ? "refitting" : "diagnosing the newest step");
   Step step = next_step(*bench_, current, request, wanted);
   stage("writing the step");
-  record(run, *bench_->scene, step,
+  record(run, step,
          fmt::format("hookeye add {} {}{}", shell_word(run_.string()), request.effect,
                      request.take_back ? " --take-back" : ""));
   stage("diagnosing the new step");

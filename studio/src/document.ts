@@ -66,6 +66,7 @@ export interface Metrics {
   photos: PhotoFigures[];
   chi_by_example: Record<string, number>;
   chi_by_camera: Record<string, number>;
+  chi_by_region?: Record<string, number>;
   measured: {
     example: string;
     kind: string;

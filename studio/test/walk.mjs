@@ -136,6 +136,39 @@ async function keyboardOnly(page) {
   await page.keyboard.press('Escape');
 }
 
+/** The leading effect's pictures: the residual there is and what it would remove, both in colour. */
+async function removedIsDrawn(page) {
+  await page.click('#tab-missing');
+  const coloured = () => page.$$eval('.removed canvas', (all) => all.map((canvas) => {
+    const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4)
+      if (Math.abs(data[i] - data[i + 2]) > 25) count += 1;
+    return count;
+  }));
+  for (const end = Date.now() + 20000; Date.now() < end; await page.waitForTimeout(300)) {
+    const counts = await coloured();
+    if (counts.length === 2 && counts.every((c) => c > 100)) return;
+  }
+  assert.fail(`what the effect would remove is not drawn: ${await coloured()}`);
+}
+
+/** The program's own pictures, and the plan, of the same diagnosis. */
+function plannedAndPictured() {
+  const step = join(run, 'steps', '00-base');
+  const effects = JSON.parse(readFileSync(join(step, 'diagnosis.json'), 'utf8')).effects;
+  assert.equal(effects[0].pictures, `removed/${effects[0].effect}`);
+  assert.ok(existsSync(join(step, effects[0].pictures, 'push-front.png')));
+  const planned = JSON.parse(tell('plan', run, '--between', 'gravity,swelling', '--json'));
+  assert.deepEqual(planned.confused, ['gravity', 'swelling']);
+  assert.ok(planned.candidates.length > 10);
+  assert.ok(planned.candidates[0].worst_pair.evidence >= planned.now.evidence);
+  assert.throws(() => tell('plan', run, '--between', 'gravity,swilling'), /did you mean 'swelling'/);
+  const lines = tell('plan', run).split('\n');
+  assert.ok(lines.every((line) => line.length <= 100 || !line.startsWith('  ')), 'a table wider than 100 columns');
+  say(`plan: ${planned.sentence}`);
+}
+
 async function report() {
   const html = join(folder, 'report.html');
   tell('report', run, '-o', html);
@@ -144,6 +177,7 @@ async function report() {
     const paint = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime);
     console.log(`   first paint after ${Math.round(paint)} ms`);
     await walk(page, 'report-' + scheme);
+    await removedIsDrawn(page);
     await accessible(page);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     assert.deepEqual(faults, []);
@@ -223,6 +257,7 @@ try {
   const capture = smallCapture(hookeye, folder);
   tell('fit', capture, '-o', run);
   tell('diagnose', run);
+  plannedAndPictured();
   await report();
   await studio();
   await broken();

@@ -142,8 +142,8 @@ TEST_F(Cli, UsageErrorsAreBadInput) {
 }
 
 TEST_F(Cli, MissingFilesAreBadInput) {
-  for (const std::string arguments :
-       {"check nowhere", "mesh nothing.obj -o body.vtu", "simulate nowhere -o out"}) {
+  for (const std::string arguments : {"check nowhere", "mesh nothing.obj -o body.vtu",
+                                      "simulate nowhere -o out", "plan nowhere"}) {
     const Result result = hookeye(arguments);
     EXPECT_EQ(result.status, 2) << arguments << ": " << result.err;
     EXPECT_EQ(result.out, "") << arguments;

@@ -63,7 +63,8 @@ TEST(Catalogue, NamesAreThoseOfTheFormat) {
                                               "softening",         "camera_pose",
                                               "focal_length",      "exposure",
                                               "light_direction",   "defocus",
-                                              "specular",          "force_zero"}));
+                                              "specular",          "force_zero",
+                                              "mesh_resolution"}));
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), names.size());
   for (const auto& name : names) EXPECT_EQ(find_effect(name)->name(), name);
   EXPECT_EQ(find_effect("no_such_effect"), nullptr);
@@ -120,8 +121,9 @@ TEST(Catalogue, ParametersAreDeclaredWhole) {
 }
 
 TEST(Catalogue, OneSidedEffectsSaySo) {
-  const std::set<std::string> expected = {"soft_clamp", "grip_slip", "floor_contact", "creep",
-                                          "softening",  "defocus",   "specular"};
+  const std::set<std::string> expected = {"soft_clamp", "grip_slip",      "floor_contact",
+                                          "creep",      "softening",      "defocus",
+                                          "specular",   "mesh_resolution"};
   std::set<std::string> one_sided;
   for (const Case& c : all_cases(false))
     for (const Parameter& p : c.ingredient->parameters())
@@ -235,6 +237,8 @@ TEST(Catalogue, ForcesTurnWithTheSetUp) {
   int tried = 0;
   for (const Case& c : all_cases(true)) {
     if (c.effect->group() == EffectGroup::measurement || c.effect->name() == "placement") continue;
+    // a turned surface is filled with other tetrahedra
+    if (c.effect->group() == EffectGroup::numerical) continue;
     std::string variant = c.ingredient->variant();
     const VectorXd values = some_values(*c.ingredient);
     VectorXd values_turned = values;

@@ -117,9 +117,15 @@ std::shared_ptr<const Scene> read_block() {
     for (int x = 0; x < 64; ++x)
       albedo.values.push_back(0.5f + 0.3f * std::sin(0.7f * x) * std::cos(0.5f * y));
   write_image(folder / "albedo.png", albedo);
-  auto scene = load_scene(read_capture(folder));
-  fs::remove_all(folder);
-  return scene;
+  // The body's surface is read again for another mesh: the folder goes with the program.
+  static const struct Cleaner {
+    fs::path folder;
+    ~Cleaner() {
+      std::error_code ignored;
+      fs::remove_all(folder, ignored);
+    }
+  } cleaner{folder};
+  return load_scene(read_capture(folder));
 }
 
 Eigen::Matrix3d quarter() {

@@ -1,6 +1,8 @@
 // What the diagnosis uses of an effect, S = dq/dt at its null, against equilibria solved again.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 
 #include "estimation/effects_scene.h"
@@ -135,6 +137,72 @@ TEST(Sensitivity, GripSlip) { check_candidates("grip_slip", 1e-3, 1e-4); }
 TEST(Sensitivity, FloorContact) { check_candidates("floor_contact", 1e-2, 1e-3); }
 TEST(Sensitivity, Creep) { check_candidates("creep", 1e-3, 1e-4); }
 TEST(Sensitivity, Softening) { check_candidates("softening", 1e-3, 1e-4); }
+
+/// At s = 1 the surface goes where the finer mesh has it, and the grip's force changes as much.
+TEST(Sensitivity, MeshResolutionIsTheFinerMesh) {
+  const ModelForm base = base_form(block_scene());
+  const VectorXd p = base.initial();
+  const Model model = base.realise(p);
+  const Effect& effect = *find_effect("mesh_resolution");
+  const auto candidates = effect.candidates(model, nullptr);
+  ASSERT_EQ(candidates.size(), 1u);
+  const Evaluation evaluation = evaluated(base, p, candidates);
+  VectorXd none;
+  const auto finer_form = effect.refit_form(model, candidates.front(), none);
+  const auto scene = effect.refit_scene(*block_scene(), finer_form->variant());
+  ASSERT_GT(scene->body->mesh.nodes(), 1.5 * block_scene()->body->mesh.nodes());
+  const auto [form, values] = transfer(model, scene);
+  const Model finer = form.realise(values);
+  EXPECT_EQ(values, p);
+  double moved = 0.0, error = 0.0;
+  for (const auto& example : evaluation.examples) {
+    const int e = example.example;
+    const auto solved =
+        solve_equilibrium(scene->body->mesh, finer.energy_of(e), finer.examples[e].loading);
+    const Equilibrium& there = std::get<Equilibrium>(solved);
+    const BoundaryLocator locator(scene->body->mesh);
+    for (int node : block_scene()->body->mesh.boundary.reshaped()) {
+      SurfacePoint point;
+      locator.locate(block_scene()->body->mesh.X.col(node), &point);
+      const VectorXd N = shape_functions(2, point.barycentric);
+      Vector3d x = Vector3d::Zero();
+      for (int a = 0; a < N.size(); ++a)
+        x += N[a] * there.q.segment<3>(3 * scene->body->mesh.elements(a, point.element));
+      const Vector3d change = x - example.equilibrium->q.segment<3>(3 * node);
+      moved = std::max(moved, change.norm());
+      const Vector3d S = example.S.col(base.size()).segment<3>(3 * node);
+      error = std::max(error, (S - change).norm());
+    }
+    for (const auto& measured : example.measured) {
+      const Vector3d change =
+          support_force(there, scene->body->regions.at("grip")) -
+          support_force(*example.equilibrium, block_scene()->body->regions.at("grip"));
+      EXPECT_GT(change.norm(), 0.0);
+      EXPECT_LT((0.1 * measured.J.col(base.size()) - change).norm(), 1e-6 * change.norm());
+    }
+  }
+  EXPECT_GT(moved, 0.01);  // mm: the mesh is coarse on purpose
+  EXPECT_LT(error, 0.02 * moved);
+}
+
+/// Written and read, the finer mesh is there again.
+TEST(Sensitivity, AFinerMeshIsReadBack) {
+  const ModelForm base = base_form(block_scene());
+  const Model model = base.realise(base.initial());
+  const Effect& effect = *find_effect("mesh_resolution");
+  VectorXd none;
+  const auto finer = effect.refit_form(model, effect.candidates(model, nullptr).front(), none);
+  auto [form, p] = transfer(model, effect.refit_scene(*block_scene(), finer->variant()));
+  form.ingredients.push_back(finer);
+  const auto file = std::filesystem::temp_directory_path() / "hookeye-finer-model.yaml";
+  std::ofstream(file) << write_model(form, p);
+  const auto [again, values] = read_model(file, block_scene());
+  std::filesystem::remove(file);
+  EXPECT_EQ(values, p);
+  EXPECT_EQ(again.scene->body->mesh.nodes(), form.scene->body->mesh.nodes());
+  EXPECT_EQ(again.ingredients.back()->name(), "mesh_resolution");
+  EXPECT_EQ(again.scene->photos.size(), block_scene()->photos.size());
+}
 
 /// Forms of the refit at values away from the null, as part of the model.
 TEST(Sensitivity, RefitForms) {

@@ -69,7 +69,9 @@ export function FailureBars(props: {step: StepEntry}) {
   const all: [string, Row[]][] = [
     ['χ by load case', rows(metrics?.chi_by_example)],
     ['χ by camera', rows(metrics?.chi_by_camera)],
-    ['residual [σ] by region', fields?.regions ?? []],
+    metrics?.chi_by_region
+      ? ['χ by region of the surface', rows(metrics.chi_by_region)]
+      : ['residual [σ] by region', fields?.regions ?? []],
     ['residual [σ] by strain level', fields?.strains ?? []],
   ];
   return (

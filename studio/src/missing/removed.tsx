@@ -1,38 +1,101 @@
-// The residual that the chosen effect would remove, over the photo and on the body.
+// The residual that the chosen effect would remove, over the photo, beside the residual there is.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, notCounted, sequential} from '../colours';
-import {figure, spaced} from '../format';
-import {array, field, type StoredArray} from '../parts';
+import {diverging, gradient, sequential, shown, type Rgb} from '../colours';
+import type {PhotoEntry} from '../document';
+import {spaced} from '../format';
+import {field, fromBase64, picture, type Grid} from '../parts';
 import {chosenPhoto, run, step} from '../state';
-import {residualScale} from '../compare/frames';
+import {gainOf, residualScale} from '../compare/frames';
 
-/** photo-cells of every photo: column, row, residual now [sigma rms, signed by its change]. */
+/** Cells of a photo; `bytes`: all residuals there are, then all that would be removed (128: 0). */
+interface Cells {
+  columns: number;
+  rows: number;
+  bytes: string;
+}
 interface Prediction {
   cell_px: number;
-  photos: Record<string, {cells: StoredArray}>;
+  unit: number;
+  photos: Record<string, Cells>;
 }
 
-/** Cells: x, y of the corner [px], root mean square residual now, the same with the effect. */
-function draw(canvas: HTMLCanvasElement, prediction: Prediction, name: string): void {
-  const entry = run.value.photos.find((p) => p.name === name);
-  const told = prediction.photos[name];
-  if (!entry || !told) return;
-  const cells = array(told.cells);
-  canvas.width = Math.ceil(entry.width / prediction.cell_px);
-  canvas.height = Math.ceil(entry.height / prediction.cell_px);
-  const context = canvas.getContext('2d')!;
-  context.fillStyle = `rgb(${notCounted.join(' ')})`;
-  context.fillRect(0, 0, canvas.width, canvas.height);
-  for (let i = 0; i < cells.length; i += 4) {
-    const fall = cells[i + 3] - cells[i + 2];
-    context.fillStyle = `rgb(${diverging(fall / residualScale).join(' ')})`;
-    context.fillRect(cells[i], cells[i + 1], 1, 1);
-  }
+/** The smallest box of cells that count. */
+function box(cells: Cells, now: Uint8Array): {left: number; top: number; columns: number; rows: number} {
+  let [left, top, right, bottom] = [cells.columns, cells.rows, -1, -1];
+  for (let y = 0, i = 0; y < cells.rows; ++y)
+    for (let x = 0; x < cells.columns; ++x, ++i)
+      if (now[i] > 0) [left, top, right, bottom] = [Math.min(left, x), Math.min(top, y), Math.max(right, x), Math.max(bottom, y)];
+  if (right < 0) return {left: 0, top: 0, columns: cells.columns, rows: cells.rows};
+  return {left, top, columns: right - left + 1, rows: bottom - top + 1};
 }
-void sequential;
+
+type Layer = 'now' | 'removed';
+
+/** The photo in grey, and over it the cells, the more opaque the more there is to show. */
+function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, photo: Grid, layer: Layer): void {
+  const bytes = fromBase64(cells.bytes);
+  const count = cells.columns * cells.rows;
+  const now = bytes.subarray(0, count);
+  const part = box(cells, now);
+  const size = prediction.cell_px;
+  canvas.width = part.columns * size;
+  canvas.height = part.rows * size;
+  const context = canvas.getContext('2d')!;
+  const pixels = context.createImageData(canvas.width, canvas.height);
+  const gain = gainOf(photo);
+  for (let y = 0, i = 0; y < canvas.height; ++y)
+    for (let x = 0; x < canvas.width; ++x, ++i) {
+      const column = part.left + Math.floor(x / size);
+      const row = part.top + Math.floor(y / size);
+      const u = Math.min(photo.width - 1, Math.floor((part.left * size + x) / photo.shrink));
+      const v = Math.min(photo.height - 1, Math.floor((part.top * size + y) / photo.shrink));
+      const grey = shown(photo.values[v * photo.width + u] * gain);
+      const code = bytes[row * cells.columns + column + (layer === 'now' ? 0 : count)];
+      let colour: Rgb = [grey, grey, grey];
+      if (code > 0) {
+        const sigmas = (layer === 'now' ? code - 1 : 128 - code) * prediction.unit;
+        const t = sigmas / residualScale;
+        const over = layer === 'now' ? sequential(t) : diverging(t);
+        const alpha = Math.min(0.85, 0.15 + Math.abs(t));
+        colour = over.map((c, k) => Math.round(alpha * c + (1 - alpha) * colour[k])) as Rgb;
+      }
+      pixels.data.set([...colour, 255], 4 * i);
+    }
+  context.putImageData(pixels, 0, 0);
+}
+
+function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer; says: string}) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const {prediction, entry, layer} = props;
+  useEffect(() => {
+    let current = true;
+    const cells = prediction.photos[entry.name];
+    void picture(entry.photo).then((photo) => {
+      if (current && canvas.current && cells) draw(canvas.current, prediction, cells, photo, layer);
+    }, () => undefined);
+    return () => {
+      current = false;
+    };
+  }, [prediction, entry, layer]);
+  return (
+    <div>
+      <canvas ref={canvas} role="img" aria-label={props.says} />
+      <p class="note">{props.says}</p>
+    </div>
+  );
+}
+
+/** Colours of the two pictures with their ends. */
+function Legend() {
+  return (
+    <p class="note legends">
+      <span>0 <i style={{background: gradient(sequential, 0, 1)}} /> {residualScale} σ there is</span>
+      <span>removed <i style={{background: gradient(diverging, -1, 1)}} /> added, ±{residualScale} σ</span>
+    </p>
+  );
+}
 
 export function Removed(props: {effect: string}) {
-  const canvas = useRef<HTMLCanvasElement>(null);
   const [prediction, setPrediction] = useState<Prediction | null>(null);
   const part = step.value?.fields[`removes-${props.effect}`];
   useEffect(() => {
@@ -43,18 +106,26 @@ export function Removed(props: {effect: string}) {
       current = false;
     };
   }, [part]);
-  const names = Object.keys(prediction?.photos ?? {});
+  const photos = run.value.photos.filter((p) => prediction?.photos[p.name]);
   const wanted = run.value.photos[chosenPhoto.value]?.name;
-  const name = wanted && names.includes(wanted) ? wanted : names[0];
-  useEffect(() => {
-    if (canvas.current && prediction && name) draw(canvas.current, prediction, name);
-  }, [prediction, name]);
-  if (!prediction || !name) return null;
+  const entry = photos.find((p) => p.name === wanted) ?? photos[0];
+  if (!prediction || !entry) return null;
   return (
     <figure class="removed">
-      <figcaption>Residual that {spaced(props.effect)} would remove in {name}</figcaption>
-      <canvas ref={canvas} role="img" aria-label={`Residual that ${props.effect} would remove in ${name}`} />
-      <p class="note">blue: removed, red: added, up to {figure(residualScale)} σ (root mean square of a cell)</p>
+      <figcaption>
+        <label>What {spaced(props.effect)} would remove in{' '}
+          <select value={entry.name} onChange={(e) => {
+            chosenPhoto.value = run.value.photos.findIndex((p) => p.name === e.currentTarget.value);
+          }}>
+            {photos.map((p) => <option key={p.name} value={p.name}>{p.name}</option>)}
+          </select>
+        </label>
+      </figcaption>
+      <div class="pair">
+        <Layered prediction={prediction} entry={entry} layer="now" says={`the residual in ${entry.name}`} />
+        <Layered prediction={prediction} entry={entry} layer="removed" says={`what ${spaced(props.effect)} would remove of it`} />
+      </div>
+      <Legend />
     </figure>
   );
 }

@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <array>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye {
+
+namespace {
+
+const double kFiner = 0.7;  ///< of the told edge: three times the unknowns
+
+/// What another mesh of the same body makes of the present model, as nodal forces on this one:
+/// f = K du moves this mesh's surface by du, to where the finer mesh has it (first order), and
+/// changes the reactions of the supports by as much. Solved once an example, when first asked for.
+class FinerMesh {
+ public:
+  FinerMesh(const Model& model, double factor, int order)
+      : model_(model), factor_(factor), order_(order), forces_(model.examples.size()) {}
+
+  /// 3n [force]; zero where there is no such mesh or no equilibrium, so that the effect cannot be
+  /// tested.
+  const VectorXd& force(int example) {
+    Slot& slot = forces_[example];
+    std::call_once(slot.once, [&] {
+      try {
+        slot.force = compute(example);
+      } catch (const InputError&) {  // a surface that cannot be filled
+        slot.force = VectorXd::Zero(3 * model_.scene->body->mesh.nodes());
+      }
+    });
+    return slot.force;
+  }
+
+ private:
+  struct Slot {
+    std::once_flag once;
+    VectorXd force;
+  };
+
+  const Model& finer() {
+    std::call_once(once_, [&] {
+      const auto scene = remeshed(*model_.scene, factor_, order_, false);
+      const auto [form, p] = transfer(model_, scene);
+      finer_ = form.realise(p);
+      const TetMesh &fine = scene->body->mesh, &mesh = model_.scene->body->mesh;
+      const BoundaryLocator locator(fine);
+      std::vector<char> seen(mesh.nodes(), 0);
+      for (int node : mesh.boundary.reshaped()) {
+        if (seen[node]++) continue;
+        SurfacePoint point;
+        locator.locate(mesh.X.col(node), &point);
+        points_.emplace_back(node, point);
+      }
+    });
+    return finer_;
+  }
+
+  VectorXd compute(int example) {
+    const Model& fine_model = finer();
+    const TetMesh& mesh = model_.scene->body->mesh;
+    const TetMesh& fine = fine_model.scene->body->mesh;
+    const Loading& loading = model_.examples[example].loading;
+    VectorXd none = VectorXd::Zero(3 * mesh.nodes());
+    auto here = solve_equilibrium(mesh, model_.energy_of(example), loading);
+    auto there = solve_equilibrium(fine, fine_model.energy_of(example),
+                                   fine_model.examples[example].loading);
+    if (!std::holds_alternative<Equilibrium>(here) || !std::holds_alternative<Equilibrium>(there))
+      return none;
+    const Equilibrium &coarse = std::get<Equilibrium>(here), &other = std::get<Equilibrium>(there);
+    VectorXd du = none;
+    for (const auto& [node, point] : points_) {
+      const VectorXd N = shape_functions(fine.order, point.barycentric);
+      Vector3d u = mesh.X.col(node) - coarse.q.segment<3>(3 * node);
+      for (int a = 0; a < N.size(); ++a) {
+        const int theirs = fine.elements(a, point.element);
+        u += N[a] * (other.q.segment<3>(3 * theirs) - fine.X.col(theirs));
+      }
+      du.segment<3>(3 * node) = u;
+    }
+    for (int unknown : loading.prescribed) du[unknown] = 0.0;
+    VectorXd reaction = none;
+    for (const auto& measured : model_.scene->capture.examples[example].measured)
+      if (measured.kind != MeasuredSpec::Kind::position)
+        add_reaction(measured.region, fine_model, coarse, other, reaction);
+    VectorXd f = coarse.K * du;
+    for (int unknown : loading.prescribed) f[unknown] -= reaction[unknown];
+    return f;
+  }
+
+  /// Change of the support's force and moment, as the smallest nodal forces that have both.
+  void add_reaction(const std::string& name, const Model& fine_model, const Equilibrium& coarse,
+                    const Equilibrium& other, VectorXd& reaction) const {
+    const Region& region = model_.scene->body->regions.at(name);
+    const Region& theirs = fine_model.scene->body->regions.at(name);
+    const double count = static_cast<double>(region.nodes.size());
+    Vector3d centre = Vector3d::Zero();
+    for (int node : region.nodes) centre += coarse.q.segment<3>(3 * node) / count;
+    const Vector3d F = support_force(other, theirs) - support_force(coarse, region);
+    const Vector3d M =
+        support_moment(other, theirs, centre) - support_moment(coarse, region, centre);
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+    for (int node : region.nodes) {
+      const Vector3d r = coarse.q.segment<3>(3 * node) - centre;
+      inertia += r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose();
+    }
+    const Vector3d b = inertia.fullPivLu().solve(M);
+    for (int node : region.nodes)
+      reaction.segment<3>(3 * node) =
+          F / count + b.cross(Vector3d(coarse.q.segment<3>(3 * node) - centre));
+  }
+
+  Model model_;
+  double factor_;
+  int order_;
+  std::once_flag once_;
+  Model finer_;
+  std::vector<std::pair<int, SurfacePoint>> points_;  ///< boundary node, where it is over there
+  std::vector<Slot> forces_;
+};
+
+/// `share` of the force, worked out when first asked for: a model that is only written costs
+/// nothing.
+class MeshError final : public ForceTerm {
+ public:
+  MeshError(std::shared_ptr<FinerMesh> finer, int example, double share)
+      : finer_(std::move(finer)), example_(example), share_(share) {}
+  double potential(const TetMesh& mesh, const VectorXd& q, double s) const override {
+    return term().potential(mesh, q, s);
+  }
+  void add_residual(const TetMesh& mesh, const VectorXd& q, double s, VectorXd& R) const override {
+    term().add_residual(mesh, q, s, R);
+  }
+  void add_tangent(const TetMesh&, const VectorXd&, double, Triplets&) const override {}
+  bool dead() const override { return true; }
+
+ private:
+  const ForceTerm& term() const {
+    std::call_once(once_, [&] { term_ = nodal_force(share_ * finer_->force(example_)); });
+    return *term_;
+  }
+  std::shared_ptr<FinerMesh> finer_;
+  int example_;
+  double share_;
+  mutable std::once_flag once_;
+  mutable std::shared_ptr<const ForceTerm> term_;
+};
+
+/// The tetrahedra are too coarse. Scored by what a finer mesh changes at the same parameters;
+/// refitted on that mesh.
+class MeshResolution final : public Effect {
+ public:
+  std::string name() const override { return "mesh_resolution"; }
+  EffectGroup group() const override { return EffectGroup::numerical; }
+  std::string title() const override { return "a mesh that is too coarse"; }
+  std::string manual() const override {
+    return "The tetrahedra are too large to bend and twist as the body does, so the model is too "
+           "stiff, most where it is slender or clamped. Easily taken for stiffening, for a stiff "
+           "place or for a wrong load; a finer mesh tells, which is why it is settled before a "
+           "material is named.";
+  }
+
+  Ingredients candidates(const Model& model, std::string* why_not) const override {
+    const Capture& capture = model.scene->capture;
+    const bool linear = model.scene->body->mesh.order == 1;
+    std::string reason;
+    for (const auto& [ingredient, values] : model.applied)
+      if (ingredient->name() == name()) reason = "the mesh has been refined already";
+    if (!linear && capture.body.surface.empty())
+      reason = "the volume is told without a surface, so that it cannot be meshed anew";
+    for (const auto& material : capture.materials)
+      if (!linear && !material.region.empty())
+        reason = "the materials belong to groups of the told volume, which a new mesh has not";
+    if (why_not && !reason.empty()) *why_not = reason;
+    if (!reason.empty()) return {};
+    return {estimate(model, linear ? kQuadratic : kFinerEdge)};
+  }
+
+  std::shared_ptr<const Ingredient> rebuild(const Model&,
+                                            const std::string& variant) const override {
+    return remeshes(variant) ? refined(variant) : nullptr;
+  }
+
+  std::shared_ptr<const Ingredient> refit_form(const Model&,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    const std::string variant = scored->variant().substr(std::string("change by ").size());
+    values.resize(0);
+    return refined(variant);
+  }
+
+  bool remeshes(const std::string& variant) const override {
+    return variant == kQuadratic || variant == kFinerEdge;
+  }
+
+  std::shared_ptr<const Scene> refit_scene(const Scene& scene,
+                                           const std::string& variant) const override {
+    return variant == kQuadratic ? remeshed(scene, 1.0, 2, true) : remeshed(scene, kFiner, 0, true);
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    const bool quadratic = ingredient.variant().find(kQuadratic) != std::string::npos;
+    const std::string finer =
+        quadratic ? "quadratic tetrahedra in place of linear ones"
+                  : fmt::format("tetrahedra of {} times the edge (now {} {})", kFiner,
+                                figure(quality(model.scene->body->mesh).mean_edge),
+                                model.scene->capture.units.length);
+    if (values.size() == 0) return "a finer mesh: " + finer;
+    return fmt::format("a finer mesh ({}), with {} times the change that it brings", finer,
+                       figure(values[0]));
+  }
+
+ private:
+  static constexpr const char* kFinerEdge = "edge times 0.7";
+  static constexpr const char* kQuadratic = "order 2";
+
+  std::shared_ptr<const Ingredient> estimate(const Model& model, const std::string& variant) const {
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = "change by " + variant;
+    // Errors fall at least in proportion to the edge: all of it is at most 1/(1 - 0.7) of the
+    // change from one mesh to the other.
+    spec.parameters = {{"mesh_resolution.s", "", "times the change that a finer mesh brings", 0.0,
+                        0.0, 1.0 / (1.0 - kFiner), 1.0, false}};
+    spec.touches = {.loading = true};
+    const auto finer = std::make_shared<FinerMesh>(model, variant == kQuadratic ? 1.0 : kFiner,
+                                                   variant == kQuadratic ? 2 : 0);
+    spec.apply = [finer](const VectorXd& s, Model& m) {
+      for (size_t e = 0; e < m.examples.size(); ++e)
+        m.examples[e].loading.forces.push_back(
+            std::make_shared<MeshError>(finer, static_cast<int>(e), s[0]));
+    };
+    return make_ingredient(std::move(spec));
+  }
+
+  /// Nothing to apply: the scene has the finer mesh.
+  std::shared_ptr<const Ingredient> refined(const std::string& variant) const {
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = variant;
+    spec.apply = [](const VectorXd&, Model&) {};
+    return make_ingredient(std::move(spec));
+  }
+};
+
+}  // namespace
+
+}  // namespace hookeye
+
+HOOKEYE_DEFINE_EFFECT(mesh_resolution, MeshResolution)

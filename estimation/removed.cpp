@@ -1,0 +1,135 @@
+#include "estimation/removed.h"
+
+#include <cmath>
+
+#include "capture_io/run.h"
+#include "estimation/compare_picture.h"
+#include "estimation/page_data.h"
+#include "estimation/photo_evaluation.h"
+
+namespace hookeye {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr int kCell = 8;            ///< [px]: finer than the cells that count, coarser than speckle
+constexpr double kUnit = 1.0 / 16;  ///< standard deviations of one level
+
+/// The fitted form with the effect in it, and the values after the linear step.
+std::pair<ModelForm, VectorXd> after_step(const Fitted& fitted, const EffectScore& score) {
+  ModelForm form = fitted.form;
+  form.ingredients.push_back(score.best);
+  VectorXd p(form.size());
+  const auto parameters = form.parameters();
+  p << fitted.p, score.values;
+  for (int i = 0; i < score.base_step.size(); ++i) {
+    const Parameter& parameter = parameters[i];
+    // a linear step may take a stiffness below zero; pictures are of the moved body all the same
+    const double low = parameter.positive ? 0.1 * p[i] : parameter.low;
+    p[i] = std::clamp(p[i] + score.base_step[i], low, parameter.high);
+  }
+  return {form, p};
+}
+
+ExampleEvaluation state_of(int example, const VectorXd& q) {
+  ExampleEvaluation out;
+  out.example = example;
+  auto equilibrium = std::make_shared<Equilibrium>();
+  equilibrium->q = q;
+  out.equilibrium = std::move(equilibrium);
+  return out;
+}
+
+struct Cells {
+  int columns, rows;
+  std::vector<unsigned char> now, removed;
+};
+
+unsigned char level(double sigmas, int zero) {
+  return static_cast<unsigned char>(std::clamp(std::lround(sigmas / kUnit) + zero, 1L, 255L));
+}
+
+Cells cells_of(const Image& before, const Image& after) {
+  Cells out{(before.width + kCell - 1) / kCell, (before.height + kCell - 1) / kCell, {}, {}};
+  for (int row = 0; row < out.rows; ++row)
+    for (int column = 0; column < out.columns; ++column) {
+      double was = 0.0, is = 0.0, count = 0.0;
+      for (int y = row * kCell; y < std::min(before.height, (row + 1) * kCell); ++y)
+        for (int x = column * kCell; x < std::min(before.width, (column + 1) * kCell); ++x) {
+          const double a = before.at(x, y), b = after.at(x, y);
+          if (std::isnan(a) || std::isnan(b)) continue;
+          was += a * a, is += b * b, count += 1.0;
+        }
+      const bool counts = count > 0.25 * kCell * kCell;
+      const double rms = std::sqrt(was / std::max(count, 1.0));
+      out.now.push_back(counts ? level(rms, 1) : 0);
+      out.removed.push_back(counts ? level(rms - std::sqrt(is / count), 128) : 0);
+    }
+  return out;
+}
+
+json cells_json(const Cells& cells) {
+  std::vector<unsigned char> bytes = cells.now;
+  bytes.insert(bytes.end(), cells.removed.begin(), cells.removed.end());
+  return {{"columns", cells.columns},
+          {"rows", cells.rows},
+          {"bytes", base64(bytes.data(), bytes.size())}};
+}
+
+}  // namespace
+
+std::vector<PhotoEvaluation> predicted_residuals(const Fitted& fitted, const EffectScore& score) {
+  std::vector<PhotoEvaluation> out;
+  if (score.displaced.empty()) return out;
+  const auto scene = fitted.form.scene;
+  const auto [form, p] = after_step(fitted, score);
+  const Model model = form.realise(p);
+  const int index = scene->capture.body.texture == BodySpec::Texture::rest
+                        ? scene->example_index(scene->capture.body.texture_example)
+                        : -1;
+  ExampleEvaluation reference;
+  if (index >= 0 && !score.displaced.count(index)) return out;
+  if (index >= 0) reference = state_of(index, score.displaced.at(index));
+  EvaluationOptions options;
+  options.residuals = true;
+  for (const auto& example : fitted.evaluation.examples) {
+    const auto state = score.displaced.find(example.example);
+    if (state == score.displaced.end()) continue;
+    auto photos = PhotoComparer(scene, example.example)
+                      .compare(model, state_of(example.example, state->second),
+                               {index, index >= 0 ? &reference : nullptr}, nullptr, options);
+    for (auto& photo : photos) out.push_back(std::move(photo));
+  }
+  return out;
+}
+
+bool has_pictures(const Diagnosis& diagnosis) {
+  for (const auto& score : diagnosis.effects)
+    if (!score.displaced.empty()) return true;
+  return false;
+}
+
+void write_removed(const std::filesystem::path& folder, const Step& step) {
+  const Scene& scene = *step.fitted.form.scene;
+  for (const auto& score : step.diagnosis.effects) {
+    if (score.displaced.empty()) continue;
+    const auto after = predicted_residuals(step.fitted, score);
+    std::filesystem::create_directories(folder / score.effect);
+    json photos = json::object();
+    size_t next = 0;
+    for (const auto& example : step.fitted.evaluation.examples)
+      for (const auto& photo : example.photos) {
+        if (next >= after.size()) break;
+        const PhotoEvaluation& predicted = after[next++];
+        const std::string name = photo_name(scene, photo);
+        write_removed_picture(folder / score.effect / (name + ".png"), photo.residual,
+                              predicted.residual, name, score.effect);
+        photos[name] = cells_json(cells_of(photo.residual, predicted.residual));
+      }
+    const json document = {{"cell_px", kCell}, {"unit", kUnit}, {"photos", std::move(photos)}};
+    write_text(folder / (score.effect + ".json"), document.dump());
+  }
+}
+
+}  // namespace hookeye
