@@ -27,7 +27,8 @@ fs::path folder(const std::string& name) {
 /// A coarse sheet with few load levels: seconds.
 std::shared_ptr<const Scene> small_sheet(std::set<std::string> kinds,
                                          std::shared_ptr<const EnergyTerm> truth,
-                                         const std::string& material, const std::string& fit) {
+                                         const std::string& material, const std::string& fit,
+                                         double finer = 0.7) {
   SheetOptions o;
   o.folder = folder("sheet");
   o.kinds = std::move(kinds);
@@ -35,6 +36,7 @@ std::shared_ptr<const Scene> small_sheet(std::set<std::string> kinds,
   o.material = material;
   o.fit = fit;
   o.edge = 12.0;
+  o.finer = finer;
   o.levels = 2;
   const auto scene = make_sheet(o);
   fs::remove_all(o.folder);
@@ -136,9 +138,13 @@ TEST(ConvexFit, StaysConvexAfterEveryAcceptedStep) {
   const double mu = 0.1;
   EXPECT_LT(*std::min_element(fit.eigenvalues.begin(), fit.eigenvalues.end()), 0.1 * mu)
       << "no eigenvalue came near zero, the test would prove nothing";
-  const auto before = assess(workspace, form, p), after = assess(workspace, form, fit.p);
-  EXPECT_LT(normal_equations(std::get<Fitted>(after).evaluation).r2,
-            0.2 * normal_equations(std::get<Fitted>(before).evaluation).r2);
+  // The fitted examples alone: nothing says that the other motion has an equilibrium.
+  const auto misfit = [&](const VectorXd& at) {
+    const auto seen = workspace.evaluate(form, at, EvaluationOptions{});
+    EXPECT_TRUE(std::holds_alternative<Evaluation>(seen));
+    return normal_equations(std::get<Evaluation>(seen)).r2;
+  };
+  EXPECT_LT(misfit(fit.p), 0.2 * misfit(p));
 }
 
 TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
@@ -189,7 +195,7 @@ struct Interval {
 };
 Interval moduli_from(std::set<std::string> kinds) {
   const auto scene = small_sheet(std::move(kinds), neo_hookean(0.1, 0.4),
-                                 "{law: neo-hookean, mu: 0.12, kappa: 0.3}", "[mu, kappa]");
+                                 "{law: neo-hookean, mu: 0.12, kappa: 0.3}", "[mu, kappa]", 1.0);
   Workspace workspace(scene);
   const ModelForm base = base_form(scene);
   const auto [form, p] = to_additive(base, base.initial());
@@ -211,10 +217,8 @@ TEST(Measurements, PositionsForcesAndPhotosAgreeOnTheMaterial) {
   const Eigen::Vector2d truth(0.1, 0.4);
   for (const Interval* one : {&forces, &positions, &photos})
     for (int k = 0; k < 2; ++k) {
-      // Another mesh made the data: 2 % beside the interval.
-      const double slack = 0.02 * truth[k];
-      EXPECT_LE(one->low[k] - slack, truth[k]) << one->value.transpose();
-      EXPECT_GE(one->high[k] + slack, truth[k]) << one->value.transpose();
+      EXPECT_LE(one->low[k], truth[k]) << one->value.transpose();
+      EXPECT_GE(one->high[k], truth[k]) << one->value.transpose();
       EXPECT_GT(one->high[k], one->low[k]);
     }
   const auto ratio_only = moduli_from({"positions"});

@@ -20,7 +20,8 @@ struct SheetOptions {
   std::string fitted = "corner";  ///< motion that is fitted: "corner" or "shear"
   std::string material = "{law: stvk, lambda: 0.2, mu: 0.1}";
   std::string fit = "[lambda, mu]";
-  double edge = 5.0;     ///< told mesh [mm]; the truth's is 0.7 times as fine
+  double edge = 5.0;     ///< told mesh [mm]
+  double finer = 0.7;    ///< edge of the truth's mesh over the told one
   int levels = 3;        ///< load levels of every motion
   double stretch = 1.0;  ///< size of all motions
   double position_sigma = 0.02, force_sigma = 0.005;  ///< [mm], [N]
