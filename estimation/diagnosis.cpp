@@ -9,6 +9,7 @@
 #include <random>
 
 #include "estimation/evidence.h"
+#include "estimation/normal_equations.h"
 
 namespace hookeye {
 

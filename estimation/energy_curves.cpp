@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/normal_equations.h"
 #include "simulation/ellipticity.h"
 
 namespace hookeye {

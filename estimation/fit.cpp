@@ -3,64 +3,16 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
 #include "estimation/additive_material.h"
+#include "estimation/normal_equations.h"
 #include "estimation/progressive.h"
 
 namespace hookeye {
 
 namespace {
-
-/// What Ceres moves: x = log p for positive parameters, p / typical for the others.
-struct Scaling {
-  std::vector<Parameter> parameters;
-  VectorXd to_p(const VectorXd& x) const {
-    VectorXd p(x.size());
-    for (int i = 0; i < x.size(); ++i)
-      p[i] = parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical;
-    return p;
-  }
-  VectorXd to_x(const VectorXd& p) const {
-    VectorXd x(p.size());
-    for (int i = 0; i < p.size(); ++i) x[i] = to_x(i, p[i]);
-    return x;
-  }
-  double to_x(int i, double value) const {
-    return parameters[i].positive ? std::log(std::max(value, 1e-300))
-                                  : value / parameters[i].typical;
-  }
-  VectorXd dp_dx(const VectorXd& p) const {
-    VectorXd d(p.size());
-    for (int i = 0; i < p.size(); ++i) d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
-    return d;
-  }
-};
-
-/// (z, rho) with Jacobian (R, 0): R^T R = J^T J, R^T z = J^T r, rho^2 = |r|^2 - |z|^2. R from the
-/// eigenvectors, so that singular directions cost nothing and stay put.
-struct CondensedResidual {
-  Eigen::MatrixXd R;
-  VectorXd z;
-  double rho = 0.0;
-};
-
-CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
-  const Eigen::MatrixXd H = scale.asDiagonal() * sums.JtJ * scale.asDiagonal();
-  const VectorXd g = scale.cwiseProduct(sums.Jtr);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
-  const double floor = 1e-14 * std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
-  const VectorXd root = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  CondensedResidual out;
-  out.R = root.asDiagonal() * eigen.eigenvectors().transpose();
-  out.z = eigen.eigenvectors().transpose() * g;
-  for (int i = 0; i < out.z.size(); ++i)
-    out.z[i] = eigen.eigenvalues()[i] > floor ? out.z[i] / root[i] : 0.0;
-  out.rho = std::sqrt(std::max(0.0, sums.r2 - out.z.squaredNorm()));
-  return out;
-}
 
 class ReducedCost final : public ceres::CostFunction {
  public:
@@ -161,6 +113,16 @@ class Reporter final : public ceres::IterationCallback {
 
 }  // namespace
 
+EvaluationOptions only_pictures(int level, const FitOptions& options) {
+  EvaluationOptions evaluation;
+  evaluation.derivatives = false;
+  evaluation.pictures = true;
+  evaluation.level = level;
+  evaluation.registered = level <= 1;
+  evaluation.cancel = options.cancel;
+  return evaluation;
+}
+
 double misfit_scale(const Evaluation& evaluation) {
   std::vector<float> sample;
   for (const auto& example : evaluation.examples)
@@ -194,17 +156,6 @@ struct Look {
   double count = 0.0;   ///< pixels
   double motion_px = 0.0;
 };
-
-/// Pictures without derivatives.
-EvaluationOptions only_pictures(int level, const FitOptions& options) {
-  EvaluationOptions evaluation;
-  evaluation.derivatives = false;
-  evaluation.pictures = true;
-  evaluation.level = level;
-  evaluation.registered = level <= 1;
-  evaluation.cancel = options.cancel;
-  return evaluation;
-}
 
 std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
                                           const VectorXd& p, const FitOptions& options, int level) {
@@ -264,86 +215,6 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
 }
 
 }  // namespace
-
-NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
-  NormalEquations sums;
-  sums.JtJ.setZero(evaluation.columns, evaluation.columns);
-  sums.Jtr.setZero(evaluation.columns);
-  for (const auto& example : evaluation.examples) {
-    if (example.held_out != held_out) continue;
-    for (const auto& photo : example.photos) {
-      sums.JtJ += photo.sums.JtJ;
-      sums.Jtr += photo.sums.Jtr;
-      sums.r2 += photo.sums.r2;
-    }
-    for (const auto& measured : example.measured) {
-      sums.JtJ += measured.J.transpose() * measured.J;
-      sums.Jtr += measured.J.transpose() * measured.r;
-      sums.r2 += measured.r.squaredNorm();
-    }
-  }
-  return sums;
-}
-
-namespace {
-
-/// "mu", or "mu together with kappa": what a direction without information moves.
-std::string name_direction(const std::vector<Parameter>& parameters, const VectorXd& direction) {
-  std::vector<std::string> names;
-  bool all_stiffness = true;
-  double lo = 1e300, hi = 0.0;
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
-    names.push_back(parameters[i].name);
-    all_stiffness &= parameters[i].positive;
-    lo = std::min(lo, std::abs(direction[i]));
-    hi = std::max(hi, std::abs(direction[i]));
-  }
-  if (all_stiffness && hi < 1.1 * lo)
-    return fmt::format("stiffness scale not determined; only ratios ({})", fmt::join(names, ", "));
-  return fmt::format("not determined by this capture: {}", fmt::join(names, " together with "));
-}
-
-}  // namespace
-
-Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
-                                     const std::vector<Parameter>& parameters, const VectorXd& p,
-                                     std::vector<std::string>* undetermined,
-                                     bool keep_undetermined) {
-  const int n = static_cast<int>(parameters.size());
-  const Scaling scaling{parameters};
-  const VectorXd scale = scaling.dp_dx(p);
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
-  if (n == 0) return H;  // nothing may move: a model that is only looked at
-  for (const auto& example : evaluation.examples) {
-    if (example.held_out) continue;
-    for (const auto& photo : example.photos) {
-      const Eigen::MatrixXd Hk = photo.sums.JtJ.topLeftCorner(n, n);
-      H += Hk;
-      V += flow_statistics(photo.flow).inflation * Hk;
-    }
-    for (const auto& measured : example.measured) {
-      const Eigen::MatrixXd J = measured.J.leftCols(n);
-      H += J.transpose() * J;
-      V += std::max(1.0, measured.r.squaredNorm() / 3.0) * J.transpose() * J;
-    }
-  }
-  H = scale.asDiagonal() * H * scale.asDiagonal();
-  V = scale.asDiagonal() * V * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n), unknown = inverse;
-  for (int i = 0; i < n; ++i) {
-    // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
-    const VectorXd v = eigen.eigenvectors().col(i);
-    if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
-      if (undetermined) undetermined->push_back(name_direction(parameters, v));
-      if (keep_undetermined) unknown += 900.0 * v * v.transpose();
-      continue;
-    }
-    inverse += v * v.transpose() / eigen.eigenvalues()[i];
-  }
-  return scale.asDiagonal() * (inverse * V * inverse + unknown) * scale.asDiagonal();
-}
 
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options) {
@@ -421,64 +292,6 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
     out->converged = converged;
   }
   return fitted;
-}
-
-namespace {
-
-constexpr int kHalfSize = 1;
-
-/// Parameters after `share` of the Gauss-Newton step, within bounds; no parameter moves by more
-/// than a factor e or by its typical size times ten.
-VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquations& sums,
-                    double share) {
-  const CondensedResidual condensed = condense(sums, scaling.dp_dx(p));
-  const VectorXd dx = -condensed.R.completeOrthogonalDecomposition().solve(condensed.z) * share;
-  VectorXd x = scaling.to_x(p);
-  for (int i = 0; i < x.size(); ++i) {
-    const double most = scaling.parameters[i].positive ? 1.0 : 10.0;
-    x[i] += std::clamp(dx[i], -most, most);
-  }
-  VectorXd out = scaling.to_p(x);
-  for (int i = 0; i < out.size(); ++i)
-    out[i] = std::clamp(out[i], scaling.parameters[i].low, scaling.parameters[i].high);
-  return out;
-}
-
-}  // namespace
-
-std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& p,
-                                                       const FitOptions& options) {
-  const auto seen = workspace.evaluate(form, p, only_pictures(kHalfSize, options));
-  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  const Evaluation& pictures = std::get<Evaluation>(seen);
-  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
-}
-
-std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, const TrialScale& scale,
-                                               const FitOptions& options) {
-  EvaluationOptions derivatives = only_pictures(kHalfSize, options);
-  derivatives.derivatives = true;
-  derivatives.huber = scale.huber;
-  const auto first = workspace.evaluate(form, start, derivatives);
-  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
-  const double from = std::get<Evaluation>(first).linear_chi(false);
-  // "from the null itself" comes back a little off: rays have changed triangles
-  if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
-  const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
-  EvaluationOptions pictures = only_pictures(kHalfSize, options);
-  pictures.held_out = true;
-  std::variant<Evaluation, NumericalFailure> seen;
-  for (double share : {1.0, 0.3, 0.1, 0.0}) {
-    const VectorXd p = after_step({form.parameters()}, start, sums, share);
-    seen = workspace.evaluate(form, p, pictures);
-    if (auto* evaluation = std::get_if<Evaluation>(&seen))
-      if (share == 0.0 || evaluation->linear_chi(false) < from)
-        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
-    if (options.cancel && options.cancel->load()) break;
-  }
-  return NumericalFailure{"", 0.0, "cancelled"};
 }
 
 }  // namespace hookeye

@@ -56,46 +56,9 @@ struct Fitted {
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options = {});
 
-/// What one Gauss-Newton step on the motion in half-size pictures makes of a model.
-struct Trial {
-  VectorXd p;
-  /// Root mean square of residual over noise, made linear in the motion, half-size pictures.
-  double chi_fit = 0.0, chi_validate = 0.0;
-};
-/// What the trials of a race are measured against: the model that they start from.
-struct TrialScale {
-  double huber = 0.0;  ///< Huber's threshold in units of noise
-  double chi = 0.0;    ///< Trial::chi_fit of that model
-};
-std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& p,
-                                                       const FitOptions& options = {});
-/// The whole step, or the part of it that lowers the misfit. Fails where the start has no
-/// equilibrium or is worse than the model of `scale`.
-std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, const TrialScale& scale,
-                                               const FitOptions& options = {});
-
 /// The starting point again without moving anything: pictures, intervals, what is undetermined.
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options = {});
-
-/// Sums of the fitted examples' photos and measurements.
-struct NormalEquations {
-  Eigen::MatrixXd JtJ;
-  VectorXd Jtr;
-  double r2 = 0.0;
-};
-NormalEquations normal_equations(const Evaluation& evaluation, bool held_out = false);
-
-/// Covariance H^-1 (sum_k lambda_k H_k) H^-1 of the first `size` parameters: lambda_k is how much
-/// the variance of a smooth signature in photo k exceeds that under white noise (flow.h).
-/// Directions without information are left out (pseudo-inverse).
-/// With `keep_undetermined` they stay in, with a standard deviation of 30 times what matters.
-Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
-                                     const std::vector<Parameter>& parameters, const VectorXd& p,
-                                     std::vector<std::string>* undetermined,
-                                     bool keep_undetermined = false);
 
 /// Pictures are linear in motions below this [px]: the finest pattern that the pixel filter passes
 /// at half its contrast has a period of 6 px, of which sin(2 pi 0.3/6) is linear to 2 %.
@@ -103,5 +66,8 @@ constexpr double kLinearPx = 0.3;
 
 /// Misfit that Huber's threshold is measured in: 1.48 median |r| of the fitted photos' pictures.
 double misfit_scale(const Evaluation& evaluation);
+
+/// A look without derivatives at 1 / 2^level of the size.
+EvaluationOptions only_pictures(int level, const FitOptions& options);
 
 }  // namespace hookeye

@@ -9,49 +9,31 @@
 #include "estimation/additive_material.h"
 #include "estimation/diagnosis.h"
 #include "estimation/evidence.h"
+#include "estimation/normal_equations.h"
 
 namespace hookeye {
 
 using Eigen::MatrixXd;
 namespace {
 
-/// x = p / typical, or log p for positive parameters, as in fit().
-struct Scaled {
-  std::vector<Parameter> parameters;
-  VectorXd to_p(const VectorXd& x) const {
-    VectorXd p(x.size());
-    for (int i = 0; i < x.size(); ++i)
-      p[i] = std::min(parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical,
-                      parameters[i].high);
-    return p;
+VectorXd lower_bounds(const Scaling& scaling) {
+  VectorXd x(scaling.parameters.size());
+  for (int i = 0; i < x.size(); ++i) {
+    const Parameter& one = scaling.parameters[i];
+    x[i] = one.positive && one.low <= 0.0 ? -std::numeric_limits<double>::infinity()
+                                          : scaling.to_x(i, one.low);
   }
-  VectorXd to_x(const VectorXd& p) const {
-    VectorXd x(p.size());
-    for (int i = 0; i < p.size(); ++i)
-      x[i] =
-          parameters[i].positive ? std::log(std::max(p[i], 1e-300)) : p[i] / parameters[i].typical;
-    return x;
-  }
-  VectorXd dp_dx(const VectorXd& p) const {
-    VectorXd d(p.size());
-    for (int i = 0; i < p.size(); ++i) d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
-    return d;
-  }
-  VectorXd low() const {
-    VectorXd x(parameters.size());
-    for (size_t i = 0; i < parameters.size(); ++i) {
-      const Parameter& one = parameters[i];
-      x[i] = one.positive
-                 ? (one.low > 0 ? std::log(one.low) : -std::numeric_limits<double>::infinity())
-                 : one.low / one.typical;
-    }
-    return x;
-  }
-};
+  return x;
+}
+
+VectorXd within_upper_bounds(const Scaling& scaling, VectorXd p) {
+  for (int i = 0; i < p.size(); ++i) p[i] = std::min(p[i], scaling.parameters[i].high);
+  return p;
+}
 
 /// The model whose control values are those of x: all of an additive material share one scale, so
 /// that H(x) is a multiple of H(p) and keeps its sign.
-double common_scale(Scaled& scaled, const AdditivePart& part) {
+double common_scale(Scaling& scaled, const AdditivePart& part) {
   double scale = 0.0;
   for (int i = 0; i < part.model.size(); ++i)
     scale = std::max(scale, scaled.parameters[part.offset + i].typical);
@@ -116,10 +98,10 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
                                                      const FitOptions& options) {
   const AdditivePart part = find_additive(form, start);
   if (part.ingredient < 0) throw std::logic_error("fit_convex: no additive material");
-  Scaled scaled{form.parameters()};
+  Scaling scaled{form.parameters()};
   const double scale = common_scale(scaled, part);
   const AdditiveModel model = in_units(part.model, scale);
-  const VectorXd low = scaled.low();
+  const VectorXd low = lower_bounds(scaled);
   auto chosen = comparison(workspace, form, start, options);
   if (auto* failure = std::get_if<NumericalFailure>(&chosen)) return *failure;
   const EvaluationOptions evaluation = std::get<EvaluationOptions>(chosen);
@@ -148,7 +130,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
     for (; !accepted && damping < 1e6; damping = accepted ? damping : 8.0 * damping) {
       const ConvexProjection next = step.solve(model, part.offset, x, low, damping);
       if (!next.converged) continue;
-      const VectorXd p = scaled.to_p(next.x);
+      const VectorXd p = within_upper_bounds(scaled, scaled.to_p(next.x));
       const VectorXd move = next.x - x;
       // Below a promise of 0.01 the parameters move by a tenth of their standard deviation.
       if (-2.0 * step.g.dot(move) - move.dot(step.H * move) < 0.01) break;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimation/diagnosis.h"
-#include "estimation/fit.h"
+#include "estimation/trial.h"
 
 namespace hookeye {
 

@@ -1,5 +1,6 @@
 // hookeye plan: which further load or view would best separate what is still confused.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
@@ -97,7 +98,7 @@ std::string plan_table(const Plan& plan, size_t most) {
                     fmt::format("{}", rating.photos),
                     pair ? fmt::format("{:.0f} deg", rating.worst.angle_deg()) : "-",
                     pair ? fmt::format("{:.1f}", rating.worst.margin) : "-",
-                    pair ? fmt::format("{:.2g} px", rating.px) : "-", tests.substr(0, 28)});
+                    pair ? fmt::format("{:.2g} px", rating.px) : "-", tests.substr(0, 24)});
   }
   return table(rows) + (impossible.empty() ? "" : "not rated\n" + impossible);
 }
@@ -122,9 +123,12 @@ void run_plan(const PlanArguments& arguments, Session& session) {
   Progress::clear_line();
   session.document = to_json(found);
   session.document["step"] = run.steps().at(question.step).filename().string();
-  if (!found.ratings.empty()) session.say("{}", plan_table(found, arguments.most));
+  const bool helps = found.confused.size() > 1 ||
+                     std::any_of(found.ratings.begin(), found.ratings.end(),
+                                 [](const auto& one) { return !one.makes_testable.empty(); });
+  if (helps && !found.ratings.empty()) session.say("{}", plan_table(found, arguments.most));
   session.say("{}\n", found.sentence);
-  if (!found.ratings.empty() && found.ratings.front().why_not.empty() &&
+  if (helps && !found.ratings.empty() && found.ratings.front().why_not.empty() &&
       !found.ratings.front().candidate.told)
     session.say("in capture.yaml:\n{}", capture_lines(found.ratings.front().candidate));
 }
@@ -141,7 +145,7 @@ void add_plan(CLI::App& app, CommandBody& chosen) {
                    "Effects to tell apart (default: what the diagnosis confuses)")
       ->delimiter(',');
   command->add_flag("--grid", arguments->grid,
-                    "Rate the grid also where the capture tells loads or views without photos");
+                    "Rate the grid also where the capture tells candidates");
   command->add_option("--most", arguments->most, "Lines of the table (default: 8)")
       ->check(CLI::PositiveNumber);
   command->callback([&chosen, arguments] {

@@ -10,6 +10,7 @@
 #include "estimation/additive_material.h"
 #include "estimation/effects_scene.h"
 #include "estimation/energy_curves.h"
+#include "estimation/normal_equations.h"
 #include "estimation/progressive.h"
 #include "estimation/sheet.h"
 #include "simulation/equilibrium.h"

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "estimation/fit.h"
+#include "estimation/normal_equations.h"
 #include "support/derivative.h"
 #include "support/temporary_folder.h"
 

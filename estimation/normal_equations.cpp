@@ -1,0 +1,106 @@
+#include "estimation/normal_equations.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace hookeye {
+
+NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
+  NormalEquations sums;
+  sums.JtJ.setZero(evaluation.columns, evaluation.columns);
+  sums.Jtr.setZero(evaluation.columns);
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out != held_out) continue;
+    for (const auto& photo : example.photos) {
+      sums.JtJ += photo.sums.JtJ;
+      sums.Jtr += photo.sums.Jtr;
+      sums.r2 += photo.sums.r2;
+    }
+    for (const auto& measured : example.measured) {
+      sums.JtJ += measured.J.transpose() * measured.J;
+      sums.Jtr += measured.J.transpose() * measured.r;
+      sums.r2 += measured.r.squaredNorm();
+    }
+  }
+  return sums;
+}
+
+CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
+  const Eigen::MatrixXd H = scale.asDiagonal() * sums.JtJ * scale.asDiagonal();
+  const VectorXd g = scale.cwiseProduct(sums.Jtr);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  const double floor = 1e-14 * std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+  const VectorXd root = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  CondensedResidual out;
+  out.R = root.asDiagonal() * eigen.eigenvectors().transpose();
+  out.z = eigen.eigenvectors().transpose() * g;
+  for (int i = 0; i < out.z.size(); ++i)
+    out.z[i] = eigen.eigenvalues()[i] > floor ? out.z[i] / root[i] : 0.0;
+  out.rho = std::sqrt(std::max(0.0, sums.r2 - out.z.squaredNorm()));
+  return out;
+}
+
+namespace {
+
+/// "mu", or "mu together with kappa": what a direction without information moves.
+std::string name_direction(const std::vector<Parameter>& parameters, const VectorXd& direction) {
+  std::vector<std::string> names;
+  bool all_stiffness = true;
+  double lo = 1e300, hi = 0.0;
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
+    names.push_back(parameters[i].name);
+    all_stiffness &= parameters[i].positive;
+    lo = std::min(lo, std::abs(direction[i]));
+    hi = std::max(hi, std::abs(direction[i]));
+  }
+  if (all_stiffness && hi < 1.1 * lo)
+    return fmt::format("stiffness scale not determined; only ratios ({})", fmt::join(names, ", "));
+  return fmt::format("not determined by this capture: {}", fmt::join(names, " together with "));
+}
+
+}  // namespace
+
+Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
+                                     const std::vector<Parameter>& parameters, const VectorXd& p,
+                                     std::vector<std::string>* undetermined,
+                                     bool keep_undetermined) {
+  const int n = static_cast<int>(parameters.size());
+  const Scaling scaling{parameters};
+  const VectorXd scale = scaling.dp_dx(p);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
+  if (n == 0) return H;  // nothing may move: a model that is only looked at
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out) continue;
+    for (const auto& photo : example.photos) {
+      const Eigen::MatrixXd Hk = photo.sums.JtJ.topLeftCorner(n, n);
+      H += Hk;
+      V += flow_statistics(photo.flow).inflation * Hk;
+    }
+    for (const auto& measured : example.measured) {
+      const Eigen::MatrixXd J = measured.J.leftCols(n);
+      H += J.transpose() * J;
+      V += std::max(1.0, measured.r.squaredNorm() / 3.0) * J.transpose() * J;
+    }
+  }
+  H = scale.asDiagonal() * H * scale.asDiagonal();
+  V = scale.asDiagonal() * V * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n), unknown = inverse;
+  for (int i = 0; i < n; ++i) {
+    // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
+    const VectorXd v = eigen.eigenvectors().col(i);
+    if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
+      if (undetermined) undetermined->push_back(name_direction(parameters, v));
+      if (keep_undetermined) unknown += 900.0 * v * v.transpose();
+      continue;
+    }
+    inverse += v * v.transpose() / eigen.eigenvalues()[i];
+  }
+  return scale.asDiagonal() * (inverse * V * inverse + unknown) * scale.asDiagonal();
+}
+
+}  // namespace hookeye

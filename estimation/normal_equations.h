@@ -1,0 +1,64 @@
+// Gauss-Newton's normal equations: their sums, their units, the covariance that follows from them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimation/evaluation.h"
+
+namespace hookeye {
+
+/// What a fit moves: x = log p for positive parameters, p / typical for the others.
+struct Scaling {
+  std::vector<Parameter> parameters;
+  VectorXd to_p(const VectorXd& x) const {
+    VectorXd p(x.size());
+    for (int i = 0; i < x.size(); ++i)
+      p[i] = parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical;
+    return p;
+  }
+  VectorXd to_x(const VectorXd& p) const {
+    VectorXd x(p.size());
+    for (int i = 0; i < p.size(); ++i) x[i] = to_x(i, p[i]);
+    return x;
+  }
+  double to_x(int i, double value) const {
+    return parameters[i].positive ? std::log(std::max(value, 1e-300))
+                                  : value / parameters[i].typical;
+  }
+  VectorXd dp_dx(const VectorXd& p) const {
+    VectorXd d(p.size());
+    for (int i = 0; i < p.size(); ++i) d[i] = parameters[i].positive ? p[i] : parameters[i].typical;
+    return d;
+  }
+};
+
+/// Sums of the fitted examples' photos and measurements.
+struct NormalEquations {
+  Eigen::MatrixXd JtJ;
+  VectorXd Jtr;
+  double r2 = 0.0;
+};
+NormalEquations normal_equations(const Evaluation& evaluation, bool held_out = false);
+
+/// (z, rho) with Jacobian (R, 0): R^T R = J^T J, R^T z = J^T r, rho^2 = |r|^2 - |z|^2. R from the
+/// eigenvectors, so that singular directions cost nothing and stay put.
+struct CondensedResidual {
+  Eigen::MatrixXd R;
+  VectorXd z;
+  double rho = 0.0;
+};
+
+/// `scale`: dp/dx of the units that z and R are in.
+CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale);
+
+/// Covariance H^-1 (sum_k lambda_k H_k) H^-1 of the first `size` parameters: lambda_k is how much
+/// the variance of a smooth signature in photo k exceeds that under white noise (flow.h).
+/// Directions without information are left out (pseudo-inverse).
+/// With `keep_undetermined` they stay in, with a standard deviation of 30 times what matters.
+Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
+                                     const std::vector<Parameter>& parameters, const VectorXd& p,
+                                     std::vector<std::string>* undetermined,
+                                     bool keep_undetermined = false);
+
+}  // namespace hookeye

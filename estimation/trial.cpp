@@ -1,0 +1,68 @@
+#include "estimation/trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/normal_equations.h"
+
+namespace hookeye {
+
+namespace {
+
+constexpr int kHalfSize = 1;
+
+/// Parameters after `share` of the Gauss-Newton step, within bounds; no parameter moves by more
+/// than a factor e or by its typical size times ten.
+VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquations& sums,
+                    double share) {
+  const CondensedResidual condensed = condense(sums, scaling.dp_dx(p));
+  const VectorXd dx = -condensed.R.completeOrthogonalDecomposition().solve(condensed.z) * share;
+  VectorXd x = scaling.to_x(p);
+  for (int i = 0; i < x.size(); ++i) {
+    const double most = scaling.parameters[i].positive ? 1.0 : 10.0;
+    x[i] += std::clamp(dx[i], -most, most);
+  }
+  VectorXd out = scaling.to_p(x);
+  for (int i = 0; i < out.size(); ++i)
+    out[i] = std::clamp(out[i], scaling.parameters[i].low, scaling.parameters[i].high);
+  return out;
+}
+
+}  // namespace
+
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options) {
+  const auto seen = workspace.evaluate(form, p, only_pictures(kHalfSize, options));
+  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
+  const Evaluation& pictures = std::get<Evaluation>(seen);
+  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
+}
+
+std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
+                                               const VectorXd& start, const TrialScale& scale,
+                                               const FitOptions& options) {
+  EvaluationOptions derivatives = only_pictures(kHalfSize, options);
+  derivatives.derivatives = true;
+  derivatives.huber = scale.huber;
+  const auto first = workspace.evaluate(form, start, derivatives);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const double from = std::get<Evaluation>(first).linear_chi(false);
+  // "from the null itself" comes back a little off: rays have changed triangles
+  if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
+  const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
+  EvaluationOptions pictures = only_pictures(kHalfSize, options);
+  pictures.held_out = true;
+  std::variant<Evaluation, NumericalFailure> seen;
+  for (double share : {1.0, 0.3, 0.1, 0.0}) {
+    const VectorXd p = after_step({form.parameters()}, start, sums, share);
+    seen = workspace.evaluate(form, p, pictures);
+    if (auto* evaluation = std::get_if<Evaluation>(&seen))
+      if (share == 0.0 || evaluation->linear_chi(false) < from)
+        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
+    if (options.cancel && options.cancel->load()) break;
+  }
+  return NumericalFailure{"", 0.0, "cancelled"};
+}
+
+}  // namespace hookeye

@@ -1,0 +1,28 @@
+// One step of a fit, to see how far it gets: what a race is run in.
+#pragma once
+
+#include "estimation/fit.h"
+
+namespace hookeye {
+
+/// What one Gauss-Newton step on the motion in half-size pictures makes of a model.
+struct Trial {
+  VectorXd p;
+  /// Root mean square of residual over noise, made linear in the motion, half-size pictures.
+  double chi_fit = 0.0, chi_validate = 0.0;
+};
+/// What the trials of a race are measured against: the model that they start from.
+struct TrialScale {
+  double huber = 0.0;  ///< Huber's threshold in units of noise
+  double chi = 0.0;    ///< Trial::chi_fit of that model
+};
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options = {});
+/// The whole step, or the part of it that lowers the misfit. Fails where the start has no
+/// equilibrium or is worse than the model of `scale`.
+std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
+                                               const VectorXd& start, const TrialScale& scale,
+                                               const FitOptions& options = {});
+
+}  // namespace hookeye
