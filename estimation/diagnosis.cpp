@@ -8,8 +8,8 @@
 #include <map>
 #include <random>
 
+#include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
-#include "estimation/normal_equations.h"
 
 namespace hookeye {
 
@@ -65,79 +65,6 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
   return all;
 }
 
-/// Sums over cells rather than pixels, every photo weighted by its effective share, and the
-/// covariance of the score under noise correlated as the residual is.
-struct Sums {
-  EffectiveSums effective;
-  Eigen::MatrixXd noise;             ///< covariance of effective.s, correlated as this residual is
-  Eigen::MatrixXd null_noise;        ///< the same when only the floor is left
-  NormalEquations fitted, held_out;  ///< plain pixel sums
-  double pixel_floor2 = 1.0;
-  double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
-  double whiteness_p = 1.0;
-};
-
-Sums sum_up(const Evaluation& evaluation, const Floor& floor) {
-  Sums out;
-  const int m = evaluation.columns;
-  out.effective.H.setZero(m, m);
-  out.effective.s.setZero(m);
-  out.effective.floor2 = floor.cell_variance;
-  out.pixel_floor2 = floor.chi * floor.chi;
-  out.noise.setZero(m, m);
-  out.null_noise.setZero(m, m);
-  int photos = 0;
-  for (const auto& example : evaluation.examples)
-    for (const auto& photo : example.photos) {
-      (example.held_out ? out.held_r2 : out.photo_r2) += photo.linear_r2;
-      (example.held_out ? out.held_count : out.photo_count) += photo.count;
-      if (example.held_out) continue;
-      const FlowStatistics flow = flow_statistics(photo.flow);
-      if (flow.count == 0.0) continue;
-      ++photos;
-      out.whiteness_p = std::min(out.whiteness_p, flow.whiteness_p);
-      const double w = flow.effective / flow.count;
-      out.effective.H += w * photo.sums.JtJ;
-      out.effective.s += w * photo.sums.Jtr;
-      out.effective.r2 += w * flow.variance * flow.count;
-      out.effective.count += w * flow.count;
-      out.noise += w * w * flow.inflation * photo.sums.JtJ;
-      out.null_noise += w * w * floor.cell_inflation * photo.sums.JtJ;
-    }
-  out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
-  for (const auto& example : evaluation.examples) {
-    if (example.held_out) continue;
-    for (const auto& measured : example.measured) {
-      const Eigen::MatrixXd JtJ = measured.J.transpose() * measured.J;
-      out.effective.H += JtJ;
-      out.effective.s += measured.J.transpose() * measured.r;
-      out.effective.r2 += measured.r.squaredNorm();
-      out.effective.count += 3.0;
-      out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
-      out.null_noise += JtJ;
-    }
-  }
-  out.fitted = normal_equations(evaluation, false);
-  out.held_out = normal_equations(evaluation, true);
-  return out;
-}
-
-}  // namespace
-
-EffectiveSums effective_sums(const Evaluation& evaluation, const Floor& floor) {
-  return sum_up(evaluation, floor).effective;
-}
-
-double without_base(const EffectiveSums& sums, int base) {
-  if (base == 0) return sums.r2;
-  const VectorXd s = sums.s.head(base);
-  const Eigen::MatrixXd H = sums.H.topLeftCorner(base, base);
-  const double gain = s.dot(H.completeOrthogonalDecomposition().solve(s));
-  return std::max(sums.r2 - gain, 0.1 * sums.r2);
-}
-
-namespace {
-
 /// Evidence of every effect from its candidates' evidence.
 std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
                                         const VectorXd& evidence) {
@@ -154,7 +81,7 @@ std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates
 /// errors (their variance and their correlation from cell to cell, rest photos) would give them.
 std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
                                   const std::vector<ProjectedHypothesis>& projected,
-                                  const Sums& sums, const DiagnosisOptions& options) {
+                                  const DiagnosisSums& sums, const DiagnosisOptions& options) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sums.null_noise);
   const double r2 = sums.effective.count * sums.effective.floor2;
   const Eigen::MatrixXd root =
@@ -233,7 +160,7 @@ struct Context {
   const Fitted& fitted;
   const Scene& scene;
   const Evaluation& evaluation;
-  const Sums& sums;
+  const DiagnosisSums& sums;
   const Model model;
 };
 
@@ -376,7 +303,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   const Evaluation& evaluation = std::get<Evaluation>(result);
   out.floor = measure_floor(scene, evaluation);
-  const Sums sums = sum_up(evaluation, out.floor);
+  const DiagnosisSums sums = diagnosis_sums(evaluation, out.floor);
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
   out.whiteness_p = sums.whiteness_p;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "estimation/effect.h"
-#include "estimation/evidence.h"
 #include "estimation/fit.h"
 #include "estimation/floor.h"
 
@@ -67,11 +66,6 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
 /// values. The error falls with the square of the edge (Richardson's extrapolation, second order:
 /// quadratic elements beside clamps and corners): 1/(1 - 0.7^2) times mesh_shift.
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis);
-
-/// Sums of the fitted examples, every photo weighted by its effective share of independent cells.
-EffectiveSums effective_sums(const Evaluation& evaluation, const Floor& floor);
-/// |r|^2 less what the first `base` columns alone would still gain.
-double without_base(const EffectiveSums& sums, int base);
 
 /// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
 constexpr double kNameable = 5.0;

@@ -8,6 +8,7 @@
 
 #include "estimation/additive_material.h"
 #include "estimation/diagnosis.h"
+#include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 #include "estimation/normal_equations.h"
 
@@ -207,7 +208,7 @@ std::variant<std::vector<Scored>, NumericalFailure> score(Workspace& workspace,
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   const Evaluation& seen = std::get<Evaluation>(result);
   const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
-  const EffectiveSums sums = effective_sums(seen, floor);
+  const EffectiveSums sums = diagnosis_sums(seen, floor).effective;
   const int base = fitted.form.size();
   std::vector<Scored> out;
   for (size_t i = 0; i < all.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "estimation/effects/toolbox.h"
+#include "meshing/interpolation.h"
 
 namespace hookeye {
 
@@ -13,19 +14,20 @@ const double kFiner = 0.7;  ///< of the told edge: three times the unknowns
 
 /// What another mesh of the same body makes of the present model, as nodal forces on this one:
 /// f = K du moves this mesh's surface by du, to where the finer mesh has it (first order), and
-/// changes the reactions of the supports by as much. Solved once an example, when first asked for.
+/// changes the reactions of the supports by as much. Solved once an example, when first asked for,
+/// from this mesh's equilibrium.
 class FinerMesh {
  public:
   FinerMesh(const Model& model, double factor, int order)
       : model_(model), factor_(factor), order_(order), forces_(model.examples.size()) {}
 
   /// 3n [force]; zero where there is no such mesh or no equilibrium, so that the effect cannot be
-  /// tested.
-  const VectorXd& force(int example) {
+  /// tested. `here`: the present model's equilibrium, where it is known.
+  const VectorXd& force(int example, const Equilibrium* here = nullptr) {
     Slot& slot = forces_[example];
     std::call_once(slot.once, [&] {
       try {
-        slot.force = compute(example);
+        slot.force = compute(example, here);
       } catch (const InputError&) {  // a surface that cannot be filled
         slot.force = VectorXd::Zero(3 * model_.scene->body->mesh.nodes());
       }
@@ -45,6 +47,7 @@ class FinerMesh {
       const auto [form, p] = transfer(model_, scene);
       finer_ = form.realise(p);
       const TetMesh &fine = scene->body->mesh, &mesh = model_.scene->body->mesh;
+      from_here_ = interpolation(mesh, fine.X);
       const BoundaryLocator locator(fine);
       std::vector<char> seen(mesh.nodes(), 0);
       for (int node : mesh.boundary.reshaped()) {
@@ -57,18 +60,49 @@ class FinerMesh {
     return finer_;
   }
 
-  VectorXd compute(int example) {
+  /// One of the solvers that no other thread is at; its symbolic factor serves all examples.
+  std::unique_ptr<EquilibriumSolver> take_solver() {
+    const std::lock_guard lock(mutex_);
+    if (solvers_.empty()) return std::make_unique<EquilibriumSolver>(finer_.scene->mesh());
+    auto solver = std::move(solvers_.back());
+    solvers_.pop_back();
+    return solver;
+  }
+
+  /// The finer mesh's equilibrium, from this mesh's.
+  std::variant<Equilibrium, NumericalFailure> solve_there(int example, const Equilibrium& here) {
     const Model& fine_model = finer();
     const TetMesh& mesh = model_.scene->body->mesh;
     const TetMesh& fine = fine_model.scene->body->mesh;
+    const Matrix3Xd u = here.q.reshaped(3, mesh.nodes()) - mesh.X;
+    const Matrix3Xd x = fine.X + u * from_here_.transpose();
+    const VectorXd start = x.reshaped();
+    EquilibriumOptions options;
+    options.tolerance = 1e-6;  // what a mesh changes need not be known to more than a per mille
+    auto solver = take_solver();
+    auto there = solver->solve(fine_model.energy_of(example), fine_model.examples[example].loading,
+                               options, &start);
+    solver->forget();
+    const std::lock_guard lock(mutex_);
+    solvers_.push_back(std::move(solver));
+    return there;
+  }
+
+  VectorXd compute(int example, const Equilibrium* known) {
+    const TetMesh& mesh = model_.scene->body->mesh;
     const Loading& loading = model_.examples[example].loading;
-    VectorXd none = VectorXd::Zero(3 * mesh.nodes());
-    auto here = solve_equilibrium(mesh, model_.energy_of(example), loading);
-    auto there = solve_equilibrium(fine, fine_model.energy_of(example),
-                                   fine_model.examples[example].loading);
-    if (!std::holds_alternative<Equilibrium>(here) || !std::holds_alternative<Equilibrium>(there))
-      return none;
-    const Equilibrium &coarse = std::get<Equilibrium>(here), &other = std::get<Equilibrium>(there);
+    const VectorXd none = VectorXd::Zero(3 * mesh.nodes());
+    std::variant<Equilibrium, NumericalFailure> here;
+    if (!known) {
+      here = solve_equilibrium(mesh, model_.energy_of(example), loading);
+      known = std::get_if<Equilibrium>(&here);
+    }
+    if (!known) return none;
+    const Equilibrium& coarse = *known;
+    const auto there = solve_there(example, coarse);
+    if (!std::holds_alternative<Equilibrium>(there)) return none;
+    const Equilibrium& other = std::get<Equilibrium>(there);
+    const TetMesh& fine = finer_.scene->body->mesh;
     VectorXd du = none;
     for (const auto& [node, point] : points_) {
       const VectorXd N = shape_functions(fine.order, point.barycentric);
@@ -83,7 +117,7 @@ class FinerMesh {
     VectorXd reaction = none;
     for (const auto& measured : model_.scene->capture.examples[example].measured)
       if (measured.kind != MeasuredSpec::Kind::position)
-        add_reaction(measured.region, fine_model, coarse, other, reaction);
+        add_reaction(measured.region, finer_, coarse, other, reaction);
     VectorXd f = coarse.K * du;
     for (int unknown : loading.prescribed) f[unknown] -= reaction[unknown];
     return f;
@@ -117,6 +151,9 @@ class FinerMesh {
   std::once_flag once_;
   Model finer_;
   std::vector<std::pair<int, SurfacePoint>> points_;  ///< boundary node, where it is over there
+  Eigen::SparseMatrix<double, Eigen::RowMajor> from_here_;  ///< nodal values there by those here
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<EquilibriumSolver>> solvers_;  ///< idle
   std::vector<Slot> forces_;
 };
 
@@ -231,6 +268,13 @@ class MeshResolution final : public Effect {
       for (size_t e = 0; e < m.examples.size(); ++e)
         m.examples[e].loading.forces.push_back(
             std::make_shared<MeshError>(finer, static_cast<int>(e), s[0]));
+    };
+    spec.derivative = [finer](const VectorXd&, const Model& m, int example,
+                              const Equilibrium& equilibrium, int, MechanicsDerivative& out) {
+      out.dR_dt.setZero(equilibrium.q.size());
+      nodal_force(finer->force(example, &equilibrium))
+          ->add_residual(m.scene->body->mesh, equilibrium.q, 1.0, out.dR_dt);
+      return true;
     };
     return make_ingredient(std::move(spec));
   }

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <map>
 
+#include "meshing/interpolation.h"
 #include "meshing/subdivide.h"
 #include "shapes.h"
 #include "support/shared_data.h"
@@ -276,6 +277,20 @@ TEST(Locator, FindsBoundaryPoints) {
   }
   SurfacePoint p;
   EXPECT_NEAR(locate_on_boundary(mesh, {1.5, 1.0, 3.0}, &p), 2.0, 1e-12);
+}
+
+TEST(Interpolation, IsExactForWhatTheElementsHold) {
+  FillOptions options;
+  options.edge = 0.4;
+  const TetMesh mesh = fill(box_surface({3, 2, 1}, 1), options, {});
+  const auto field = [](const Vector3d& X) { return 1.0 + X[0] * X[1] - 2.0 * X[2] * X[2] + X[1]; };
+  VectorXd nodal(mesh.nodes());
+  for (int a = 0; a < mesh.nodes(); ++a) nodal[a] = field(mesh.X.col(a));
+  Matrix3Xd X = (Matrix3Xd::Random(3, 500).array() * 0.5 + 0.5).matrix();
+  X = Vector3d(3, 2, 1).asDiagonal() * X;
+  X.col(0) = Vector3d(3.02, 1.0, 0.5);  // a little outside: the nearest element extrapolates
+  const VectorXd values = interpolation(mesh, X) * nodal;
+  for (int i = 0; i < X.cols(); ++i) EXPECT_NEAR(values[i], field(X.col(i)), 1e-10);
 }
 
 TEST(HiddenData, VerticesAreSelectedNodesAndRegionsMatchTheGroups) {

@@ -1,0 +1,60 @@
+#include "estimation/diagnosis_sums.h"
+
+#include <algorithm>
+
+namespace hookeye {
+
+DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
+  DiagnosisSums out;
+  const int m = evaluation.columns;
+  out.effective.H.setZero(m, m);
+  out.effective.s.setZero(m);
+  out.effective.floor2 = floor.cell_variance;
+  out.pixel_floor2 = floor.chi * floor.chi;
+  out.noise.setZero(m, m);
+  out.null_noise.setZero(m, m);
+  int photos = 0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos) {
+      (example.held_out ? out.held_r2 : out.photo_r2) += photo.linear_r2;
+      (example.held_out ? out.held_count : out.photo_count) += photo.count;
+      if (example.held_out) continue;
+      const FlowStatistics flow = flow_statistics(photo.flow);
+      if (flow.count == 0.0) continue;
+      ++photos;
+      out.whiteness_p = std::min(out.whiteness_p, flow.whiteness_p);
+      const double w = flow.effective / flow.count;
+      out.effective.H += w * photo.sums.JtJ;
+      out.effective.s += w * photo.sums.Jtr;
+      out.effective.r2 += w * flow.variance * flow.count;
+      out.effective.count += w * flow.count;
+      out.noise += w * w * flow.inflation * photo.sums.JtJ;
+      out.null_noise += w * w * floor.cell_inflation * photo.sums.JtJ;
+    }
+  out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out) continue;
+    for (const auto& measured : example.measured) {
+      const Eigen::MatrixXd JtJ = measured.J.transpose() * measured.J;
+      out.effective.H += JtJ;
+      out.effective.s += measured.J.transpose() * measured.r;
+      out.effective.r2 += measured.r.squaredNorm();
+      out.effective.count += 3.0;
+      out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
+      out.null_noise += JtJ;
+    }
+  }
+  out.fitted = normal_equations(evaluation, false);
+  out.held_out = normal_equations(evaluation, true);
+  return out;
+}
+
+double without_base(const EffectiveSums& sums, int base) {
+  if (base == 0) return sums.r2;
+  const VectorXd s = sums.s.head(base);
+  const Eigen::MatrixXd H = sums.H.topLeftCorner(base, base);
+  const double gain = s.dot(H.completeOrthogonalDecomposition().solve(s));
+  return std::max(sums.r2 - gain, 0.1 * sums.r2);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,27 @@
+// The sums that a diagnosis weighs its evidence by (method.md, "Honest tests").
+#pragma once
+
+#include "estimation/evidence.h"
+#include "estimation/floor.h"
+#include "estimation/normal_equations.h"
+
+namespace hookeye {
+
+/// Sums over cells rather than pixels, every photo weighted by its effective share, and the
+/// covariance of the score under noise correlated as the residual is.
+struct DiagnosisSums {
+  EffectiveSums effective;
+  Eigen::MatrixXd noise;             ///< covariance of effective.s, correlated as this residual is
+  Eigen::MatrixXd null_noise;        ///< the same when only the floor is left
+  NormalEquations fitted, held_out;  ///< plain pixel sums
+  double pixel_floor2 = 1.0;
+  double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
+  double whiteness_p = 1.0;
+};
+
+DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor);
+
+/// |r|^2 less what the first `base` columns alone would still gain.
+double without_base(const EffectiveSums& sums, int base);
+
+}  // namespace hookeye
