@@ -101,6 +101,8 @@ struct Workspace::Impl {
                                         const EvaluationOptions& options, ExampleEvaluation& out,
                                         ExampleColumns& derivative) {
     EquilibriumOptions equilibrium_options;
+    equilibrium_options.factored = columns != nullptr;
+    equilibrium_options.smallest_step = options.smallest_load_step;
     if (options.cancel)
       equilibrium_options.cancelled = [cancel = options.cancel] { return cancel->load(); };
     auto solved =

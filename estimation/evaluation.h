@@ -29,6 +29,8 @@ struct EvaluationOptions {
   int level = 0;  ///< pyramid level: 0 = full size, each level halves
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
+  /// Load fraction at which an equilibrium is given up.
+  double smallest_load_step = EquilibriumOptions{}.smallest_step;
   const std::atomic<bool>* cancel = nullptr;
 };
 

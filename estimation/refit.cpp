@@ -25,14 +25,14 @@ struct Extension {
   /// stiffness for compliance): it is told where the scored one would start.
   Extension(const Fitted& current, const EffectScore& score, double share) : form(current.form) {
     const auto scored = score.best->parameters();
-    VectorXd values = score.values;
-    for (int i = 0; i < values.size(); ++i)
-      values[i] = scored[i].value + share * (values[i] - scored[i].value);
+    VectorXd nulls(score.values.size());
+    for (int i = 0; i < nulls.size(); ++i) nulls[i] = scored[i].value;
+    VectorXd values = nulls + share * (score.values - nulls);
     const Model model = current.form.realise(current.p);
     auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values);
     if (remeshed_by(*ingredient)) {  // what the other mesh changes, linear, stands for it here
       ingredient = score.best;
-      values = score.values;
+      values = nulls + share * (score.values - nulls);
     }
     const auto parameters = ingredient->parameters();
     for (int i = 0; i < values.size(); ++i)

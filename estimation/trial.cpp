@@ -11,6 +11,16 @@ namespace {
 
 constexpr int kHalfSize = 1;
 
+/// A model that needs finer load steps than this to stand is no leader, and would cost more than
+/// all others together.
+constexpr double kSmallestLoadStep = 0.02;
+
+EvaluationOptions half_size(const FitOptions& options) {
+  EvaluationOptions out = only_pictures(kHalfSize, options);
+  out.smallest_load_step = kSmallestLoadStep;
+  return out;
+}
+
 /// Parameters after `share` of the Gauss-Newton step, within bounds; no parameter moves by more
 /// than a factor e or by its typical size times ten.
 VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquations& sums,
@@ -33,7 +43,7 @@ VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquat
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,
                                                        const FitOptions& options) {
-  const auto seen = workspace.evaluate(form, p, only_pictures(kHalfSize, options));
+  const auto seen = workspace.evaluate(form, p, half_size(options));
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
   const Evaluation& pictures = std::get<Evaluation>(seen);
   return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
@@ -42,7 +52,7 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
                                                const VectorXd& start, const TrialScale& scale,
                                                const FitOptions& options) {
-  EvaluationOptions derivatives = only_pictures(kHalfSize, options);
+  EvaluationOptions derivatives = half_size(options);
   derivatives.derivatives = true;
   derivatives.huber = scale.huber;
   const auto first = workspace.evaluate(form, start, derivatives);
@@ -51,7 +61,7 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
   // "from the null itself" comes back a little off: rays have changed triangles
   if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
   const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
-  EvaluationOptions pictures = only_pictures(kHalfSize, options);
+  EvaluationOptions pictures = half_size(options);
   pictures.held_out = true;
   std::variant<Evaluation, NumericalFailure> seen;
   for (double share : {1.0, 0.3, 0.1, 0.0}) {

@@ -56,9 +56,12 @@ struct Equilibrium {
 };
 
 struct EquilibriumOptions {
-  double tolerance = 1e-9;          ///< |R_free|_inf over the largest nodal force (or reaction)
-  int max_iterations = 60;          ///< Newton iterations of one load step
-  double smallest_step = 1e-4;      ///< load fraction at which the solver gives up
+  double tolerance = 1e-9;      ///< |R_free|_inf over the largest nodal force (or reaction)
+  int max_iterations = 60;      ///< Newton iterations of one load step
+  double smallest_step = 1e-4;  ///< load fraction at which the solver gives up
+  /// Leave the factored tangent, which sensitivities() needs. False: Equilibrium::factor is null
+  /// and `stable` is not known, but true.
+  bool factored = true;
   std::function<bool()> cancelled;  ///< polled; true: returns a failure "cancelled"
 };
 

@@ -22,7 +22,8 @@ struct EquilibriumSolver::Impl {
   bool warm(const Problem& problem, const EquilibriumOptions& options, VectorXd& x);
   NewtonOutcome climb(const Problem& problem, const EquilibriumOptions& options, VectorXd& x,
                       double& reached);
-  std::variant<Equilibrium, NumericalFailure> finish(const Problem& problem, VectorXd x);
+  std::variant<Equilibrium, NumericalFailure> finish(const Problem& problem, bool factored,
+                                                     VectorXd x);
 };
 
 namespace {
@@ -159,17 +160,20 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
 }
 
 std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(const Problem& problem,
+                                                                            bool factored,
                                                                             VectorXd x) {
   Equilibrium e;
   e.R = problem.residual(x, 1.0);
-  e.stable = state.factorize();  // newton() left the true tangent at x in K
-  if (!e.stable && !state.factor->factorize_indefinite(state.K))
-    return NumericalFailure{
-        problem.loading.name, 1.0,
-        "the tangent at the solution is singular: the body buckles here or is not held"};
+  if (factored) {
+    e.stable = state.factorize();  // newton() left the true tangent at x in K
+    if (!e.stable && !state.factor->factorize_indefinite(state.K))
+      return NumericalFailure{
+          problem.loading.name, 1.0,
+          "the tangent at the solution is singular: the body buckles here or is not held"};
+    e.factor = state.factor;
+  }
   for (int u : state.free) e.R[u] = 0;
   e.K = state.K;
-  e.factor = state.factor;
   e.newton_iterations = state.iterations;
   e.factorizations = state.factorizations;
   q = x;
@@ -205,7 +209,8 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
   }
   s.state.iterations = s.state.factorizations = 0;
   VectorXd x = s.q.size() ? s.q : start ? *start : s.rest;
-  if (s.q.size() && s.warm(problem, options, x)) return s.finish(problem, std::move(x));
+  if (s.q.size() && s.warm(problem, options, x))
+    return s.finish(problem, options.factored, std::move(x));
 
   NumericalFailure failure{loading.name, 0.0, ""};
   for (int attempt = 0; attempt < 2; ++attempt) {
@@ -213,7 +218,7 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
     const bool from_rest = attempt == 1 || (!s.q.size() && !start);
     if (from_rest) x = s.rest;
     const NewtonOutcome out = s.climb(problem, options, x, reached);
-    if (out.converged) return s.finish(problem, std::move(x));
+    if (out.converged) return s.finish(problem, options.factored, std::move(x));
     failure.load_fraction = reached;
     failure.reason = out.reason;
     if (from_rest || out.reason == "cancelled") break;

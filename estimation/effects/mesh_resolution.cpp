@@ -13,7 +13,7 @@ namespace {
 const double kFiner = 0.7;  ///< of the told edge: three times the unknowns
 
 /// What another mesh of the same body makes of the present model, as nodal forces on this one:
-/// f = K du moves this mesh's surface by du, to where the finer mesh has it (first order), and
+/// f = K du moves this mesh by du, to where the finer mesh has the body (first order), and
 /// changes the reactions of the supports by as much. Solved once an example, when first asked for,
 /// from this mesh's equilibrium.
 class FinerMesh {
@@ -48,14 +48,7 @@ class FinerMesh {
       finer_ = form.realise(p);
       const TetMesh &fine = scene->body->mesh, &mesh = model_.scene->body->mesh;
       from_here_ = interpolation(mesh, fine.X);
-      const BoundaryLocator locator(fine);
-      std::vector<char> seen(mesh.nodes(), 0);
-      for (int node : mesh.boundary.reshaped()) {
-        if (seen[node]++) continue;
-        SurfacePoint point;
-        locator.locate(mesh.X.col(node), &point);
-        points_.emplace_back(node, point);
-      }
+      to_here_ = interpolation(fine, mesh.X);
     });
     return finer_;
   }
@@ -79,6 +72,7 @@ class FinerMesh {
     const VectorXd start = x.reshaped();
     EquilibriumOptions options;
     options.tolerance = 1e-6;  // what a mesh changes need not be known to more than a per mille
+    options.factored = false;
     auto solver = take_solver();
     auto there = solver->solve(fine_model.energy_of(example), fine_model.examples[example].loading,
                                options, &start);
@@ -103,16 +97,11 @@ class FinerMesh {
     if (!std::holds_alternative<Equilibrium>(there)) return none;
     const Equilibrium& other = std::get<Equilibrium>(there);
     const TetMesh& fine = finer_.scene->body->mesh;
-    VectorXd du = none;
-    for (const auto& [node, point] : points_) {
-      const VectorXd N = shape_functions(fine.order, point.barycentric);
-      Vector3d u = mesh.X.col(node) - coarse.q.segment<3>(3 * node);
-      for (int a = 0; a < N.size(); ++a) {
-        const int theirs = fine.elements(a, point.element);
-        u += N[a] * (other.q.segment<3>(3 * theirs) - fine.X.col(theirs));
-      }
-      du.segment<3>(3 * node) = u;
-    }
+    // Moved as a whole, not at the surface alone: there would be an element's thickness of wild
+    // strain in between.
+    const Matrix3Xd u_fine = other.q.reshaped(3, fine.nodes()) - fine.X;
+    const Matrix3Xd u_coarse = coarse.q.reshaped(3, mesh.nodes()) - mesh.X;
+    VectorXd du = (u_fine * to_here_.transpose() - u_coarse).reshaped();
     for (int unknown : loading.prescribed) du[unknown] = 0.0;
     VectorXd reaction = none;
     for (const auto& measured : model_.scene->capture.examples[example].measured)
@@ -150,8 +139,7 @@ class FinerMesh {
   int order_;
   std::once_flag once_;
   Model finer_;
-  std::vector<std::pair<int, SurfacePoint>> points_;  ///< boundary node, where it is over there
-  Eigen::SparseMatrix<double, Eigen::RowMajor> from_here_;  ///< nodal values there by those here
+  Eigen::SparseMatrix<double, Eigen::RowMajor> from_here_, to_here_;  ///< nodal values there, here
   std::mutex mutex_;
   std::vector<std::unique_ptr<EquilibriumSolver>> solvers_;  ///< idle
   std::vector<Slot> forces_;

@@ -289,7 +289,10 @@ TEST(Solver, FailureSaysWhereAndWhy) {
   hold(c.mesh, c.base, loading);
   hold(c.mesh, c.tip, loading);
   loading.prescribe(c.mesh, c.tip, 0, -4.5);  // through the base
-  auto result = solve_equilibrium(c.mesh, c.energy(), loading, {1e-9, 30, 1e-2, {}});
+  EquilibriumOptions options;
+  options.max_iterations = 30;
+  options.smallest_step = 1e-2;
+  auto result = solve_equilibrium(c.mesh, c.energy(), loading, options);
   ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
   const auto& failure = std::get<NumericalFailure>(result);
   EXPECT_EQ(failure.example, "crush");
@@ -304,11 +307,23 @@ TEST(Solver, FailureSaysWhereAndWhy) {
   EXPECT_THAT(std::get<NumericalFailure>(result).reason,
               testing::HasSubstr("translation along (1, 0, 0)"));
 
-  EquilibriumOptions options;
   options.cancelled = [] { return true; };
   result = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
   ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
   EXPECT_EQ(std::get<NumericalFailure>(result).reason, "cancelled");
+}
+
+TEST(Solver, WithoutItsFactorTheEquilibriumIsTheSame) {
+  Case c;
+  EquilibriumOptions options;
+  const auto with = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
+  options.factored = false;
+  const auto without = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
+  const Equilibrium &a = std::get<Equilibrium>(with), &b = std::get<Equilibrium>(without);
+  EXPECT_EQ(a.q, b.q);
+  EXPECT_EQ(a.factorizations, b.factorizations + 1);
+  EXPECT_TRUE(a.factor);
+  EXPECT_FALSE(b.factor);
 }
 
 TEST(Solver, UnloadedBodyStaysAtRest) {
