@@ -33,7 +33,9 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
   const Model model = fitted.form.realise(fitted.p);
   std::vector<Candidate> all;
   int column = fitted.form.size();
-  for (const Effect* effect : catalogue()) {
+  std::vector<const Effect*> tested = catalogue();
+  tested.insert(tested.end(), options.also.begin(), options.also.end());
+  for (const Effect* effect : tested) {
     if (std::count(options.without.begin(), options.without.end(), effect->name())) continue;
     std::string why_not;
     if (already_in(fitted.form, effect->name())) why_not = "already in the model";

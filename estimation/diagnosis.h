@@ -56,6 +56,8 @@ struct DiagnosisOptions {
   unsigned seed = 1;
   /// Names to leave out (leave-one-out benchmarks).
   std::vector<std::string> without;
+  /// Tested beside the catalogue (placebos).
+  std::vector<const Effect*> also;
   const std::atomic<bool>* cancel = nullptr;
 };
 

@@ -1,0 +1,85 @@
+#include "tests/estimation/repeats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "estimation/effects/toolbox.h"
+
+namespace hookeye::test {
+
+Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
+  const double truth = 0.02;
+  const SmallScene small(capture);
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const auto fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  const auto diagnosis = std::get<Diagnosis>(diagnose(workspace, fitted, options));
+  Repeat out;
+  out.covered = fitted.low[0] <= truth && truth <= fitted.high[0];
+  out.over_deviation =
+      std::log(fitted.p[0] / truth) / (std::log(fitted.high[0] / fitted.low[0]) / (2.0 * 1.959964));
+  out.first = diagnosis.effects.front().effect;
+  for (const auto& effect : diagnosis.effects) {
+    out.p_value = std::min(out.p_value, effect.p_value);
+    if (out.named.empty() && nameable(effect, diagnosis))
+      out.named = fmt::format("{} (as {:.4f} px would)", effect.effect,
+                              std::sqrt(effect.fall / diagnosis.floor.per_px2));
+  }
+  return out;
+}
+
+std::vector<std::shared_ptr<const Ingredient>> Placebo::candidates(const Model&,
+                                                                   std::string*) const {
+  IngredientSpec spec;
+  spec.name = name();
+  // 0.02 N in all moves these bodies by about as much as a moderate effect
+  spec.parameters = {{"placebo.f", "N", "forces at random", 0.0, -1.0, 1.0, 0.02, false}};
+  spec.touches = {.loading = true};
+  spec.apply = [seed = seed_](const VectorXd& f, Model& m) {
+    const TetMesh& mesh = m.scene->body->mesh;
+    const BodySize size = body_size(*m.scene);
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> normal;
+    for (ExampleModel& example : m.examples) {
+      // A direction that turns and grows over the body, as one element of a load would.
+      Eigen::Matrix<double, 3, 4> field;
+      for (double& c : field.reshaped()) c = normal(engine);
+      VectorXd force(3 * mesh.nodes());
+      for (int a = 0; a < mesh.nodes(); ++a) {
+        const Vector3d X = 2.0 * (mesh.X.col(a) - size.centre) / size.size;
+        force.segment<3>(3 * a) = f[0] / mesh.nodes() * (field * X.homogeneous());
+      }
+      example.loading.forces.push_back(nodal_force(std::move(force)));
+    }
+  };
+  return {make_ingredient(std::move(spec))};
+}
+
+double excess_over_uniform(std::vector<double> p) {
+  std::sort(p.begin(), p.end());
+  double most = 0.0;
+  for (size_t i = 0; i < p.size(); ++i)
+    if (p[i] < 1.0) most = std::max(most, (i + 1.0) / static_cast<double>(p.size()) - p[i]);
+  return most;
+}
+
+// The asymptotic point 1.2239/sqrt(n) with Stephens' correction (1970), good from n = 5 on.
+double excess_95(int n) {
+  const double root = std::sqrt(static_cast<double>(n));
+  return 1.2239 / (root + 0.12 + 0.11 / root);
+}
+
+int count_95(int n) {
+  double sum = 0.0, term = std::pow(0.95, n);
+  for (int k = 0; k <= n; ++k) {
+    sum += term;
+    if (sum >= 0.95) return k;
+    term *= (n - k) / (k + 1.0) * 0.05 / 0.95;
+  }
+  return n;
+}
+
+}  // namespace hookeye::test
