@@ -103,9 +103,8 @@ struct ModelForm {
 /// whole.
 bool is_rest(const ExampleSpec& example);
 
-/// Scene of a capture: reads photos and builds the body (edge_factor as make_body).
-std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_factor = 1.0,
-                                        bool with_photos = true);
+/// Scene of a capture: reads photos and builds the body.
+std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true);
 /// The scene with another mesh of the same body: `edge_factor` times the told edge, `order` 1 or 2
 /// (0: as told). Without its photos where they are not needed. Throws InputError as make_body.
 std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, int order,

@@ -63,11 +63,10 @@ bool is_rest(const ExampleSpec& example) {
   return true;
 }
 
-std::shared_ptr<const Scene> load_scene(const Capture& capture, double edge_factor,
-                                        bool with_photos) {
+std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos) {
   auto scene = std::make_shared<Scene>();
   scene->capture = capture;
-  scene->body = std::make_shared<const Body>(make_body(capture, edge_factor));
+  scene->body = std::make_shared<const Body>(make_body(capture));
   scene->photos.resize(capture.examples.size());
   if (capture.body.texture == BodySpec::Texture::image)
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
@@ -85,7 +84,7 @@ std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, in
   auto out = std::make_shared<Scene>();
   out->capture = scene.capture;
   out->photos.resize(scene.capture.examples.size());
-  out->body = std::make_shared<const Body>(make_body(scene.capture, edge_factor, order));
+  out->body = std::make_shared<const Body>(remesh(scene.capture, *scene.body, edge_factor, order));
   if (!with_photos) return out;
   out->photos = scene.photos;
   out->albedo = scene.albedo;

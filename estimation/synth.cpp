@@ -237,8 +237,8 @@ std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const
   const fs::path& folder = staging.folder();
   const SynthBody body = write_body(recipe, folder);
   if (options.progress) options.progress("equilibrium of every example");
-  const auto scene =
-      load_scene(true_capture(recipe, body, folder), recipe.truth.edge_factor, false);
+  const auto told = load_scene(true_capture(recipe, body, folder), false);
+  const auto scene = remeshed(*told, recipe.truth.edge_factor, 0, true);
   auto found = detail::find_truth(recipe, scene, options.cancel);
   if (auto* failure = std::get_if<NumericalFailure>(&found)) return std::move(*failure);
   const auto& truth = std::get<detail::Truth>(found);

@@ -235,9 +235,7 @@ TetMesh make_mesh(const BodySpec& spec, const MendedSurface* surface, double edg
   return fill(surface->surface, options, spec.surface_place);
 }
 
-}  // namespace
-
-Body make_body(const Capture& capture, double edge_factor, int order) {
+Body make(const Capture& capture, double edge_factor, int order, const RenderSurface* seen) {
   Body body;
   const BodySpec& spec = capture.body;
   std::unique_ptr<MendedSurface> surface;
@@ -248,9 +246,23 @@ Body make_body(const Capture& capture, double edge_factor, int order) {
     body.said = surface->said;
   }
   body.mesh = make_mesh(spec, surface.get(), edge_factor, order, body.said);
-  body.surface = surface ? ride(body.mesh, *surface, body.said) : own_boundary(body.mesh);
+  if (surface && seen) {
+    body.surface = *seen;
+    place_on(body.mesh, body.surface);
+    body.surface.W = weights_of(body.mesh, body.surface.points);
+  } else {
+    body.surface = surface ? ride(body.mesh, *surface, body.said) : own_boundary(body.mesh);
+  }
   body.regions = RegionSet(capture, body.mesh, surface.get());
   return body;
+}
+
+}  // namespace
+
+Body make_body(const Capture& capture) { return make(capture, 1.0, 0, nullptr); }
+
+Body remesh(const Capture& capture, const Body& told, double edge_factor, int order) {
+  return make(capture, edge_factor, order, &told.surface);
 }
 
 }  // namespace hookeye

@@ -31,8 +31,13 @@ struct Body {
 };
 
 /// Builds the body of a capture: reads the surface and the volume, or fills the surface.
-/// `edge_factor` scales the target edge (mesh_resolution checks use 0.5..0.8); `order` 0: as told.
-Body make_body(const Capture& capture, double edge_factor = 1.0, int order = 0);
+Body make_body(const Capture& capture);
+
+/// Another mesh of the same body: `edge_factor` scales the target edge, `order` 0: as told. What is
+/// photographed stays the surface of `told`, riding on the new tetrahedra: smooth normals would
+/// change with its vertices, and a mesh would be blamed for its shading. (Without a surface file it
+/// is the boundary of the new mesh.)
+Body remesh(const Capture& capture, const Body& told, double edge_factor, int order = 0);
 
 /// Nearest material points of the mesh's boundary, for many queries. Quadratic faces are taken as
 /// their four flat parts between the mid nodes. The mesh must outlive the locator.

@@ -59,7 +59,7 @@ void run_render(const RenderCommand& options, Session& session) {
                      "cameras: {front: {size: [800, 600], intrinsics: ..., pose: ...}}");
   const bool from_photos = capture.body.texture == BodySpec::Texture::rest;
   if (!from_photos) look_with_all_cameras(capture);
-  const auto scene = load_scene(capture, 1.0, from_photos);
+  const auto scene = load_scene(capture, from_photos);
   for (const auto& said : scene->body->said) session.warn(said);
   const Model model = realise_model(options.model, scene);
 

@@ -78,7 +78,7 @@ void say_states(Session& session, const Json& examples, const Units& units) {
 
 void run_simulate(const SimulateOptions& options, Session& session) {
   const Capture capture = read_capture(options.capture);
-  const auto scene = load_scene(capture, 1.0, false);
+  const auto scene = load_scene(capture, false);
   for (const auto& said : scene->body->said) session.warn(said);
   const Model model = realise_model(options.model, scene);
   const std::filesystem::path out = options.out;

@@ -198,7 +198,7 @@ std::shared_ptr<const Scene> truth_scene(const SheetOptions& o) {
     photo.place = example.place;
     example.photos.push_back(photo);
   }
-  return load_scene(capture, o.finer, false);
+  return remeshed(*load_scene(capture, false), o.finer, 0, true);
 }
 
 }  // namespace

@@ -69,9 +69,10 @@ TEST(Regions, SamePatchOnEveryMesh) {
       {"end", 2 * 7.7 * 30.0 + 200.0},
       {"whole", 2200.0},
   };
+  const Body told = make_body(box.capture);
   for (const int order : {1, 2}) {
     for (const double factor : {1.3, 1.0, 0.7}) {
-      const Body body = make_body(box.capture, factor, order);
+      const Body body = remesh(box.capture, told, factor, order);
       for (const auto& [name, expected] : area) {
         const Region& r = body.regions.at(name);
         const bool exact = name == "base" || name == "top" || name == "whole";
@@ -212,7 +213,7 @@ TEST(RenderSurfaces, CarryAffineMotionExactly) {
   const Vector3d b(3, -2, 1);
   for (const Capture& capture : {box.capture, volume_only}) {
     for (const int order : {1, 2}) {
-      const Body body = make_body(capture, 1.0, order);
+      const Body body = remesh(capture, make_body(capture), 1.0, order);
       const Matrix3Xd x = (A * body.mesh.X).colwise() + b;
       const VectorXd q = Eigen::Map<const VectorXd>(x.data(), x.size());
       const Matrix3Xd expected = (A * body.surface.mesh.X).colwise() + b;
@@ -227,9 +228,10 @@ TEST(RenderSurfaces, CarryAffineMotionExactly) {
 }
 
 TEST(RenderSurfaces, ACoarseSurfaceIsDividedSoThatItBends) {
-  const BoxBody box;  // all its vertices are corner nodes of what fills it
+  BoxBody box;  // all its vertices are corner nodes of what fills it
   for (const int order : {1, 2}) {
-    const Body body = make_body(box.capture, 1.0, order);
+    box.capture.body.order = order;
+    const Body body = make_body(box.capture);
     const SurfaceMesh& s = body.surface.mesh;
     for (const auto& t : s.triangles) {
       for (int k = 0; k < 3; ++k) {
@@ -245,6 +247,24 @@ TEST(RenderSurfaces, ACoarseSurfaceIsDividedSoThatItBends) {
     const double error = (body.surface.deformed(body.mesh, q) - expected).cwiseAbs().maxCoeff();
     EXPECT_LT(error, order == 1 ? 0.05 : 1e-11);
   }
+}
+
+/// Smooth normals depend on the vertices: a finer mesh must not change the shading.
+TEST(RenderSurfaces, TheSameOnEveryMeshOfTheBody) {
+  const BoxBody box;
+  const Body told = make_body(box.capture), finer = remesh(box.capture, told, 0.7);
+  ASSERT_GT(finer.mesh.nodes(), told.mesh.nodes());
+  EXPECT_EQ(finer.surface.mesh.X, told.surface.mesh.X);
+  EXPECT_EQ(finer.surface.mesh.triangles, told.surface.mesh.triangles);
+  const VectorXd q = finer.mesh.X.reshaped();
+  EXPECT_LT((finer.surface.deformed(finer.mesh, q) - told.surface.mesh.X).cwiseAbs().maxCoeff(),
+            1e-12);
+  Matrix3Xd x = finer.mesh.X;
+  x.row(2) += 0.01 * x.row(0).cwiseAbs2();
+  Matrix3Xd expected = told.surface.mesh.X;
+  expected.row(2) += 0.01 * expected.row(0).cwiseAbs2();
+  const VectorXd bent = x.reshaped();
+  EXPECT_LT((finer.surface.deformed(finer.mesh, bent) - expected).cwiseAbs().maxCoeff(), 1e-11);
 }
 
 TEST(RenderSurfaces, BodyWithoutSurfaceOrVolumeIsRefused) {
