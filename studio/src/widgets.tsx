@@ -1,9 +1,15 @@
 // Small parts of every view.
 import type {Signal} from '@preact/signals';
 import type {ComponentChildren} from 'preact';
+import {saveBars, saveCsv} from './download';
 
 export function Toolbar(props: {children: ComponentChildren}) {
   return <div class="toolbar">{props.children}</div>;
+}
+
+/** A bar for a share of one. */
+export function Share(props: {of: number | undefined}) {
+  return <span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, props.of ?? 0))}%`}} /></span>;
 }
 
 /** One of several, as a row of buttons. */
@@ -47,12 +53,14 @@ export interface Row {
   note?: string;
 }
 /** Horizontal bars from zero; `mark` is drawn as a line (the floor). */
-export function Bars(props: {title: string; unit?: string; rows: Row[]; mark?: number; digits?: number;
-                             onSave?: () => void}) {
+export function Bars(props: {title: string; rows: Row[]; mark?: number; digits?: number}) {
+  const file = props.title.replace(/[^a-z]+/gi, '-').replace(/^-/, '');
   const most = Math.max(props.mark ?? 0, ...props.rows.map((r) => (Number.isFinite(r.value) ? r.value : 0)), 1e-12);
   return (
     <section class="bars">
-      <h3>{props.title}{props.onSave && <button class="quiet" onClick={props.onSave}>CSV</button>}</h3>
+      <h3>{props.title}
+        <button class="quiet" onClick={() => saveCsv(`${file}.csv`, [['name', 'value'], ...props.rows.map((r) => [r.name, r.value])])}>CSV</button>
+        <button class="quiet" onClick={() => saveBars(`${file}.png`, props.title, props.rows, props.mark)}>PNG</button></h3>
       <dl>
         {props.rows.map((row) => (
           <div key={row.name}>

@@ -3,10 +3,10 @@ import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, gradient} from '../colours';
 import type {StepEntry} from '../document';
-import {saveCanvas, saveCsv} from '../download';
+import {saveCsv, saveSideBySide} from '../download';
 import {figure} from '../format';
 import {array, field, type StoredArray} from '../parts';
-import {chosenPhoto, floor, other, run, step, units, wantedPixel} from '../state';
+import {chosenPhoto, figuresOf, floor, other, run, step, units, wantedPixel} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {counted, frames, paint, residualScale, valuesAt, type Frames, type Kind} from './frames';
 import {Panel, type Arrow, type Layer} from './panel';
@@ -83,7 +83,6 @@ function useShown(index: number, of: StepEntry | undefined): Shown | null {
 /** Every example and camera, with chi and what is left in it. */
 function PhotoList() {
   const list = run.value.photos;
-  const figures = step.value?.metrics?.photos ?? [];
   return (
     <ul class="photos" role="listbox" aria-label="Photos" tabIndex={0}
         aria-activedescendant={`photo-${chosenPhoto.value}`}
@@ -94,13 +93,14 @@ function PhotoList() {
           chosenPhoto.value = (chosenPhoto.value + by + list.length) % list.length;
         }}>
       {list.map((photo, i) => {
-        const told = figures.find((f) => f.example === photo.example && f.camera === photo.camera);
+        const told = figuresOf(step.value, photo);
+        const then = figuresOf(other.value, photo);
         const over = told ? told.chi / floor.value.chi : 0;
         return (
           <li key={photo.name} id={`photo-${i}`} role="option" aria-selected={i === chosenPhoto.value}
               onClick={() => (chosenPhoto.value = i)}>
             <span class="name">{photo.example}<small> {photo.camera}{photo.use === 'validate' ? ' · held out' : ''}</small></span>
-            <span class="value">{figure(told?.chi)}</span>
+            <span class="value">{figure(told?.chi)}{then && ` → ${figure(then.chi)}`}</span>
             <span class="bar" style={{width: `${Math.min(100, (100 * Math.log2(1 + over)) / 4)}%`}} />
           </li>
         );
@@ -183,7 +183,7 @@ export function Compare() {
 
   const [a, b] = pair.value.split(' | ') as [Kind, Kind];
   const chi = (of: StepEntry | undefined): string =>
-    figure(of?.metrics?.photos.find((f) => f.example === entry.example && f.camera === entry.camera)?.chi);
+    figure(figuresOf(of, entry)?.chi);
   const arrows = showArrows.value ? shown?.arrows : undefined;
   const common = {photo: entry, gain: shown?.gain};
   return (
@@ -207,25 +207,14 @@ export function Compare() {
           <button onClick={() => (place.value = {scale: 1, x: entry.width / 2, y: entry.height / 2})}>1:1</button>
           <span class="push" />
           <button onClick={() => shown && pixelCsv(shown)}>CSV</button>
-          <button onClick={() => {
-            const canvases = [...area.current!.querySelectorAll('canvas')];
-            const all = document.createElement('canvas');
-            all.width = canvases.reduce((w, c) => w + c.width, 0);
-            all.height = Math.max(...canvases.map((c) => c.height));
-            let left = 0;
-            for (const canvas of canvases) {
-              all.getContext('2d')!.drawImage(canvas, left, 0);
-              left += canvas.width;
-            }
-            saveCanvas(`${entry.name}.png`, all);
-          }}>PNG</button>
+          <button onClick={() => saveSideBySide(`${entry.name}.png`, [...area.current!.querySelectorAll('canvas')])}>PNG</button>
         </Toolbar>
         <div class="panels" ref={area} tabIndex={0} role="group" onKeyDown={keys}
              aria-label="Pictures: arrow keys move the cross, + and - zoom, 0 fits">
           {layout.value === 'side by side' && <>
             <Panel title={`photo · ${entry.example} ${entry.camera}`} layer={shown?.layers.photo ?? null} {...common} />
             <Panel title="model" layer={shown?.layers.model ?? null} {...common} />
-            <Panel title={`residual · χ ${chi(step.value)}`} layer={shown?.layers.residual ?? null} arrows={arrows} {...common} />
+            <Panel title={`residual${other.value ? ' of ' + step.value!.folder : ''} · χ ${chi(step.value)}`} layer={shown?.layers.residual ?? null} arrows={arrows} {...common} />
             {other.value && <Panel title={`residual of ${other.value.folder} · χ ${chi(other.value)}`}
               layer={second?.layers.residual ?? null} arrows={showArrows.value ? second?.arrows : undefined} {...common} />}
           </>}

@@ -2,13 +2,14 @@
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, gradient, notCounted, sequential, type Rgb} from '../colours';
-import {saveCanvas, saveCsv, saveText} from '../download';
+import {saveCanvas, saveCsv, saveSideBySide, saveText} from '../download';
 import {figure} from '../format';
 import {chosenPhoto, run, step, theme, units, verb, wantedPixel} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
-import {BodyScene, type Look} from './scene';
+import type {BodyScene, Look} from './scene';
 import {examplesOf, quantities, quantityNames, reach, surface, type Quantity, type Surface} from './surface';
+import {useScene} from './use_scene';
 import {surfaceVtu} from './vtu';
 
 const quantity = signal<Quantity>('residual');
@@ -67,6 +68,9 @@ function Thumbnails(props: {scene: BodyScene | null; surfaces: Map<string, Surfa
           <span>{name}</span>
         </button>
       ))}
+      <span class="push" />
+      <button class="quiet" aria-label="PNG of all load cases" onClick={() =>
+        saveSideBySide('load-cases.png', [...surfaces.keys()].flatMap((name) => refs.current.get(name) ?? []))}>PNG</button>
     </div>
   );
 }
@@ -107,26 +111,12 @@ function fieldsCsv(s: Surface, name: string): void {
 
 export function Fails() {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const [scene, setScene] = useState<BodyScene | null>(null);
+  const {scene, fault: sceneFault} = useScene(canvas);
   const [surfaces, setSurfaces] = useState(new Map<string, Surface>());
   const [fault, setFault] = useState('');
+  const notHere = examplesOf(step.value).length ? '' : `The body of this step is not here. ${run.value.reduction ?? ''}`;
   const now = step.value;
 
-  useEffect(() => {
-    try {
-      const made = new BodyScene(canvas.current!);
-      setScene(made);
-      const watch = new ResizeObserver(() => made.draw());
-      watch.observe(canvas.current!);
-      return () => {
-        watch.disconnect();
-        made.dispose();
-      };
-    } catch {
-      setFault('This browser has no WebGL, so the body cannot be drawn.');
-      return undefined;
-    }
-  }, []);
   useEffect(() => {
     let current = true;
     if (!now) return;
@@ -163,16 +153,8 @@ export function Fails() {
   if (!now) return <p class="empty">No step is finished yet.</p>;
   const scale = scaleOf(q);
   const keys = (event: KeyboardEvent): void => {
-    const turns: Record<string, [number, number, number?]> = {
-      ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, -0.15], ArrowDown: [0, 0.15],
-      '+': [0, 0, 0.85], '-': [0, 0, 1.18],
-    };
-    const by = turns[event.key];
-    if (by) scene?.turn(...by);
-    else if (event.key === '0') scene?.frame();
-    else if (event.key === 'Enter' && scene)
-      picked.value = scene.pick(scene.canvas.clientWidth / 2, scene.canvas.clientHeight / 2);
-    else return;
+    if (!scene || scene.key(event) || event.key !== 'Enter') return;
+    picked.value = scene.pick(scene.canvas.clientWidth / 2, scene.canvas.clientHeight / 2);
     event.preventDefault();
   };
   return (
@@ -189,7 +171,7 @@ export function Fails() {
           <button onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
         </Toolbar>
         <div class="body3d">
-          {fault && <p class="empty">{fault}</p>}
+          {(sceneFault || fault || notHere) && <p class="empty">{sceneFault || fault || notHere}</p>}
           <canvas ref={canvas} tabIndex={0} role="img" onKeyDown={keys}
             aria-label={`The body in example ${chosenExample.value}, coloured by ${quantityNames[q]}; arrow keys turn it, + and - zoom, Enter picks the middle`}
             onClick={(e) => scene && (picked.value = scene.pick(e.offsetX, e.offsetY))} />

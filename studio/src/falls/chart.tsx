@@ -1,7 +1,8 @@
-// A line chart by uPlot in the page's colours.
+// A line chart by uPlot in the page's colours, with its title and its files.
 import {useEffect, useRef} from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import {saveChart, saveCsv} from '../download';
 import {theme} from '../state';
 
 export interface Line {
@@ -13,6 +14,11 @@ export interface Line {
 }
 export function Chart(props: {
   title: string;
+  /** What it shows, for those who do not see it. */
+  says: string;
+  /** Name of its files. */
+  file: string;
+  csv?: unknown[][];
   x: number[];
   names?: string[];
   lines: Line[];
@@ -29,7 +35,8 @@ export function Chart(props: {
     const faint = style.getPropertyValue('--line').trim() || '#ccc';
     const size = (): {width: number; height: number} => ({
       width: Math.max(200, box.clientWidth),
-      height: Math.max(160, box.clientHeight - 30),
+      // uPlot's legend stands below its canvas
+      height: Math.max(140, box.clientHeight - (box.querySelector('.u-legend')?.clientHeight ?? 30) - 4),
     });
     const axis = {stroke: ink, grid: {stroke: faint, width: 1}, ticks: {stroke: faint, width: 1}};
     const names = props.names;
@@ -59,6 +66,7 @@ export function Chart(props: {
       [props.x, ...props.lines.map((line) => line.values)] as uPlot.AlignedData,
       box,
     );
+    plot.setSize(size());
     const watch = new ResizeObserver(() => plot.setSize(size()));
     watch.observe(box);
     return () => {
@@ -66,5 +74,18 @@ export function Chart(props: {
       plot.destroy();
     };
   }, [props.x, props.lines, theme.value]);
-  return <div class="chart" ref={ref} role="img" aria-label={props.title} />;
+  const csv = props.csv ?? [[props.xLabel, ...props.lines.map((line) => line.label)],
+    ...props.x.map((x, i) => [x, ...props.lines.map((line) => line.values[i])])];
+  return (
+    <section class="chart-box">
+      <h3>{props.title}
+        <button class="quiet" onClick={() => saveCsv(`${props.file}.csv`, csv)}>CSV</button>
+        <button class="quiet" onClick={() => {
+          const canvas = ref.current?.querySelector('canvas');
+          if (canvas) saveChart(`${props.file}.png`, props.title, canvas, props.lines);
+        }}>PNG</button>
+      </h3>
+      <div class="chart" ref={ref} role="img" aria-label={props.says} />
+    </section>
+  );
 }
