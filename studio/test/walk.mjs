@@ -56,6 +56,9 @@ async function until(page, what, seconds = 30) {
   throw new Error(`not within ${seconds} s: ${what}`);
 }
 
+const firstPaint = async (page) => Math.round(await page.evaluate(() =>
+  performance.getEntriesByName('first-contentful-paint')[0]?.startTime));
+
 async function walk(page, name) {
   for (const verb of verbs) {
     await page.click('#tab-' + verb);
@@ -158,6 +161,27 @@ async function removedIsDrawn(page) {
   assert.fail(`what the effect would remove is not drawn: ${await coloured()}`);
 }
 
+/** A point of the body, picked by the keyboard, is shown in the photos that see it; one leads there. */
+async function pointIsShown(page) {
+  await page.click('#tab-fails');
+  await page.waitForTimeout(1500);
+  await page.focus('.body3d canvas');
+  await page.keyboard.press('Enter');
+  await page.waitForSelector('.picked button');
+  await page.waitForTimeout(600);
+  const greys = await page.$$eval('.picked canvas', (all) => all.map((canvas) => {
+    const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    return new Set(data).size;
+  }));
+  assert.ok(greys.length > 0 && greys.every((count) => count > 20), `the photos around the point: ${greys}`);
+  const said = await page.textContent('.picked button');
+  const [, x, y] = /\((\d+), (\d+)\)/.exec(said);
+  await page.click('.picked button');
+  await page.waitForSelector('#tab-compare[aria-selected=true]');
+  await until(page, () => /^\(\d+, \d+\)/.test(document.getElementById('readout').textContent));
+  assert.ok((await page.textContent('#readout')).startsWith(`(${x}, ${y})`), `${said}, but ${await page.textContent('#readout')}`);
+}
+
 /** What a click makes the page save, as bytes. */
 async function saved(page, control) {
   const [download] = await Promise.all([page.waitForEvent('download'), control.click()]);
@@ -204,8 +228,7 @@ async function report() {
   tell('report', run, '-o', html);
   for (const scheme of ['light', 'dark']) {
     const {page, faults, close} = await open('file://' + html, undefined, scheme);
-    const paint = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime);
-    console.log(`   first paint after ${Math.round(paint)} ms`);
+    console.log(`   first paint after ${await firstPaint(page)} ms`);
     await walk(page, 'report-' + scheme);
     await removedIsDrawn(page);
     await accessible(page);
@@ -286,7 +309,13 @@ async function retold() {
   near(number(await told('falls'), 'χ'), steps[0].chi_fit);
   near(number(await told('falls'), '→'), steps[1].chi_fit);
   await page.waitForSelector('.panel:nth-child(4) canvas');  // both residuals side by side
+  await pointIsShown(page);
+  await page.click('text=blink');
+  await page.click('text=residuals of both steps');
+  await page.waitForSelector('figcaption:has-text("residual of 01-gravity")');
+  await page.click('text=side by side');
   await figuresAreSaved(page);
+  await accessible(page);
   await page.click('#tab-facts');
   const kept = await saved(page, await page.$('.files a[download="run.json"]'));
   assert.equal(JSON.stringify(JSON.parse(kept.bytes.toString())), JSON.stringify(runJson()));
@@ -312,6 +341,7 @@ async function large() {
   assert.ok(size > 3e6 && size < 30e6, `${size} bytes`);
   assert.match(reduction, /pictures are shrunk to 1\/\d+ of their width; \.vtu files are left out/);
   const {page, faults, close} = await open('file://' + html);
+  console.log(`   first paint after ${await firstPaint(page)} ms`);
   assert.ok((await page.textContent('.faults')).includes(reduction));
   await walk(page, 'large');
   assert.deepEqual(faults, []);

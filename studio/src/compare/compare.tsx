@@ -17,9 +17,15 @@ const layout = signal<(typeof layouts)[number]>('side by side');
 const showArrows = signal(true);
 const split = signal(0.5);
 const blinkOn = signal(false);
-/** What swipe and blink alternate between. */
-const pairs = ['photo | model', 'photo | residual', 'model | residual'] as const;
-const pair = signal<(typeof pairs)[number]>('photo | model');
+/** What swipe and blink alternate between; the last two between the shown step and the other. */
+const pairs: Record<string, [Kind, Kind]> = {
+  'photo | model': ['photo', 'model'],
+  'photo | residual': ['photo', 'residual'],
+  'model | residual': ['model', 'residual'],
+  'residuals of both steps': ['residual', 'residual'],
+  'models of both steps': ['model', 'model'],
+};
+const pair = signal('photo | model');
 
 interface Flow {
   cell_px: number;
@@ -181,7 +187,12 @@ export function Compare() {
     event.preventDefault();
   };
 
-  const [a, b] = pair.value.split(' | ') as [Kind, Kind];
+  const offered = Object.keys(pairs).filter((name) => other.value || !name.endsWith('both steps'));
+  const chosenPair = offered.includes(pair.value) ? pair.value : offered[0];
+  const [a, b] = pairs[chosenPair];
+  const first = shown?.layers[a] ?? null;
+  const then = (a === b ? second : shown)?.layers[b] ?? null;
+  const names = a === b ? [`${a} of ${step.value?.folder}`, `${b} of ${other.value?.folder}`] : [a, b];
   const chi = (of: StepEntry | undefined): string =>
     figure(figuresOf(of, entry)?.chi);
   const arrows = showArrows.value ? shown?.arrows : undefined;
@@ -192,7 +203,7 @@ export function Compare() {
       <div class="stage">
         <Toolbar>
           <Buttons label="Layout" values={layouts} chosen={layout} />
-          {layout.value !== 'side by side' && <Buttons label="Pictures" values={pairs} chosen={pair} />}
+          {layout.value !== 'side by side' && <Buttons label="Pictures" values={offered} chosen={pair} />}
           {layout.value === 'swipe' && (
             <label>Swipe <input type="range" min="0" max="1" step="0.01" value={split.value}
               onInput={(e) => (split.value = Number(e.currentTarget.value))} /></label>
@@ -218,10 +229,8 @@ export function Compare() {
             {other.value && <Panel title={`residual of ${other.value.folder} · χ ${chi(other.value)}`}
               layer={second?.layers.residual ?? null} arrows={showArrows.value ? second?.arrows : undefined} {...common} />}
           </>}
-          {layout.value === 'swipe' && <Panel title={pair.value} layer={shown?.layers[a] ?? null}
-            second={shown?.layers[b] ?? null} split={split.value} {...common} />}
-          {layout.value === 'blink' && <Panel title={blinkOn.value ? b : a}
-            layer={shown?.layers[blinkOn.value ? b : a] ?? null} {...common} />}
+          {layout.value === 'swipe' && <Panel title={names.join(' | ')} layer={first} second={then} split={split.value} {...common} />}
+          {layout.value === 'blink' && <Panel title={names[blinkOn.value ? 1 : 0]} layer={blinkOn.value ? then : first} {...common} />}
         </div>
         <p class="readout" role="status" id="readout">{readout(shown)}</p>
         <div class="legends">

@@ -4,24 +4,18 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, gradient, notCounted, sequential, type Rgb} from '../colours';
 import {saveCanvas, saveCsv, saveSideBySide, saveText} from '../download';
 import {figure} from '../format';
-import {chosenPhoto, run, step, theme, units, verb, wantedPixel} from '../state';
+import {run, step, theme} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
 import type {BodyScene, Look} from './scene';
-import {examplesOf, quantities, quantityNames, reach, surface, type Quantity, type Surface} from './surface';
+import {examplesOf, quantities, quantityNames, reach, surface, unitOf, type Quantity, type Surface} from './surface';
+import {Picked, picked} from './picked';
 import {useScene} from './use_scene';
 import {surfaceVtu} from './vtu';
 
 const quantity = signal<Quantity>('residual');
 const amount = signal(1);
 const chosenExample = signal('');
-const picked = signal(-1);
-
-function unitOf(q: Quantity): string {
-  if (q === 'residual') return 'σ of noise';
-  if (q === 'strain') return 'largest principal Green strain';
-  return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
-}
 
 /** Strain has a sign, the others do not. */
 function scaleOf(q: Quantity): {colour: (t: number) => Rgb; signed: boolean} {
@@ -71,33 +65,6 @@ function Thumbnails(props: {scene: BodyScene | null; surfaces: Map<string, Surfa
       <span class="push" />
       <button class="quiet" aria-label="PNG of all load cases" onClick={() =>
         saveSideBySide('load-cases.png', [...surfaces.keys()].flatMap((name) => refs.current.get(name) ?? []))}>PNG</button>
-    </div>
-  );
-}
-
-function Picked(props: {s: Surface}) {
-  const {s} = props;
-  const node = picked.value;
-  if (node < 0 || 3 * node >= s.rest.length)
-    return <p class="note">Click a point of the body, or press <kbd>Enter</kbd> on it: its values, and every photo that sees it.</p>;
-  const x = [0, 1, 2].map((i) => figure(s.rest[3 * node + i])).join(', ');
-  const views = s.views.filter((view) => view.seen[node] > 0);
-  return (
-    <div class="picked">
-      <p>Rest point ({x}) {units.value.length}</p>
-      <ul>
-        {quantities.map((q) => <li key={q}>{quantityNames[q]} <b>{figure(s.scalars[q][node])}</b> {q === 'strain' ? '' : unitOf(q)}</li>)}
-      </ul>
-      {views.length === 0 && <p>No photo sees it.</p>}
-      {views.map((view) => (
-        <button key={view.photo} onClick={() => {
-          const index = run.value.photos.findIndex((p) => p.name === view.photo);
-          if (index < 0) return;
-          chosenPhoto.value = index;
-          wantedPixel.value = {photo: view.photo, x: view.pixel[2 * node], y: view.pixel[2 * node + 1]};
-          verb.value = 'compare';
-        }}>{view.photo} ({Math.round(view.pixel[2 * node])}, {Math.round(view.pixel[2 * node + 1])})</button>
-      ))}
     </div>
   );
 }
@@ -166,9 +133,9 @@ export function Fails() {
             onInput={(e) => (amount.value = Number(e.currentTarget.value))} /></label>
           <button onClick={() => scene?.frame()}>Fit</button>
           <span class="push" />
-          <button onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
-          <button onClick={() => canvas.current && saveCanvas(`${chosenExample.value}-body.png`, canvas.current)}>PNG</button>
-          <button onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
+          <button class="quiet" onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
+          <button class="quiet" onClick={() => canvas.current && saveCanvas(`${chosenExample.value}-body.png`, canvas.current)}>PNG</button>
+          <button class="quiet" onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
         </Toolbar>
         <div class="body3d">
           {(sceneFault || fault || notHere) && <p class="empty">{sceneFault || fault || notHere}</p>}
@@ -182,7 +149,7 @@ export function Fails() {
         <Thumbnails scene={scene} surfaces={surfaces} most={most} />
       </div>
       <aside>
-        {shown && <Picked s={shown} />}
+        {shown && <Picked s={shown} others={[...surfaces.values()].filter((s) => s !== shown)} />}
         <FailureBars step={now} />
       </aside>
     </div>

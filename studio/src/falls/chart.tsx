@@ -61,6 +61,8 @@ export function Chart(props: {
             value: (_: uPlot, v: number | null) => (v === null ? '–' : v.toPrecision(4)),
           })),
         ],
+        // figures before anything is pointed at
+        hooks: {ready: [(u) => u.setLegend({idx: props.x.length - 1})]},
         bands: props.bands?.map((series) => ({series, fill: faint})),
       },
       [props.x, ...props.lines.map((line) => line.values)] as uPlot.AlignedData,
