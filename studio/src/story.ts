@@ -11,16 +11,23 @@ export interface Told {
 
 const many = (count: number, what: string): string => `${count} ${what}${count === 1 ? '' : 's'}`;
 
+/** What the body is taken for: the addends that a fit found take the place of the capture's law. */
+function law(): string {
+  const addends = run.value.steps[0]?.metrics?.energy?.map((curve) => curve.name) ?? [];
+  if (addends.length) return ` whose energy is a sum over ${listed(addends)}`;
+  const laws = [...new Set(run.value.capture?.laws ?? [])];
+  return laws.length ? ` of ${listed(laws)} law` : '';
+}
+
 function compared(): Told {
-  const {photos, capture} = run.value;
+  const {photos} = run.value;
   if (!photos.length) return {headline: 'no photos', sentence: 'They are not here; see what is missing above.'};
   const examples = new Set(photos.map((p) => p.example));
   const heldOut = photos.filter((p) => p.use === 'validate').length;
-  const laws = listed([...new Set(capture?.laws ?? [])]);
   return {
     headline: many(photos.length, 'photo'),
     sentence: `of ${many(examples.size, 'load case')} by ${many(new Set(photos.map((p) => p.camera)).size, 'camera')}` +
-      `${heldOut ? `, ${heldOut} of them held out,` : ''} against pictures of a ${laws} model`,
+      `${heldOut ? `, ${heldOut} of them held out,` : ''} against pictures of a model${law()}`,
   };
 }
 

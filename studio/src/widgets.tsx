@@ -1,7 +1,9 @@
 // Small parts of every view.
 import type {Signal} from '@preact/signals';
 import type {ComponentChildren} from 'preact';
-import {saveBars, saveCsv} from './download';
+import {gradient, type Ramp} from './colours';
+import {saveCsv} from './download';
+import {saveBars} from './pictures';
 
 export function Toolbar(props: {children: ComponentChildren}) {
   return <div class="toolbar">{props.children}</div>;
@@ -31,18 +33,13 @@ export function Buttons<T extends string>(props: {
   );
 }
 
-export function Legend(props: {
-  title: string;
-  from: string;
-  middle?: string;
-  to: string;
-  background: string;
-}) {
+export function Legend(props: {ramp: Ramp}) {
+  const {ramp} = props;
   return (
     <div class="legend">
-      <span>{props.title}</span>
-      <div class="ramp" style={{background: props.background}} />
-      <div class="ends"><span>{props.from}</span><span>{props.middle ?? ''}</span><span>{props.to}</span></div>
+      <span>{ramp.title}</span>
+      <div class="ramp" style={{background: gradient(ramp)}} />
+      <div class="ends">{ramp.ends.map((end) => <span>{end}</span>)}</div>
     </div>
   );
 }

@@ -1,14 +1,14 @@
 // Verb 1: photo, model and residual of every example and camera.
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, gradient} from '../colours';
 import type {StepEntry} from '../document';
-import {saveCsv, saveSideBySide} from '../download';
+import {saveCsv} from '../download';
 import {figure} from '../format';
 import {array, field, type StoredArray} from '../parts';
+import {savePictures} from '../pictures';
 import {chosenPhoto, figuresOf, floor, other, run, step, units, wantedPixel} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
-import {counted, frames, paint, residualScale, valuesAt, type Frames, type Kind} from './frames';
+import {counted, frames, paint, residualRamp, valuesAt, type Frames, type Kind} from './frames';
 import {Panel, type Arrow, type Layer} from './panel';
 import {cursor, focus, place, resolved, zoom} from './viewport';
 
@@ -218,7 +218,8 @@ export function Compare() {
           <button onClick={() => (place.value = {scale: 1, x: entry.width / 2, y: entry.height / 2})}>1:1</button>
           <span class="push" />
           <button onClick={() => shown && pixelCsv(shown)}>CSV</button>
-          <button onClick={() => saveSideBySide(`${entry.name}.png`, [...area.current!.querySelectorAll('canvas')])}>PNG</button>
+          <button onClick={() => savePictures(`${entry.name}.png`, [...area.current!.querySelectorAll('.panel')].map((panel) => (
+            {canvas: panel.querySelector('canvas')!, says: panel.querySelector('figcaption')!.textContent ?? ''})), [residualRamp])}>PNG</button>
         </Toolbar>
         <div class="panels" ref={area} tabIndex={0} role="group" onKeyDown={keys}
              aria-label="Pictures: arrow keys move the cross, + and - zoom, 0 fits">
@@ -234,8 +235,7 @@ export function Compare() {
         </div>
         <p class="readout" role="status" id="readout">{readout(shown)}</p>
         <div class="legends">
-          <Legend title="residual, model − photo [σ of noise]" from={`−${residualScale}`} middle="0"
-                  to={`+${residualScale}`} background={gradient(diverging, -1, 1)} />
+          <Legend ramp={residualRamp} />
           {shown?.flow && <span class="arrow-legend">
             arrows: the displacement that would remove the residual, {figure(shown.gain)} times as long;
             rms {figure(shown.flow.rms_px)} px = {figure(shown.flow.rms_px * shown.flow.length_per_px)} {units.value.length}; the longest are cut

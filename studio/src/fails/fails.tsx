@@ -1,9 +1,10 @@
 // Verb 2: the body in space, coloured by what is wrong; small multiples by load case; bars.
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, gradient, notCounted, sequential, type Rgb} from '../colours';
-import {saveCanvas, saveCsv, saveSideBySide, saveText} from '../download';
+import {diverging, notCounted, sequential, type Ramp} from '../colours';
+import {saveCsv, saveText} from '../download';
 import {figure} from '../format';
+import {savePictures} from '../pictures';
 import {run, step, theme} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
@@ -18,17 +19,20 @@ const amount = signal(1);
 const chosenExample = signal('');
 
 /** Strain has a sign, the others do not. */
-function scaleOf(q: Quantity): {colour: (t: number) => Rgb; signed: boolean} {
-  return q === 'strain' ? {colour: diverging, signed: true} : {colour: sequential, signed: false};
+function rampOf(q: Quantity, most: number): Ramp {
+  const title = `${quantityNames[q]} [${unitOf(q)}]`;
+  return q === 'strain'
+    ? {title, ends: [figure(-most), '0', figure(most)], scale: diverging, from: -1}
+    : {title, ends: ['0', '', figure(most)], scale: sequential, from: 0};
 }
 
 function lookOf(s: Surface, q: Quantity, most: number, ghost: boolean): Look {
-  const {colour} = scaleOf(q);
+  const {scale} = rampOf(q, most);
   const values = s.scalars[q];
   return {
     amount: amount.value,
     ghost,
-    colour: (i) => (Number.isFinite(values[i]) ? colour(values[i] / most) : notCounted),
+    colour: (i) => (Number.isFinite(values[i]) ? scale(values[i] / most) : notCounted),
   };
 }
 
@@ -64,7 +68,7 @@ function Thumbnails(props: {scene: BodyScene | null; surfaces: Map<string, Surfa
       ))}
       <span class="push" />
       <button class="quiet" aria-label="PNG of all load cases" onClick={() =>
-        saveSideBySide('load-cases.png', [...surfaces.keys()].flatMap((name) => refs.current.get(name) ?? []))}>PNG</button>
+        savePictures('load-cases.png', [...refs.current].map(([says, canvas]) => ({canvas, says})), [rampOf(quantity.value, most)])}>PNG</button>
     </div>
   );
 }
@@ -118,7 +122,7 @@ export function Fails() {
   useEffect(() => scene?.mark(picked.value), [scene, picked.value]);
 
   if (!now) return <p class="empty">No step is finished yet.</p>;
-  const scale = scaleOf(q);
+  const ramp = rampOf(q, most);
   const keys = (event: KeyboardEvent): void => {
     if (!scene || scene.key(event) || event.key !== 'Enter') return;
     picked.value = scene.pick(scene.canvas.clientWidth / 2, scene.canvas.clientHeight / 2);
@@ -134,7 +138,7 @@ export function Fails() {
           <button onClick={() => scene?.frame()}>Fit</button>
           <span class="push" />
           <button class="quiet" onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
-          <button class="quiet" onClick={() => canvas.current && saveCanvas(`${chosenExample.value}-body.png`, canvas.current)}>PNG</button>
+          <button class="quiet" onClick={() => canvas.current && savePictures(`${chosenExample.value}-body.png`, [{canvas: canvas.current, says: chosenExample.value}], [ramp])}>PNG</button>
           <button class="quiet" onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
         </Toolbar>
         <div class="body3d">
@@ -142,9 +146,7 @@ export function Fails() {
           <canvas ref={canvas} tabIndex={0} role="img" onKeyDown={keys}
             aria-label={`The body in example ${chosenExample.value}, coloured by ${quantityNames[q]}; arrow keys turn it, + and - zoom, Enter picks the middle`}
             onClick={(e) => scene && (picked.value = scene.pick(e.offsetX, e.offsetY))} />
-          <Legend title={`${quantityNames[q]} [${unitOf(q)}]`} from={scale.signed ? figure(-most) : '0'}
-            middle={scale.signed ? '0' : ''} to={figure(most)}
-            background={gradient(scale.colour, scale.signed ? -1 : 0, 1)} />
+          <Legend ramp={ramp} />
         </div>
         <Thumbnails scene={scene} surfaces={surfaces} most={most} />
       </div>

@@ -2,7 +2,9 @@
 import {useEffect, useRef} from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import {saveChart, saveCsv} from '../download';
+import {saveCsv} from '../download';
+import {figure} from '../format';
+import {saveChart} from '../pictures';
 import {theme} from '../state';
 
 export interface Line {
@@ -26,6 +28,7 @@ export function Chart(props: {
   xLabel: string;
   yLabel: string;
   log?: boolean;
+  tall?: boolean;
 }) {
   const ref = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -43,12 +46,13 @@ export function Chart(props: {
     const plot = new uPlot(
       {
         ...size(),
-        scales: {x: {time: false, range: names ? (_, a, b) => [a - 0.3, b + 0.3] : undefined}, y: {distr: props.log ? 3 : 1}},
+        scales: {x: {time: false, range: names ? [-0.3, names.length - 0.7] : undefined}, y: {distr: props.log ? 3 : 1}},
         axes: [
           {...axis, label: props.xLabel, labelSize: 22, ...(names && {
             splits: () => props.x, values: (_: uPlot, at: number[]) => at.map((i) => names[i] ?? ''),
           })},
-          {...axis, label: props.yLabel, labelSize: 22, size: 56},
+          {...axis, label: props.yLabel, labelSize: 22, size: 64,
+            values: (_, at) => at.map((v: number | null) => (v === null ? '' : figure(v)))},
         ],
         series: [
           {label: props.xLabel, value: names ? (_, v) => names[v] ?? '–' : undefined},
@@ -79,7 +83,7 @@ export function Chart(props: {
   const csv = props.csv ?? [[props.xLabel, ...props.lines.map((line) => line.label)],
     ...props.x.map((x, i) => [x, ...props.lines.map((line) => line.values[i])])];
   return (
-    <section class="chart-box">
+    <section class={props.tall ? 'chart-box tall' : 'chart-box'}>
       <h3>{props.title}
         <button class="quiet" onClick={() => saveCsv(`${props.file}.csv`, csv)}>CSV</button>
         <button class="quiet" onClick={() => {

@@ -86,7 +86,8 @@ export function Falls() {
       lines: [
         {label: 'χ fitted photos', values: told.map((t) => t?.chi_fit ?? null), colour: '#2f7fc1', points: true},
         {label: 'χ held-out photos', values: told.map((t) => t?.chi_validate ?? null), colour: '#d1495b', dash: [6, 4], points: true},
-        {label: `floor (${floor.value.source})`, values: list.map(() => floor.value.chi), colour: '#888888', dash: [2, 3]},
+        {label: `floor (${floor.value.source})`, values: list.map(() => floor.value.chi), colour: '#888888', dash: [2, 3],
+          points: list.length === 1},
       ] as Line[],
     };
   }, [list, floor.value]);
@@ -100,7 +101,7 @@ export function Falls() {
   return (
     <div class="falls columns">
       <section>
-        <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log
+        <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
                says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
                xLabel="step" yLabel="χ, residual over noise" />
         {curves.map((curve) => <Energy key={curve.name} curve={curve} />)}

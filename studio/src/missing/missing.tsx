@@ -1,6 +1,6 @@
 // Verb 3: the ranked effects, what each would explain, and what it cannot be told from.
 import {useRef} from 'preact/hooks';
-import {css, sequential} from '../colours';
+import {css, sequential, type Ramp} from '../colours';
 import type {EffectScore} from '../document';
 import {saveCsv, saveSvg} from '../download';
 import {figure, listed, percent, spaced} from '../format';
@@ -8,7 +8,12 @@ import {chosenEffect, effectsOf, gateOf, step, stepIndex, run, wasTested} from '
 import {AddButton} from '../add/add';
 import {cosine, together} from './order';
 import {Removed} from './removed';
-import {Share} from '../widgets';
+import {Legend, Share} from '../widgets';
+
+const cosineRamp: Ramp = {
+  title: 'cosine between the changes of the pictures',
+  ends: ['told apart', '', '1: cannot be'], scale: sequential, from: 0,
+};
 
 function Confusion(props: {effects: EffectScore[]}) {
   const ref = useRef<SVGSVGElement>(null);
@@ -40,7 +45,7 @@ function Confusion(props: {effects: EffectScore[]}) {
           </g>
         ))}
       </svg>
-      <p class="note">Cosine between the pictures' changes: 1 (bright) cannot be told apart; dark is told apart well enough not to be listed.</p>
+      <Legend ramp={cosineRamp} />
     </figure>
   );
 }

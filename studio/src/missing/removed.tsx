@@ -1,12 +1,14 @@
 // The residual that the chosen effect would remove, over the photo and on the body, beside the
 // residual there is.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, gradient, sequential, shown, type Rgb} from '../colours';
+import {diverging, sequential, shown, type Ramp, type Rgb} from '../colours';
 import type {PhotoEntry} from '../document';
-import {saveCsv, saveSideBySide} from '../download';
+import {saveCsv} from '../download';
 import {spaced} from '../format';
 import {field, fromBase64, picture, type Grid} from '../parts';
+import {savePictures} from '../pictures';
 import {chosenPhoto, run, step} from '../state';
+import {Legend} from '../widgets';
 import {gainOf, residualScale} from '../compare/frames';
 import {OnBody} from './on_body';
 
@@ -88,15 +90,10 @@ function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer
   );
 }
 
-/** Colours of the two pictures with their ends. */
-function Legend() {
-  return (
-    <p class="note legends">
-      <span>0 <i style={{background: gradient(sequential, 0, 1)}} /> {residualScale} σ there is</span>
-      <span>removed <i style={{background: gradient(diverging, -1, 1)}} /> added, ±{residualScale} σ</span>
-    </p>
-  );
-}
+const ramps: Ramp[] = [
+  {title: 'residual there is [σ of noise]', ends: ['0', '', `${residualScale}`], scale: sequential, from: 0},
+  {title: 'change by the effect [σ of noise]', ends: [`−${residualScale} removed`, '0', `+${residualScale}`], scale: diverging, from: -1},
+];
 
 function cellsCsv(prediction: Prediction, name: string, effect: string): void {
   const {columns, rows, bytes: packed} = prediction.photos[name];
@@ -143,15 +140,16 @@ export function Removed(props: {effect: string}) {
           </select>
         </label>
         <button class="quiet" onClick={() => cellsCsv(prediction, entry.name, props.effect)}>CSV</button>
-        <button class="quiet" onClick={() => saveSideBySide(`${props.effect}-removes-${entry.name}.png`,
-          [...figure.current!.querySelectorAll('canvas')])}>PNG</button>
+        <button class="quiet" onClick={() => savePictures(`${props.effect}-removes-${entry.name}.png`,
+          [...figure.current!.querySelectorAll('.pair > div')].map((part) => (
+            {canvas: part.querySelector('canvas')!, says: part.querySelector('p')!.textContent ?? ''})), ramps)}>PNG</button>
       </figcaption>
       <div class="pair">
         <Layered prediction={prediction} entry={entry} layer="now" says="the residual there is" />
         <Layered prediction={prediction} entry={entry} layer="removed" says={says} />
         <OnBody prediction={prediction} example={entry.example} says={`${says}, on the body in ${entry.example}`} />
       </div>
-      <Legend />
+      <div class="legends">{ramps.map((ramp) => <Legend key={ramp.title} ramp={ramp} />)}</div>
     </figure>
   );
 }
