@@ -76,6 +76,7 @@ std::vector<std::string> blob_names(const json& document) {
     collect(step.at("residuals"), names, known);
     for (const auto& field : step.at("fields"))
       if (known.insert(field).second) names.push_back(field);
+    collect(step.at("deformed"), names, known);
   }
   return names;
 }

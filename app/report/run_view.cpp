@@ -167,6 +167,13 @@ json RunView::step_json(const fs::path& step, json& faults, int factor) {
     if (entry.path().extension() == ".json")
       out["fields"]["removes-" + entry.path().stem().string()] =
           "field/" + name + "/removes-" + entry.path().filename().string();
+  out["deformed"] = json::array();
+  for (const auto& entry : fs::directory_iterator(step / "deformed", none))
+    if (entry.path().extension() == ".vtu")
+      out["deformed"].push_back(
+          {{"name", entry.path().filename().string()},
+           {"blob", "deformed/" + name + "/" + entry.path().filename().string()}});
+  std::sort(out["deformed"].begin(), out["deformed"].end());
   for (const auto& entry : fs::recursive_directory_iterator(step, none))
     if (entry.is_regular_file() && entry.path().parent_path().filename() != "page")
       out["files"].push_back(fs::relative(entry.path(), folder_).generic_string());
@@ -242,6 +249,11 @@ std::optional<RunView::Blob> RunView::blob(const std::string& request) {
   const std::string step = rest.substr(0, second), name = rest.substr(second + 1);
   if (!plain(step) || !plain(name)) return {};
   if (kind == "residual") return residual_blob(step, name, factor);
+  if (kind == "deformed") {
+    const fs::path body = folder_ / "steps" / step / "deformed" / name;
+    if (body.extension() != ".vtu" || !fs::is_regular_file(body)) return {};
+    return Blob{read_text(body), "application/octet-stream"};
+  }
   if (kind != "field") return {};
   const std::string removes = "removes-";
   const fs::path file = name.rfind(removes, 0) == 0

@@ -76,8 +76,16 @@ export function css([r, g, b]: Rgb): string {
   return `rgb(${r} ${g} ${b})`;
 }
 
+/** A scale of colours with what it says: `from` -1 or 0 to 1. */
+export interface Ramp {
+  title: string;
+  ends: [string, string, string];
+  scale: (t: number) => Rgb;
+  from: number;
+}
+
 /** Background of a legend. */
-export function gradient(scale: (t: number) => Rgb, from: number, to: number): string {
-  const stops = Array.from({length: 17}, (_, i) => css(scale(from + ((to - from) * i) / 16)));
+export function gradient(ramp: Ramp): string {
+  const stops = Array.from({length: 17}, (_, i) => css(ramp.scale(ramp.from + ((1 - ramp.from) * i) / 16)));
   return `linear-gradient(to right, ${stops.join(', ')})`;
 }

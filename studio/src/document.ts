@@ -118,6 +118,8 @@ export interface StepEntry {
   diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number; mesh_note?: string} | null;
   residuals: Record<string, Picture>;
   fields: Record<string, string>;
+  /** The whole bodies as VTK files; none where a report had no room for them. */
+  deformed: {name: string; blob: string}[];
   files: string[];
 }
 export interface CaptureFacts {

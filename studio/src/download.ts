@@ -1,4 +1,4 @@
-// PNG and CSV of every figure.
+// Files of figures: CSV, and canvases and SVG as PNG (pictures.ts puts letters to them).
 export function save(name: string, content: Blob): void {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(content);

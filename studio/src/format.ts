@@ -15,3 +15,18 @@ export function duration(seconds: number): string {
   if (seconds < 90) return `${Math.round(seconds)} s`;
   return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
 }
+/** A value and its interval, with as many digits as the interval's width is worth. */
+export function around(value: number, low?: number, high?: number): {value: string; interval: string} {
+  if (low === undefined || high === undefined || !(high > low)) return {value: figure(value, 4), interval: '–'};
+  const largest = Math.max(Math.abs(value), Math.abs(low), Math.abs(high));
+  const digits = Math.ceil(Math.log10(largest / (high - low))) + 2;
+  const few = Math.min(8, Math.max(4, digits));
+  return {value: figure(value, few), interval: `${figure(low, few)} .. ${figure(high, few)}`};
+}
+/** "a, b and c". */
+export function listed(words: string[]): string {
+  return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`;
+}
+export function keysOf<K extends string>(names: Record<K, string>): readonly K[] {
+  return Object.keys(names) as K[];
+}

@@ -10,7 +10,8 @@ import {Falls} from './falls/falls';
 import {figure} from './format';
 import {Missing} from './missing/missing';
 import {setLive} from './parts';
-import {chosenPhoto, chosenStep, floor, help, otherStep, run, step, stepIndex, theme, timelineOf, verb, verbNames, verbs, type Verb} from './state';
+import {chosenPhoto, chosenStep, floor, help, otherStep, run, step, stepIndex, theme, timelineOf, verb, verbs, type Verb} from './state';
+import {Tabs} from './tabs';
 import './style.css';
 
 const views: Record<Verb, () => preact.JSX.Element> = {
@@ -49,26 +50,6 @@ function StepChoice() {
   );
 }
 
-function Tabs() {
-  const move = (event: KeyboardEvent): void => {
-    const by = {ArrowRight: 1, ArrowLeft: -1}[event.key];
-    if (!by) return;
-    event.preventDefault();
-    verb.value = verbs[(verbs.indexOf(verb.value) + by + verbs.length) % verbs.length];
-    document.getElementById('tab-' + verb.value)?.focus();
-  };
-  return (
-    <div class="tabs" role="tablist" aria-label="The five verbs" onKeyDown={move}>
-      {verbs.map((v, i) => (
-        <button key={v} id={'tab-' + v} role="tab" aria-selected={v === verb.value} aria-controls="view"
-                tabIndex={v === verb.value ? 0 : -1} onClick={() => (verb.value = v)}>
-          {i < 5 && <span class="number" aria-hidden="true">{i + 1}</span>} {verbNames[v]}
-        </button>
-      ))}
-    </div>
-  );
-}
-
 const keyTable: [string, string][] = [
   ['1 … 6', 'the five verbs, and the facts'],
   ['← → ↑ ↓', 'photos: next and previous; pictures: move the cross (Shift: by ten); body: turn'],
@@ -90,12 +71,12 @@ function Help() {
   );
 }
 
-function turnTheme(): void {
-  const dark = matchMedia('(prefers-color-scheme: dark)').matches;
-  const isDark = theme.value === 'dark' || (theme.value === 'auto' && dark);
-  theme.value = isDark ? 'light' : 'dark';
-  document.documentElement.dataset.theme = theme.value;
+const system = matchMedia('(prefers-color-scheme: dark)');
+function setTheme(wanted: 'light' | 'dark'): void {
+  document.documentElement.dataset.theme = wanted;
+  theme.value = wanted;
 }
+const turnTheme = (): void => setTheme(theme.value === 'dark' ? 'light' : 'dark');
 
 function keys(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
@@ -148,6 +129,8 @@ function nextPhoto(by: number): void {
   if (count) chosenPhoto.value = (chosenPhoto.value + by + count) % count;
 }
 
+setTheme(system.matches ? 'dark' : 'light');
+system.addEventListener('change', () => setTheme(system.matches ? 'dark' : 'light'));
 setLive(run.value.live === true);
 document.title = `${run.value.capture?.title ?? 'Run'} – Hookeye`;
 render(<Page />, document.getElementById('page')!);

@@ -41,7 +41,8 @@ async function fetched(name: string): Promise<Response> {
   return reply;
 }
 
-async function bytesOf(name: string): Promise<Uint8Array> {
+/** A part as it is. */
+export async function bytesOf(name: string): Promise<Uint8Array> {
   if (live) return new Uint8Array(await (await fetched(name)).arrayBuffer());
   return fromBase64((await element(name)).textContent ?? '');
 }

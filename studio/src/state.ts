@@ -1,15 +1,14 @@
 // What the page shows: the run's document and the choices of the person in front of it.
 import {computed, signal} from '@preact/signals';
-import type {JobState, PageDocument, StepEntry, TimelineStep} from './document';
+import type {EffectScore, JobState, PageDocument, PhotoEntry, PhotoFigures, StepEntry, TimelineStep} from './document';
+import {keysOf} from './format';
 
 export const run = signal<PageDocument>(
   JSON.parse(document.getElementById('document')?.textContent ?? 'null'),
 );
 export const job = signal<JobState | null>(null);
 
-export const verbs = ['compare', 'fails', 'missing', 'add', 'falls', 'facts'] as const;
-export type Verb = (typeof verbs)[number];
-export const verbNames: Record<Verb, string> = {
+export const verbNames = {
   compare: 'Compare',
   fails: 'Where it fails',
   missing: 'What is missing',
@@ -17,19 +16,25 @@ export const verbNames: Record<Verb, string> = {
   falls: 'The error falls',
   facts: 'Facts',
 };
+export type Verb = keyof typeof verbNames;
+export const verbs = keysOf(verbNames);
 
 const fromAddress = location.hash.slice(1) as Verb;
 export const verb = signal<Verb>(verbs.includes(fromAddress) ? fromAddress : 'compare');
+
+// A report is read by someone who was not there: it opens where the run began, against where it
+// ended. In the studio one works on the newest step.
+const newest = run.value.steps.length - 1;
+const retold = !run.value.live && newest > 0;
 /** -1: the newest step. */
-export const chosenStep = signal(-1);
+export const chosenStep = signal(retold ? 0 : -1);
 /** The step that the chosen one is compared with; -1: none. */
-export const otherStep = signal(-1);
-export const chosenPhoto = signal(0);
+export const otherStep = signal(retold ? newest : -1);
 export const chosenEffect = signal('');
 /** A pixel asked for by another view: shown in the middle. */
 export const wantedPixel = signal<{photo: string; x: number; y: number} | null>(null);
 export const help = signal(false);
-export const theme = signal<'auto' | 'light' | 'dark'>('auto');
+export const theme = signal<'light' | 'dark'>('light');
 
 export const stepIndex = computed(() => {
   const count = run.value.steps.length;
@@ -37,6 +42,7 @@ export const stepIndex = computed(() => {
 });
 export const step = computed<StepEntry | undefined>(() => run.value.steps[stepIndex.value]);
 export const other = computed<StepEntry | undefined>(() => run.value.steps[otherStep.value]);
+
 /** The timeline's entry of a step, or nothing where run.json does not know it. */
 export function timelineOf(entry: StepEntry | undefined): TimelineStep | undefined {
   if (!entry) return undefined;
@@ -44,6 +50,26 @@ export function timelineOf(entry: StepEntry | undefined): TimelineStep | undefin
   const found = run.value.timeline.steps[index];
   return found && entry.folder.endsWith('-' + found.name) ? found : undefined;
 }
+export function effectsOf(entry: StepEntry | undefined): EffectScore[] {
+  return entry?.diagnosis?.effects ?? timelineOf(entry)?.diagnosis ?? [];
+}
+export function wasTested(effect: EffectScore): boolean {
+  return effect.testable !== false && effect.evidence !== undefined;
+}
+/** Evidence below which no effect is named (estimation/diagnosis.h: kNameable). */
+export function gateOf(entry: StepEntry | undefined): number {
+  return Math.max(5, entry?.diagnosis?.gate ?? timelineOf(entry)?.gate ?? 0);
+}
+export function figuresOf(entry: StepEntry | undefined, photo: PhotoEntry): PhotoFigures | undefined {
+  return entry?.metrics?.photos.find((f) => f.example === photo.example && f.camera === photo.camera);
+}
+/** Where the step's misfit is largest. */
+export function worstPhoto(entry: StepEntry | undefined): number {
+  const chi = run.value.photos.map((photo) => figuresOf(entry, photo)?.chi ?? 0);
+  return Math.max(0, chi.indexOf(Math.max(...chi)));
+}
+export const chosenPhoto = signal(worstPhoto(step.value));
+
 export const floor = computed(
   () => run.value.timeline.floor ?? step.value?.metrics?.floor ?? {chi: 1, source: 'noise model'},
 );

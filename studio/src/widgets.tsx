@@ -1,9 +1,17 @@
 // Small parts of every view.
 import type {Signal} from '@preact/signals';
 import type {ComponentChildren} from 'preact';
+import {gradient, type Ramp} from './colours';
+import {saveCsv} from './download';
+import {saveBars} from './pictures';
 
 export function Toolbar(props: {children: ComponentChildren}) {
   return <div class="toolbar">{props.children}</div>;
+}
+
+/** A bar for a share of one. */
+export function Share(props: {of: number | undefined}) {
+  return <span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, props.of ?? 0))}%`}} /></span>;
 }
 
 /** One of several, as a row of buttons. */
@@ -25,18 +33,13 @@ export function Buttons<T extends string>(props: {
   );
 }
 
-export function Legend(props: {
-  title: string;
-  from: string;
-  middle?: string;
-  to: string;
-  background: string;
-}) {
+export function Legend(props: {ramp: Ramp}) {
+  const {ramp} = props;
   return (
     <div class="legend">
-      <span>{props.title}</span>
-      <div class="ramp" style={{background: props.background}} />
-      <div class="ends"><span>{props.from}</span><span>{props.middle ?? ''}</span><span>{props.to}</span></div>
+      <span>{ramp.title}</span>
+      <div class="ramp" style={{background: gradient(ramp)}} />
+      <div class="ends">{ramp.ends.map((end) => <span>{end}</span>)}</div>
     </div>
   );
 }
@@ -47,12 +50,14 @@ export interface Row {
   note?: string;
 }
 /** Horizontal bars from zero; `mark` is drawn as a line (the floor). */
-export function Bars(props: {title: string; unit?: string; rows: Row[]; mark?: number; digits?: number;
-                             onSave?: () => void}) {
+export function Bars(props: {title: string; rows: Row[]; mark?: number; digits?: number}) {
+  const file = props.title.replace(/[^a-z]+/gi, '-').replace(/^-/, '');
   const most = Math.max(props.mark ?? 0, ...props.rows.map((r) => (Number.isFinite(r.value) ? r.value : 0)), 1e-12);
   return (
     <section class="bars">
-      <h3>{props.title}{props.onSave && <button class="quiet" onClick={props.onSave}>CSV</button>}</h3>
+      <h3>{props.title}
+        <button class="quiet" onClick={() => saveCsv(`${file}.csv`, [['name', 'value'], ...props.rows.map((r) => [r.name, r.value])])}>CSV</button>
+        <button class="quiet" onClick={() => saveBars(`${file}.png`, props.title, props.rows, props.mark)}>PNG</button></h3>
       <dl>
         {props.rows.map((row) => (
           <div key={row.name}>

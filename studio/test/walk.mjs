@@ -3,7 +3,7 @@
 // With FOLDER, screenshots are kept there.
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
-import {cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
@@ -55,6 +55,9 @@ async function until(page, what, seconds = 30) {
     if (await page.evaluate(what)) return;
   throw new Error(`not within ${seconds} s: ${what}`);
 }
+
+const firstPaint = async (page) => Math.round(await page.evaluate(() =>
+  performance.getEntriesByName('first-contentful-paint')[0]?.startTime));
 
 async function walk(page, name) {
   for (const verb of verbs) {
@@ -136,21 +139,71 @@ async function keyboardOnly(page) {
   await page.keyboard.press('Escape');
 }
 
-/** The leading effect's pictures: the residual there is and what it would remove, both in colour. */
+/** The leading effect's pictures, all in colour: the residual there is and what it would remove
+ *  over the photo, and the latter on the body. */
 async function removedIsDrawn(page) {
   await page.click('#tab-missing');
   const coloured = () => page.$$eval('.removed canvas', (all) => all.map((canvas) => {
-    const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    const copy = document.createElement('canvas');
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    const context = copy.getContext('2d');
+    context.drawImage(canvas, 0, 0);  // the body's canvas has no pixels of its own to ask for
+    const data = context.getImageData(0, 0, copy.width, copy.height).data;
     let count = 0;
     for (let i = 0; i < data.length; i += 4)
       if (Math.abs(data[i] - data[i + 2]) > 25) count += 1;
     return count;
   }));
-  for (const end = Date.now() + 20000; Date.now() < end; await page.waitForTimeout(300)) {
+  for (const end = Date.now() + 30000; Date.now() < end; await page.waitForTimeout(300)) {
     const counts = await coloured();
-    if (counts.length === 2 && counts.every((c) => c > 100)) return;
+    if (counts.length === 3 && counts.every((c) => c > 100)) return;
   }
   assert.fail(`what the effect would remove is not drawn: ${await coloured()}`);
+}
+
+/** A point of the body, picked by the keyboard, is shown in the photos that see it; one leads there. */
+async function pointIsShown(page) {
+  await page.click('#tab-fails');
+  await page.waitForTimeout(1500);
+  await page.focus('.body3d canvas');
+  await page.keyboard.press('Enter');
+  await page.waitForSelector('.picked button');
+  await page.waitForTimeout(600);
+  const greys = await page.$$eval('.picked canvas', (all) => all.map((canvas) => {
+    const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+    return new Set(data).size;
+  }));
+  assert.ok(greys.length > 0 && greys.every((count) => count > 20), `the photos around the point: ${greys}`);
+  const said = await page.textContent('.picked button');
+  const [, x, y] = /\((\d+), (\d+)\)/.exec(said);
+  await page.click('.picked button');
+  await page.waitForSelector('#tab-compare[aria-selected=true]');
+  await until(page, () => /^\(\d+, \d+\)/.test(document.getElementById('readout').textContent));
+  assert.ok((await page.textContent('#readout')).startsWith(`(${x}, ${y})`), `${said}, but ${await page.textContent('#readout')}`);
+}
+
+/** What a click makes the page save, as bytes. */
+async function saved(page, control) {
+  const [download] = await Promise.all([page.waitForEvent('download'), control.click()]);
+  return {name: download.suggestedFilename(), bytes: readFileSync(await download.path())};
+}
+
+/** Every CSV and PNG button of every view gives a file that is one. */
+async function figuresAreSaved(page) {
+  let count = 0;
+  for (const verb of verbs) {
+    await page.click('#tab-' + verb);
+    await page.waitForTimeout(1500);
+    for (const control of await page.$$('#view button'))
+      if (/^(CSV|PNG|VTU)$/.test((await control.textContent()).trim())) {
+        const {name, bytes} = await saved(page, control);
+        if (name.endsWith('.png')) assert.equal(bytes.subarray(1, 4).toString(), 'PNG', name);
+        else assert.ok(bytes.toString().split('\n').length > 2, `${name} is empty`);
+        count += 1;
+      }
+  }
+  assert.ok(count > 20, `only ${count} figures can be saved`);
+  say(`${count} figures saved as CSV and PNG`);
 }
 
 /** The program's own pictures, and the plan, of the same diagnosis. */
@@ -175,8 +228,7 @@ async function report() {
   tell('report', run, '-o', html);
   for (const scheme of ['light', 'dark']) {
     const {page, faults, close} = await open('file://' + html, undefined, scheme);
-    const paint = await page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0]?.startTime);
-    console.log(`   first paint after ${Math.round(paint)} ms`);
+    console.log(`   first paint after ${await firstPaint(page)} ms`);
     await walk(page, 'report-' + scheme);
     await removedIsDrawn(page);
     await accessible(page);
@@ -239,6 +291,64 @@ async function studio() {
   say(`Add gravity by one click: chi ${chis[0]} -> ${chis[1]}, in the page and in run.json; clean end`);
 }
 
+/** The finished run's report tells by itself what was compared, what failed, what was missing and
+ *  how far the error fell, in the figures of run.json; run.json and the bodies are in it. */
+async function retold() {
+  const html = join(folder, 'finished.html');
+  tell('report', run, '-o', html);
+  const {page, faults, close} = await open('file://' + html);
+  const {steps} = runJson();
+  const told = async (verb) => (await page.textContent('#told-' + verb)).replaceAll('−', '-');
+  const number = (text, before) => Number(new RegExp(before + ' ?(-?[\\d.]+)').exec(text)?.[1]);
+  const near = (a, b) => assert.ok(Math.abs(a - b) <= 0.006 * Math.abs(b), `${a} is not ${b}`);
+  assert.match(await told('compare'), /^6 photos of 3 load cases by 2 cameras, 2 of them held out/);
+  near(number(await told('fails'), 'χ'), steps[0].chi_fit);
+  assert.match(await told('missing'), /^gravity would remove \d+ % of the misfit/);
+  near(number(await told('missing'), 'log evidence'), steps[0].diagnosis.find((e) => e.effect === 'gravity').evidence);
+  assert.match(await told('add'), /\+ gravity .*gravity\.z -\d+ mm\/s\^2, 95 % interval/);
+  near(number(await told('falls'), 'χ'), steps[0].chi_fit);
+  near(number(await told('falls'), '→'), steps[1].chi_fit);
+  await page.waitForSelector('.panel:nth-child(4) canvas');  // both residuals side by side
+  await pointIsShown(page);
+  await page.click('text=blink');
+  await page.click('text=residuals of both steps');
+  await page.waitForSelector('figcaption:has-text("residual of 01-gravity")');
+  await page.click('text=side by side');
+  await figuresAreSaved(page);
+  await accessible(page);
+  await page.click('#tab-facts');
+  const kept = await saved(page, await page.$('.files a[download="run.json"]'));
+  assert.equal(JSON.stringify(JSON.parse(kept.bytes.toString())), JSON.stringify(runJson()));
+  const body = await saved(page, await page.$('.files a[download="00-base-push.vtu"]'));
+  assert.deepEqual(body.bytes, readFileSync(join(run, 'steps', '00-base', 'deformed', 'push.vtu')));
+  assert.deepEqual(faults, []);
+  await close();
+  say('the finished report tells its run, and holds run.json and the deformed bodies');
+}
+
+/** Residuals of pure noise, 7 Mpx each: nothing that could be packed well. */
+async function large() {
+  const big = join(folder, 'big');
+  cpSync(run, big, {recursive: true});
+  for (const step of readdirSync(join(big, 'steps')))
+    for (const file of readdirSync(join(big, 'steps', step, 'residuals')))
+      if (file.endsWith('.exr'))
+        execFileSync('oiiotool', ['--create', '2600x2600', '1', '--noise:type=gaussian:mean=0:stddev=3',
+          '-d', 'half', '-o', join(big, 'steps', step, 'residuals', file)]);
+  const html = join(folder, 'big.html');
+  const {reduction} = JSON.parse(tell('report', big, '-o', html, '--json'));
+  const size = statSync(html).size;
+  assert.ok(size > 3e6 && size < 30e6, `${size} bytes`);
+  assert.match(reduction, /pictures are shrunk to 1\/\d+ of their width; \.vtu files are left out/);
+  const {page, faults, close} = await open('file://' + html);
+  console.log(`   first paint after ${await firstPaint(page)} ms`);
+  assert.ok((await page.textContent('.faults')).includes(reduction));
+  await walk(page, 'large');
+  assert.deepEqual(faults, []);
+  await close();
+  say(`a run too large for one file: ${(1e-6 * size).toFixed(1)} MB. ${reduction}`);
+}
+
 async function broken() {
   const half = join(folder, 'half');
   cpSync(run, half, {recursive: true});
@@ -261,6 +371,8 @@ try {
   plannedAndPictured();
   await report();
   await studio();
+  await retold();
+  await large();
   await broken();
 } finally {
   if (program?.exitCode === null) program.kill('SIGTERM');

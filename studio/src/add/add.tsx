@@ -1,7 +1,7 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
 import {figure, duration, spaced} from '../format';
-import {chosenStep, job, other, otherStep, run, step, stepIndex, timelineOf} from '../state';
-import {effectsNow} from '../missing/missing';
+import {chosenStep, effectsOf, gateOf, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
+import {Share} from '../widgets';
 import {add, stop} from './job';
 
 export function AddButton(props: {effect: string}) {
@@ -68,12 +68,13 @@ function Steps() {
 }
 
 function Difference() {
-  const a = timelineOf(other.value), b = timelineOf(step.value);
+  const entries = [other.value, step.value].sort((x, y) => (x?.folder ?? '').localeCompare(y?.folder ?? ''));
+  const [a, b] = entries.map(timelineOf);
   if (!a || !b || a === b) return <p class="note">Choose a step under “against” to compare it with the shown one, here and in Compare.</p>;
   const names = [...new Set([...a.parameters, ...b.parameters].map((p) => p.name))];
   return (
     <table aria-label="Parameters of the two steps">
-      <thead><tr><th>parameter</th><th>{other.value!.folder}</th><th>{step.value!.folder}</th><th>unit</th></tr></thead>
+      <thead><tr><th>parameter</th>{entries.map((entry) => <th key={entry!.folder}>{entry!.folder}</th>)}<th>unit</th></tr></thead>
       <tbody>
         {names.map((name) => {
           const [x, y] = [a, b].map((t) => t.parameters.find((p) => p.name === name));
@@ -85,18 +86,22 @@ function Difference() {
 }
 
 export function Add() {
-  const offered = effectsNow().filter((e) => e.testable !== false && e.evidence !== undefined).slice(0, 10);
+  // An effect is always added to the newest step, whichever is looked at.
+  const newest = run.value.steps[run.value.steps.length - 1];
+  const offered = effectsOf(newest).filter(wasTested).slice(0, 10);
+  const standsOut = offered.some((e) => (e.evidence ?? 0) >= gateOf(newest));
   return (
-    <div class="add">
+    <div class="add columns">
       <section>
-        <h3>Add an effect to the newest step</h3>
+        <h3>Add an effect to {newest?.folder ?? 'the newest step'}</h3>
         {!run.value.live && <p class="note">This is a report. To add with one click, run <code>hookeye studio {run.value.run}</code>; or copy a command.</p>}
         {offered.length === 0 && <p class="empty">The newest step has not been diagnosed yet.</p>}
+        {offered.length > 0 && !standsOut && <p>Nothing stands out any more: chance alone would do as well as any of these.</p>}
         <ul class="offers">
           {offered.map((e) => (
             <li key={e.effect}>
               <span class="name">{spaced(e.effect)}</span>
-              <span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, e.explains ?? 0))}%`}} /></span>
+              <Share of={e.explains} />
               <span class="value">evidence {figure(e.evidence)}</span>
               {run.value.live ? <AddButton effect={e.effect} /> : (
                 <button onClick={() => void navigator.clipboard?.writeText(`hookeye add ${run.value.run} ${e.effect}`)}>Copy command</button>

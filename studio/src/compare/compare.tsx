@@ -1,14 +1,14 @@
 // Verb 1: photo, model and residual of every example and camera.
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, gradient} from '../colours';
 import type {StepEntry} from '../document';
-import {saveCanvas, saveCsv} from '../download';
+import {saveCsv} from '../download';
 import {figure} from '../format';
 import {array, field, type StoredArray} from '../parts';
-import {chosenPhoto, floor, other, run, step, units, wantedPixel} from '../state';
+import {savePictures} from '../pictures';
+import {chosenPhoto, figuresOf, floor, other, run, step, units, wantedPixel} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
-import {counted, frames, paint, residualScale, valuesAt, type Frames, type Kind} from './frames';
+import {counted, frames, paint, residualRamp, valuesAt, type Frames, type Kind} from './frames';
 import {Panel, type Arrow, type Layer} from './panel';
 import {cursor, focus, place, resolved, zoom} from './viewport';
 
@@ -17,9 +17,15 @@ const layout = signal<(typeof layouts)[number]>('side by side');
 const showArrows = signal(true);
 const split = signal(0.5);
 const blinkOn = signal(false);
-/** What swipe and blink alternate between. */
-const pairs = ['photo | model', 'photo | residual', 'model | residual'] as const;
-const pair = signal<(typeof pairs)[number]>('photo | model');
+/** What swipe and blink alternate between; the last two between the shown step and the other. */
+const pairs: Record<string, [Kind, Kind]> = {
+  'photo | model': ['photo', 'model'],
+  'photo | residual': ['photo', 'residual'],
+  'model | residual': ['model', 'residual'],
+  'residuals of both steps': ['residual', 'residual'],
+  'models of both steps': ['model', 'model'],
+};
+const pair = signal('photo | model');
 
 interface Flow {
   cell_px: number;
@@ -83,7 +89,6 @@ function useShown(index: number, of: StepEntry | undefined): Shown | null {
 /** Every example and camera, with chi and what is left in it. */
 function PhotoList() {
   const list = run.value.photos;
-  const figures = step.value?.metrics?.photos ?? [];
   return (
     <ul class="photos" role="listbox" aria-label="Photos" tabIndex={0}
         aria-activedescendant={`photo-${chosenPhoto.value}`}
@@ -94,13 +99,14 @@ function PhotoList() {
           chosenPhoto.value = (chosenPhoto.value + by + list.length) % list.length;
         }}>
       {list.map((photo, i) => {
-        const told = figures.find((f) => f.example === photo.example && f.camera === photo.camera);
+        const told = figuresOf(step.value, photo);
+        const then = figuresOf(other.value, photo);
         const over = told ? told.chi / floor.value.chi : 0;
         return (
           <li key={photo.name} id={`photo-${i}`} role="option" aria-selected={i === chosenPhoto.value}
               onClick={() => (chosenPhoto.value = i)}>
             <span class="name">{photo.example}<small> {photo.camera}{photo.use === 'validate' ? ' · held out' : ''}</small></span>
-            <span class="value">{figure(told?.chi)}</span>
+            <span class="value">{figure(told?.chi)}{then && ` → ${figure(then.chi)}`}</span>
             <span class="bar" style={{width: `${Math.min(100, (100 * Math.log2(1 + over)) / 4)}%`}} />
           </li>
         );
@@ -181,9 +187,14 @@ export function Compare() {
     event.preventDefault();
   };
 
-  const [a, b] = pair.value.split(' | ') as [Kind, Kind];
+  const offered = Object.keys(pairs).filter((name) => other.value || !name.endsWith('both steps'));
+  const chosenPair = offered.includes(pair.value) ? pair.value : offered[0];
+  const [a, b] = pairs[chosenPair];
+  const first = shown?.layers[a] ?? null;
+  const then = (a === b ? second : shown)?.layers[b] ?? null;
+  const names = a === b ? [`${a} of ${step.value?.folder}`, `${b} of ${other.value?.folder}`] : [a, b];
   const chi = (of: StepEntry | undefined): string =>
-    figure(of?.metrics?.photos.find((f) => f.example === entry.example && f.camera === entry.camera)?.chi);
+    figure(figuresOf(of, entry)?.chi);
   const arrows = showArrows.value ? shown?.arrows : undefined;
   const common = {photo: entry, gain: shown?.gain};
   return (
@@ -192,7 +203,7 @@ export function Compare() {
       <div class="stage">
         <Toolbar>
           <Buttons label="Layout" values={layouts} chosen={layout} />
-          {layout.value !== 'side by side' && <Buttons label="Pictures" values={pairs} chosen={pair} />}
+          {layout.value !== 'side by side' && <Buttons label="Pictures" values={offered} chosen={pair} />}
           {layout.value === 'swipe' && (
             <label>Swipe <input type="range" min="0" max="1" step="0.01" value={split.value}
               onInput={(e) => (split.value = Number(e.currentTarget.value))} /></label>
@@ -207,37 +218,24 @@ export function Compare() {
           <button onClick={() => (place.value = {scale: 1, x: entry.width / 2, y: entry.height / 2})}>1:1</button>
           <span class="push" />
           <button onClick={() => shown && pixelCsv(shown)}>CSV</button>
-          <button onClick={() => {
-            const canvases = [...area.current!.querySelectorAll('canvas')];
-            const all = document.createElement('canvas');
-            all.width = canvases.reduce((w, c) => w + c.width, 0);
-            all.height = Math.max(...canvases.map((c) => c.height));
-            let left = 0;
-            for (const canvas of canvases) {
-              all.getContext('2d')!.drawImage(canvas, left, 0);
-              left += canvas.width;
-            }
-            saveCanvas(`${entry.name}.png`, all);
-          }}>PNG</button>
+          <button onClick={() => savePictures(`${entry.name}.png`, [...area.current!.querySelectorAll('.panel')].map((panel) => (
+            {canvas: panel.querySelector('canvas')!, says: panel.querySelector('figcaption')!.textContent ?? ''})), [residualRamp])}>PNG</button>
         </Toolbar>
         <div class="panels" ref={area} tabIndex={0} role="group" onKeyDown={keys}
              aria-label="Pictures: arrow keys move the cross, + and - zoom, 0 fits">
           {layout.value === 'side by side' && <>
             <Panel title={`photo · ${entry.example} ${entry.camera}`} layer={shown?.layers.photo ?? null} {...common} />
             <Panel title="model" layer={shown?.layers.model ?? null} {...common} />
-            <Panel title={`residual · χ ${chi(step.value)}`} layer={shown?.layers.residual ?? null} arrows={arrows} {...common} />
+            <Panel title={`residual${other.value ? ' of ' + step.value!.folder : ''} · χ ${chi(step.value)}`} layer={shown?.layers.residual ?? null} arrows={arrows} {...common} />
             {other.value && <Panel title={`residual of ${other.value.folder} · χ ${chi(other.value)}`}
               layer={second?.layers.residual ?? null} arrows={showArrows.value ? second?.arrows : undefined} {...common} />}
           </>}
-          {layout.value === 'swipe' && <Panel title={pair.value} layer={shown?.layers[a] ?? null}
-            second={shown?.layers[b] ?? null} split={split.value} {...common} />}
-          {layout.value === 'blink' && <Panel title={blinkOn.value ? b : a}
-            layer={shown?.layers[blinkOn.value ? b : a] ?? null} {...common} />}
+          {layout.value === 'swipe' && <Panel title={names.join(' | ')} layer={first} second={then} split={split.value} {...common} />}
+          {layout.value === 'blink' && <Panel title={names[blinkOn.value ? 1 : 0]} layer={blinkOn.value ? then : first} {...common} />}
         </div>
         <p class="readout" role="status" id="readout">{readout(shown)}</p>
         <div class="legends">
-          <Legend title="residual, model − photo [σ of noise]" from={`−${residualScale}`} middle="0"
-                  to={`+${residualScale}`} background={gradient(diverging, -1, 1)} />
+          <Legend ramp={residualRamp} />
           {shown?.flow && <span class="arrow-legend">
             arrows: the displacement that would remove the residual, {figure(shown.gain)} times as long;
             rms {figure(shown.flow.rms_px)} px = {figure(shown.flow.rms_px * shown.flow.length_per_px)} {units.value.length}; the longest are cut

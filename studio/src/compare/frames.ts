@@ -1,11 +1,17 @@
 // Photo, model and residual of one photo as grids of numbers and as coloured pictures.
-import {diverging, notCounted, shown, type Rgb} from '../colours';
+import {diverging, notCounted, shown, type Ramp, type Rgb} from '../colours';
 import type {PhotoEntry, StepEntry} from '../document';
 import {at, picture, type Grid} from '../parts';
 import type {Box} from './viewport';
 
 /** Residuals are shown from -8 to +8 standard deviations in every picture of every run. */
 export const residualScale = 8;
+export const residualRamp: Ramp = {
+  title: 'residual, model − photo [σ of noise]',
+  ends: [`−${residualScale}`, '0', `+${residualScale}`],
+  scale: diverging,
+  from: -1,
+};
 
 export interface Frames {
   photo: Grid | null;

@@ -1,6 +1,7 @@
 // The reporting table, the capture's facts, and what made the run.
-import {saveCsv, saveText} from '../download';
+import {save, saveCsv} from '../download';
 import {figure} from '../format';
+import {bytesOf} from '../parts';
 import {floor, run, step, stepIndex, timelineOf} from '../state';
 
 function practiceRows(): [string, string][] {
@@ -15,11 +16,34 @@ function practiceRows(): [string, string][] {
   return rows;
 }
 
-/** Files of the run, live only: a report cannot know where it was mailed to. */
+/** A link to bytes that lie in this very page. */
+function FileLink(props: {name: string; bytes: () => Promise<BlobPart>}) {
+  return (
+    <a href={'#' + props.name} download={props.name} onClick={(event) => {
+      event.preventDefault();
+      void props.bytes().then((bytes) => save(props.name, new Blob([bytes])));
+    }}>{props.name}</a>
+  );
+}
+
+/** run.json and the whole deformed bodies; in the studio every file of the step. */
 function Files() {
-  if (!run.value.live) return <p>All files of this run lie in <code>{run.value.run}</code>.</p>;
-  const files = ['run.json', ...(step.value?.files ?? [])].filter((f) => /\.(json|vtu|csv|yaml|exr)$/.test(f));
-  return <ul class="files">{files.map((f) => <li key={f}><a href={`file?name=${encodeURIComponent(f)}`} download>{f}</a></li>)}</ul>;
+  const {live, run: folder, timeline} = run.value;
+  const now = step.value;
+  if (live) {
+    const files = ['run.json', ...(now?.files ?? [])].filter((f) => /\.(json|vtu|csv|yaml|exr)$/.test(f));
+    return <ul class="files">{files.map((f) => <li key={f}><a href={`file?name=${encodeURIComponent(f)}`} download>{f}</a></li>)}</ul>;
+  }
+  const prefix = now ? `${now.folder}-` : '';
+  return <>
+    <ul class="files">
+      <li><FileLink name="run.json" bytes={async () => JSON.stringify(timeline, null, 2)} /></li>
+      {now?.deformed.map((body) => (
+        <li key={body.name}><FileLink name={prefix + body.name} bytes={() => bytesOf(body.blob) as Promise<BlobPart>} /></li>
+      ))}
+    </ul>
+    <p class="note">{now?.deformed.length ? '' : 'The deformed bodies (.vtu) are not in this page. '}All files of this run lie in <code>{folder}</code>.</p>
+  </>;
 }
 
 export function Facts() {
@@ -27,7 +51,7 @@ export function Facts() {
   const capture = run.value.capture;
   const told = timelineOf(step.value);
   return (
-    <div class="facts">
+    <div class="facts columns">
       <section>
         <h3>How it was measured <button class="quiet" onClick={() => saveCsv('reporting.csv', [['item', 'value'], ...rows])}>CSV</button></h3>
         <table><tbody>{rows.map(([name, value]) => <tr key={name}><th scope="row">{name}</th><td>{value}</td></tr>)}</tbody></table>
@@ -49,8 +73,7 @@ export function Facts() {
             Cameras: {capture.cameras.map((c) => `${c.name} (${c.width} × ${c.height}, ${c.projection})`).join(', ')}.</p>
           <p class="note">{capture.file}</p>
         </> : <p class="empty">The capture could not be read.</p>}
-        <h3>Files</h3>
-        <p><button onClick={() => saveText('run.json', JSON.stringify(run.value.timeline, null, 2), 'application/json')}>run.json</button></p>
+        <h3>Files{step.value ? ` of ${step.value.folder}` : ''}</h3>
         <Files />
       </section>
     </div>

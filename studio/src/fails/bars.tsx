@@ -1,7 +1,6 @@
 // Where the misfit sits: by load case, camera, region and strain level.
 import {useEffect, useState} from 'preact/hooks';
 import type {StepEntry} from '../document';
-import {saveCsv} from '../download';
 import {floor} from '../state';
 import {Bars, type Row} from '../widgets';
 import {examplesOf, surface} from './surface';
@@ -77,9 +76,7 @@ export function FailureBars(props: {step: StepEntry}) {
   return (
     <div class="failure-bars">
       {all.map(([title, list]) => list.length > 0 && (
-        <Bars key={title} title={title} rows={list} mark={floor.value.chi}
-              onSave={() => saveCsv(title.replace(/[^a-z]+/gi, '-') + '.csv',
-                [['name', 'value'], ...list.map((r) => [r.name, r.value])])} />
+        <Bars key={title} title={title} rows={list} mark={floor.value.chi} />
       ))}
       <p class="note">The line is the noise floor, χ = {floor.value.chi.toFixed(2)} ({floor.value.source}).</p>
     </div>

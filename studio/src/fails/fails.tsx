@@ -1,39 +1,38 @@
 // Verb 2: the body in space, coloured by what is wrong; small multiples by load case; bars.
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, gradient, notCounted, sequential, type Rgb} from '../colours';
-import {saveCanvas, saveCsv, saveText} from '../download';
+import {diverging, notCounted, sequential, type Ramp} from '../colours';
+import {saveCsv, saveText} from '../download';
 import {figure} from '../format';
-import {chosenPhoto, run, step, theme, units, verb, wantedPixel} from '../state';
+import {savePictures} from '../pictures';
+import {run, step, theme} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
-import {BodyScene, type Look} from './scene';
-import {examplesOf, quantities, quantityNames, reach, surface, type Quantity, type Surface} from './surface';
+import type {BodyScene, Look} from './scene';
+import {examplesOf, quantities, quantityNames, reach, surface, unitOf, type Quantity, type Surface} from './surface';
+import {Picked, picked} from './picked';
+import {useScene} from './use_scene';
 import {surfaceVtu} from './vtu';
 
 const quantity = signal<Quantity>('residual');
 const amount = signal(1);
 const chosenExample = signal('');
-const picked = signal(-1);
-
-function unitOf(q: Quantity): string {
-  if (q === 'residual') return 'σ of noise';
-  if (q === 'strain') return 'largest principal Green strain';
-  return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
-}
 
 /** Strain has a sign, the others do not. */
-function scaleOf(q: Quantity): {colour: (t: number) => Rgb; signed: boolean} {
-  return q === 'strain' ? {colour: diverging, signed: true} : {colour: sequential, signed: false};
+function rampOf(q: Quantity, most: number): Ramp {
+  const title = `${quantityNames[q]} [${unitOf(q)}]`;
+  return q === 'strain'
+    ? {title, ends: [figure(-most), '0', figure(most)], scale: diverging, from: -1}
+    : {title, ends: ['0', '', figure(most)], scale: sequential, from: 0};
 }
 
 function lookOf(s: Surface, q: Quantity, most: number, ghost: boolean): Look {
-  const {colour} = scaleOf(q);
+  const {scale} = rampOf(q, most);
   const values = s.scalars[q];
   return {
     amount: amount.value,
     ghost,
-    colour: (i) => (Number.isFinite(values[i]) ? colour(values[i] / most) : notCounted),
+    colour: (i) => (Number.isFinite(values[i]) ? scale(values[i] / most) : notCounted),
   };
 }
 
@@ -67,33 +66,9 @@ function Thumbnails(props: {scene: BodyScene | null; surfaces: Map<string, Surfa
           <span>{name}</span>
         </button>
       ))}
-    </div>
-  );
-}
-
-function Picked(props: {s: Surface}) {
-  const {s} = props;
-  const node = picked.value;
-  if (node < 0 || 3 * node >= s.rest.length)
-    return <p class="note">Click a point of the body, or press <kbd>Enter</kbd> on it: its values, and every photo that sees it.</p>;
-  const x = [0, 1, 2].map((i) => figure(s.rest[3 * node + i])).join(', ');
-  const views = s.views.filter((view) => view.seen[node] > 0);
-  return (
-    <div class="picked">
-      <p>Rest point ({x}) {units.value.length}</p>
-      <ul>
-        {quantities.map((q) => <li key={q}>{quantityNames[q]} <b>{figure(s.scalars[q][node])}</b> {q === 'strain' ? '' : unitOf(q)}</li>)}
-      </ul>
-      {views.length === 0 && <p>No photo sees it.</p>}
-      {views.map((view) => (
-        <button key={view.photo} onClick={() => {
-          const index = run.value.photos.findIndex((p) => p.name === view.photo);
-          if (index < 0) return;
-          chosenPhoto.value = index;
-          wantedPixel.value = {photo: view.photo, x: view.pixel[2 * node], y: view.pixel[2 * node + 1]};
-          verb.value = 'compare';
-        }}>{view.photo} ({Math.round(view.pixel[2 * node])}, {Math.round(view.pixel[2 * node + 1])})</button>
-      ))}
+      <span class="push" />
+      <button class="quiet" aria-label="PNG of all load cases" onClick={() =>
+        savePictures('load-cases.png', [...refs.current].map(([says, canvas]) => ({canvas, says})), [rampOf(quantity.value, most)])}>PNG</button>
     </div>
   );
 }
@@ -107,26 +82,12 @@ function fieldsCsv(s: Surface, name: string): void {
 
 export function Fails() {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const [scene, setScene] = useState<BodyScene | null>(null);
+  const {scene, fault: sceneFault} = useScene(canvas);
   const [surfaces, setSurfaces] = useState(new Map<string, Surface>());
   const [fault, setFault] = useState('');
+  const notHere = examplesOf(step.value).length ? '' : `The body of this step is not here. ${run.value.reduction ?? ''}`;
   const now = step.value;
 
-  useEffect(() => {
-    try {
-      const made = new BodyScene(canvas.current!);
-      setScene(made);
-      const watch = new ResizeObserver(() => made.draw());
-      watch.observe(canvas.current!);
-      return () => {
-        watch.disconnect();
-        made.dispose();
-      };
-    } catch {
-      setFault('This browser has no WebGL, so the body cannot be drawn.');
-      return undefined;
-    }
-  }, []);
   useEffect(() => {
     let current = true;
     if (!now) return;
@@ -161,18 +122,10 @@ export function Fails() {
   useEffect(() => scene?.mark(picked.value), [scene, picked.value]);
 
   if (!now) return <p class="empty">No step is finished yet.</p>;
-  const scale = scaleOf(q);
+  const ramp = rampOf(q, most);
   const keys = (event: KeyboardEvent): void => {
-    const turns: Record<string, [number, number, number?]> = {
-      ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, -0.15], ArrowDown: [0, 0.15],
-      '+': [0, 0, 0.85], '-': [0, 0, 1.18],
-    };
-    const by = turns[event.key];
-    if (by) scene?.turn(...by);
-    else if (event.key === '0') scene?.frame();
-    else if (event.key === 'Enter' && scene)
-      picked.value = scene.pick(scene.canvas.clientWidth / 2, scene.canvas.clientHeight / 2);
-    else return;
+    if (!scene || scene.key(event) || event.key !== 'Enter') return;
+    picked.value = scene.pick(scene.canvas.clientWidth / 2, scene.canvas.clientHeight / 2);
     event.preventDefault();
   };
   return (
@@ -184,23 +137,21 @@ export function Fails() {
             onInput={(e) => (amount.value = Number(e.currentTarget.value))} /></label>
           <button onClick={() => scene?.frame()}>Fit</button>
           <span class="push" />
-          <button onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
-          <button onClick={() => canvas.current && saveCanvas(`${chosenExample.value}-body.png`, canvas.current)}>PNG</button>
-          <button onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
+          <button class="quiet" onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
+          <button class="quiet" onClick={() => canvas.current && savePictures(`${chosenExample.value}-body.png`, [{canvas: canvas.current, says: chosenExample.value}], [ramp])}>PNG</button>
+          <button class="quiet" onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
         </Toolbar>
         <div class="body3d">
-          {fault && <p class="empty">{fault}</p>}
+          {(sceneFault || fault || notHere) && <p class="empty">{sceneFault || fault || notHere}</p>}
           <canvas ref={canvas} tabIndex={0} role="img" onKeyDown={keys}
             aria-label={`The body in example ${chosenExample.value}, coloured by ${quantityNames[q]}; arrow keys turn it, + and - zoom, Enter picks the middle`}
             onClick={(e) => scene && (picked.value = scene.pick(e.offsetX, e.offsetY))} />
-          <Legend title={`${quantityNames[q]} [${unitOf(q)}]`} from={scale.signed ? figure(-most) : '0'}
-            middle={scale.signed ? '0' : ''} to={figure(most)}
-            background={gradient(scale.colour, scale.signed ? -1 : 0, 1)} />
+          <Legend ramp={ramp} />
         </div>
         <Thumbnails scene={scene} surfaces={surfaces} most={most} />
       </div>
       <aside>
-        {shown && <Picked s={shown} />}
+        {shown && <Picked s={shown} others={[...surfaces.values()].filter((s) => s !== shown)} />}
         <FailureBars step={now} />
       </aside>
     </div>

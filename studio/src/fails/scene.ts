@@ -129,6 +129,20 @@ export class BodyScene {
     this.onMove();
   }
 
+  /** Turns and zooms by keys; whether the key was one of them. */
+  key(event: KeyboardEvent): boolean {
+    const turns: Record<string, [number, number, number?]> = {
+      ArrowLeft: [-0.15, 0], ArrowRight: [0.15, 0], ArrowUp: [0, -0.15], ArrowDown: [0, 0.15],
+      '+': [0, 0, 0.85], '-': [0, 0, 1.18],
+    };
+    const by = turns[event.key];
+    if (by) this.turn(...by);
+    else if (event.key === '0') this.frame();
+    else return false;
+    event.preventDefault();
+    return true;
+  }
+
   draw(): void {
     if (this.waiting) return;
     this.waiting = true;
@@ -201,5 +215,6 @@ export class BodyScene {
   dispose(): void {
     this.controls.dispose();
     this.renderer.dispose();
+    this.renderer.forceContextLoss();  // browsers allow few contexts at a time
   }
 }

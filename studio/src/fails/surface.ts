@@ -1,5 +1,7 @@
 // The body's surface of one step and example, as the program wrote it (estimation/page_data.h).
 import type {StepEntry} from '../document';
+import {keysOf} from '../format';
+import {units} from '../state';
 import {array, field, type StoredArray} from '../parts';
 
 interface StoredBody {
@@ -30,15 +32,21 @@ export interface Surface {
   views: View[];
 }
 
-export const quantities = ['residual', 'gap', 'strain', 'von_mises', 'displacement'] as const;
-export type Quantity = (typeof quantities)[number];
-export const quantityNames: Record<Quantity, string> = {
+export const quantityNames = {
   residual: 'residual',
   gap: 'residual displacement',
   strain: 'strain',
   von_mises: 'stress',
   displacement: 'displacement',
 };
+export type Quantity = keyof typeof quantityNames;
+export const quantities = keysOf(quantityNames);
+
+export function unitOf(q: Quantity): string {
+  if (q === 'residual') return 'σ of noise';
+  if (q === 'strain') return 'largest principal Green strain';
+  return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
+}
 
 function lengths(vectors: Float32Array): Float32Array {
   const out = new Float32Array(vectors.length / 3);

@@ -1,7 +1,10 @@
-// A line chart by uPlot in the page's colours.
+// A line chart by uPlot in the page's colours, with its title and its files.
 import {useEffect, useRef} from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import {saveCsv} from '../download';
+import {figure} from '../format';
+import {saveChart} from '../pictures';
 import {theme} from '../state';
 
 export interface Line {
@@ -13,6 +16,11 @@ export interface Line {
 }
 export function Chart(props: {
   title: string;
+  /** What it shows, for those who do not see it. */
+  says: string;
+  /** Name of its files. */
+  file: string;
+  csv?: unknown[][];
   x: number[];
   names?: string[];
   lines: Line[];
@@ -20,6 +28,7 @@ export function Chart(props: {
   xLabel: string;
   yLabel: string;
   log?: boolean;
+  tall?: boolean;
 }) {
   const ref = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -29,19 +38,21 @@ export function Chart(props: {
     const faint = style.getPropertyValue('--line').trim() || '#ccc';
     const size = (): {width: number; height: number} => ({
       width: Math.max(200, box.clientWidth),
-      height: Math.max(160, box.clientHeight - 30),
+      // uPlot's legend stands below its canvas
+      height: Math.max(140, box.clientHeight - (box.querySelector('.u-legend')?.clientHeight ?? 30) - 4),
     });
     const axis = {stroke: ink, grid: {stroke: faint, width: 1}, ticks: {stroke: faint, width: 1}};
     const names = props.names;
     const plot = new uPlot(
       {
         ...size(),
-        scales: {x: {time: false, range: names ? (_, a, b) => [a - 0.3, b + 0.3] : undefined}, y: {distr: props.log ? 3 : 1}},
+        scales: {x: {time: false, range: names ? [-0.3, names.length - 0.7] : undefined}, y: {distr: props.log ? 3 : 1}},
         axes: [
           {...axis, label: props.xLabel, labelSize: 22, ...(names && {
             splits: () => props.x, values: (_: uPlot, at: number[]) => at.map((i) => names[i] ?? ''),
           })},
-          {...axis, label: props.yLabel, labelSize: 22, size: 56},
+          {...axis, label: props.yLabel, labelSize: 22, size: 64,
+            values: (_, at) => at.map((v: number | null) => (v === null ? '' : figure(v)))},
         ],
         series: [
           {label: props.xLabel, value: names ? (_, v) => names[v] ?? '–' : undefined},
@@ -54,11 +65,14 @@ export function Chart(props: {
             value: (_: uPlot, v: number | null) => (v === null ? '–' : v.toPrecision(4)),
           })),
         ],
+        // figures before anything is pointed at
+        hooks: {ready: [(u) => u.setLegend({idx: props.x.length - 1})]},
         bands: props.bands?.map((series) => ({series, fill: faint})),
       },
       [props.x, ...props.lines.map((line) => line.values)] as uPlot.AlignedData,
       box,
     );
+    plot.setSize(size());
     const watch = new ResizeObserver(() => plot.setSize(size()));
     watch.observe(box);
     return () => {
@@ -66,5 +80,18 @@ export function Chart(props: {
       plot.destroy();
     };
   }, [props.x, props.lines, theme.value]);
-  return <div class="chart" ref={ref} role="img" aria-label={props.title} />;
+  const csv = props.csv ?? [[props.xLabel, ...props.lines.map((line) => line.label)],
+    ...props.x.map((x, i) => [x, ...props.lines.map((line) => line.values[i])])];
+  return (
+    <section class={props.tall ? 'chart-box tall' : 'chart-box'}>
+      <h3>{props.title}
+        <button class="quiet" onClick={() => saveCsv(`${props.file}.csv`, csv)}>CSV</button>
+        <button class="quiet" onClick={() => {
+          const canvas = ref.current?.querySelector('canvas');
+          if (canvas) saveChart(`${props.file}.png`, props.title, canvas, props.lines);
+        }}>PNG</button>
+      </h3>
+      <div class="chart" ref={ref} role="img" aria-label={props.says} />
+    </section>
+  );
 }

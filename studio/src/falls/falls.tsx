@@ -1,25 +1,40 @@
 // Verb 5: the error over the steps against the measured floor; parameters with their intervals.
-import {useMemo, useRef} from 'preact/hooks';
-import {saveCanvas, saveCsv} from '../download';
-import {figure} from '../format';
-import {floor, run, step, stepIndex, timelineOf} from '../state';
+import {useMemo} from 'preact/hooks';
+import {saveCsv} from '../download';
+import {around, figure} from '../format';
+import {floor, other, run, step, timelineOf} from '../state';
 import {Chart, type Line} from './chart';
-import type {EnergyCurve, ParameterValue} from '../document';
+import type {EnergyCurve, ParameterValue, StepEntry} from '../document';
 
-function Parameters(props: {list: ParameterValue[]}) {
+/** Parameters of the shown step and, beside them, of the one it is compared with. */
+function Parameters(props: {steps: {folder: string; list: ParameterValue[]}[]}) {
+  const {steps} = props;
+  const names = [...new Set(steps.flatMap((s) => s.list.map((p) => p.name)))];
   return (
     <table class="parameters" aria-label="Parameters with 95 % intervals">
-      <thead><tr><th>parameter</th><th>value</th><th>95 % interval</th><th>unit</th></tr></thead>
+      <thead><tr><th>parameter</th>{steps.map((s) => <th key={s.folder} colSpan={2}>{s.folder}, 95 % interval</th>)}<th>unit</th></tr></thead>
       <tbody>
-        {props.list.map((p) => (
-          <tr key={p.name}>
-            <td title={p.long_name}>{p.name}</td><td>{figure(p.value, 4)}</td>
-            <td><Interval p={p} /> {figure(p.low)} .. {figure(p.high)}</td><td>{p.unit}</td>
-          </tr>
-        ))}
+        {names.map((name) => {
+          const all = steps.map((s) => s.list.find((p) => p.name === name));
+          const known = all.find((p) => p)!;
+          return (
+            <tr key={name}>
+              <td title={known.long_name}>{name}</td>
+              {all.map((p, i) => <Value key={i} p={p} drawn={steps.length === 1} />)}
+              <td>{known.unit}</td>
+            </tr>
+          );
+        })}
       </tbody>
     </table>
   );
+}
+
+function Value(props: {p: ParameterValue | undefined; drawn: boolean}) {
+  const {p} = props;
+  if (!p) return <><td>–</td><td /></>;
+  const {value, interval} = around(p.value, p.low, p.high);
+  return <><td>{value}</td><td>{props.drawn && <Interval p={p} />} {interval}</td></>;
 }
 
 /** The interval on a scale of +-20 % about the value; an arrow where it goes on. */
@@ -45,15 +60,23 @@ function Energy(props: {curve: EnergyCurve}) {
   const axis = curve.axis ?? 'stretch';
   const other = Object.entries(curve.at ?? {}).map(([name, value]) => `, ${name} = ${figure(value)}`).join('');
   return <>
-    <Chart title={`Energy of ${curve.name} over ${axis}, with its 95 % band`} x={curve.stretch} lines={lines}
+    <Chart title={`Energy of ${curve.name}`} file={`energy-${curve.name}`}
+           says={`Energy of ${curve.name} over ${axis}, with its 95 % band`} x={curve.stretch} lines={lines}
            bands={[[1, 3]]} xLabel={axis + other} yLabel={`${curve.name} [${curve.unit}]`} />
     {curve.visited && <p class="note">{axis} visited: {figure(curve.visited[0])} to {figure(curve.visited[1])}
       {curve.beyond ? `; beyond the control points in ${curve.beyond} of ${curve.elements} elements` : ''}</p>}
   </>;
 }
 
+function errorCsv(): unknown[][] {
+  return [['step', 'chi_fit', 'chi_validate', 'floor', 'rms_px_fit', 'rms_px_validate'],
+    ...run.value.steps.map((s) => {
+      const t = timelineOf(s);
+      return [s.folder, t?.chi_fit, t?.chi_validate, floor.value.chi, t?.rms_px_fit, t?.rms_px_validate];
+    })];
+}
+
 export function Falls() {
-  const box = useRef<HTMLDivElement>(null);
   const list = run.value.steps;
   const {x, names, lines} = useMemo(() => {
     const told = list.map((s) => timelineOf(s));
@@ -63,53 +86,49 @@ export function Falls() {
       lines: [
         {label: 'χ fitted photos', values: told.map((t) => t?.chi_fit ?? null), colour: '#2f7fc1', points: true},
         {label: 'χ held-out photos', values: told.map((t) => t?.chi_validate ?? null), colour: '#d1495b', dash: [6, 4], points: true},
-        {label: `floor (${floor.value.source})`, values: list.map(() => floor.value.chi), colour: '#888888', dash: [2, 3]},
+        {label: `floor (${floor.value.source})`, values: list.map(() => floor.value.chi), colour: '#888888', dash: [2, 3],
+          points: list.length === 1},
       ] as Line[],
     };
   }, [list, floor.value]);
-  const now = timelineOf(step.value);
-  const curves = step.value?.metrics?.energy ?? [];
+  const told = [...new Set([step.value, other.value])].flatMap((entry) => {
+    const list = timelineOf(entry)?.parameters;
+    return entry && list ? [{folder: entry.folder, list}] : [];
+  }).sort((a, b) => a.folder.localeCompare(b.folder));
+  const latest = told.length ? list.find((s) => s.folder === told[told.length - 1].folder) : undefined;
+  const now = timelineOf(latest ?? step.value);
+  const curves = latest?.metrics?.energy ?? [];
   return (
-    <div class="falls">
+    <div class="falls columns">
       <section>
-        <h3>Misfit over the steps
-          <button class="quiet" onClick={() => saveCsv('error.csv', [['step', 'chi_fit', 'chi_validate', 'floor', 'rms_px_fit', 'rms_px_validate'],
-            ...list.map((s) => {
-              const t = timelineOf(s);
-              return [s.folder, t?.chi_fit, t?.chi_validate, floor.value.chi, t?.rms_px_fit, t?.rms_px_validate];
-            })])}>CSV</button>
-          <button class="quiet" onClick={() => {
-            const canvas = box.current?.querySelector('canvas');
-            if (canvas) saveCanvas('error.png', canvas);
-          }}>PNG</button>
-        </h3>
-        <div ref={box} class="chart-box">
-          <Chart title="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
-                 x={x} names={names} lines={lines} xLabel="step" yLabel="χ, residual over noise" log />
-        </div>
+        <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
+               says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
+               xLabel="step" yLabel="χ, residual over noise" />
         {curves.map((curve) => <Energy key={curve.name} curve={curve} />)}
       </section>
       <section>
-        <h3>Parameters of {list[stepIndex.value]?.folder ?? 'no step'}
-          <button class="quiet" onClick={() => saveCsv('parameters.csv', [['name', 'unit', 'value', 'low', 'high'],
-            ...(now?.parameters ?? []).map((p) => [p.name, p.unit, p.value, p.low, p.high])])}>CSV</button></h3>
-        {now ? <Parameters list={now.parameters} /> : <p class="empty">run.json tells nothing of this step.</p>}
-        {step.value?.diagnosis?.mesh_note && <p class="note">{step.value.diagnosis.mesh_note}</p>}
+        <h3>Parameters
+          <button class="quiet" onClick={() => saveCsv('parameters.csv', [['step', 'name', 'unit', 'value', 'low', 'high'],
+            ...told.flatMap((s) => s.list.map((p) => [s.folder, p.name, p.unit, p.value, p.low, p.high]))])}>CSV</button></h3>
+        {told.length ? <Parameters steps={told} /> : <p class="empty">run.json tells nothing of this step.</p>}
+        {latest?.diagnosis?.mesh_note && <p class="note">The mesh: {latest.diagnosis.mesh_note}.</p>}
         {now?.undetermined?.map((sentence) => <p class="note" key={sentence}>{sentence}</p>)}
         {now?.converged === false && <p class="note">This fit did not converge in {now.iterations} iterations.</p>}
-        <Measured />
+        <Measured of={latest} />
       </section>
     </div>
   );
 }
 
-function Measured() {
-  const all = step.value?.metrics?.measured ?? [];
+function Measured(props: {of: StepEntry | undefined}) {
+  const all = props.of?.metrics?.measured ?? [];
   if (!all.length) return null;
   const three = (v: number[]): string => v.map((c) => figure(c)).join(', ');
   return (
     <table aria-label="Measured forces and positions">
-      <thead><tr><th>measured</th><th>value</th><th>model</th><th>over σ</th></tr></thead>
+      <thead><tr><th>measured <button class="quiet" onClick={() => saveCsv('measured.csv', [
+        ['example', 'kind', 'region', 'sigma', 'measured x', 'y', 'z', 'model x', 'y', 'z'],
+        ...all.map((m) => [m.example, m.kind, m.region, m.sigma, ...m.measured, ...m.predicted])])}>CSV</button></th><th>value</th><th>model</th><th>over σ</th></tr></thead>
       <tbody>
         {all.map((m, i) => (
           <tr key={i}><td>{m.example}: {m.kind.replace('_', ' ')} {m.region}</td><td>{three(m.measured)}</td>

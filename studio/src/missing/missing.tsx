@@ -1,26 +1,26 @@
 // Verb 3: the ranked effects, what each would explain, and what it cannot be told from.
 import {useRef} from 'preact/hooks';
-import {css, sequential} from '../colours';
+import {css, sequential, type Ramp} from '../colours';
 import type {EffectScore} from '../document';
 import {saveCsv, saveSvg} from '../download';
-import {figure, percent, spaced} from '../format';
-import {chosenEffect, step, timelineOf} from '../state';
+import {figure, listed, percent, spaced} from '../format';
+import {chosenEffect, effectsOf, gateOf, step, stepIndex, run, wasTested} from '../state';
 import {AddButton} from '../add/add';
 import {cosine, together} from './order';
 import {Removed} from './removed';
+import {Legend, Share} from '../widgets';
 
-export function effectsNow(): EffectScore[] {
-  const entry = step.value;
-  return entry?.diagnosis?.effects ?? timelineOf(entry)?.diagnosis ?? [];
-}
-const tested = (e: EffectScore): boolean => e.testable !== false && e.evidence !== undefined;
+const cosineRamp: Ramp = {
+  title: 'cosine between the changes of the pictures',
+  ends: ['told apart', '', '1: cannot be'], scale: sequential, from: 0,
+};
 
 function Confusion(props: {effects: EffectScore[]}) {
   const ref = useRef<SVGSVGElement>(null);
   const list = together(props.effects.slice(0, 12));
   const n = list.length;
   const size = 20;
-  const left = 180;
+  const left = 200;
   if (n < 2) return null;
   return (
     <figure class="confusion">
@@ -45,7 +45,7 @@ function Confusion(props: {effects: EffectScore[]}) {
           </g>
         ))}
       </svg>
-      <p class="note">Cosine between the pictures' changes: 1 (bright) cannot be told apart; dark is told apart well enough not to be listed.</p>
+      <Legend ramp={cosineRamp} />
     </figure>
   );
 }
@@ -56,6 +56,7 @@ function Detail(props: {effect: EffectScore}) {
     <section class="detail" aria-live="polite">
       <h3>{spaced(e.effect)} <AddButton effect={e.effect} /></h3>
       <p>{e.why ?? e.why_not}</p>
+      {(e.confused_with ?? []).length > 0 && <p>These photos hardly tell it from {listed(e.confused_with!.map(spaced))}.</p>}
       {e.predicted && e.predicted.length > 0 && (
         <table>
           <thead><tr><th>would be</th><th>value</th><th>95 % interval</th></tr></thead>
@@ -72,43 +73,64 @@ function Detail(props: {effect: EffectScore}) {
   );
 }
 
+function rankingCsv(all: EffectScore[]): void {
+  saveCsv('effects.csv', [
+    ['effect', 'testable', 'explains', 'explains_held_out', 'evidence', 'weight', 'p_value', 'dof', 'confused_with', 'why'],
+    ...all.map((e) => [e.effect, wasTested(e), e.explains, e.explains_held_out, e.evidence, e.weight, e.p_value, e.dof,
+      (e.confused_with ?? []).join(' '), e.why ?? e.why_not])]);
+}
+
+/** One effect of the ranking; what could not be tested is greyed and says why. */
+function Row(props: {effect: EffectScore; chosen: boolean; named: boolean}) {
+  const e = props.effect;
+  const taken = e.confused_with ?? [];
+  const choose = (): void => {
+    chosenEffect.value = e.effect;
+  };
+  return (
+    <tr class={props.named ? '' : 'below'} aria-selected={props.chosen} onMouseEnter={choose}>
+      <td><button class="link" onClick={choose} onFocus={choose}>{spaced(e.effect)}</button></td>
+      {wasTested(e) ? <>
+        <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
+        <td>{figure(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
+        <td class="wide">{taken.slice(0, 2).map(spaced).join(', ')}{taken.length > 2 && ` and ${taken.length - 2} more`}</td>
+      </> : <td colSpan={5}>not tested: {e.why_not}</td>}
+    </tr>
+  );
+}
+
+/** What the ranking comes to, in one sentence. */
+function Outcome(props: {ranked: EffectScore[]; gate: number}) {
+  const [first, second] = props.ranked;
+  const name = run.value.steps[stepIndex.value]?.folder;
+  const rule = `below ${figure(props.gate)}, which chance alone reaches in less than 5 % of runs, nothing is named`;
+  if (!first) return <p>Nothing could be tested in step {name}.</p>;
+  if ((first.evidence ?? 0) < props.gate)
+    return <p><b>Nothing stands out</b> in step {name}: {spaced(first.effect)} leads with log evidence {figure(first.evidence)}; {rule}.</p>;
+  return <p><b>{spaced(first.effect)}</b> leads in step {name} with log evidence {figure(first.evidence)}
+    {second && `, before ${spaced(second.effect)} with ${figure(second.evidence)}`}; {rule}.</p>;
+}
+
 export function Missing() {
-  const all = effectsNow();
-  const ranked = all.filter(tested);
-  const untestable = all.filter((e) => !tested(e));
+  const all = effectsOf(step.value);
+  const ranked = all.filter(wasTested);
   if (!all.length)
     return <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
-  const gate = Math.max(5, step.value?.diagnosis?.gate ?? 0);
+  const gate = gateOf(step.value);
   const chosen = all.find((e) => e.effect === chosenEffect.value) ?? ranked[0] ?? all[0];
   return (
-    <div class="missing">
+    <div class="missing columns">
       <div class="ranking">
+        <Outcome ranked={ranked} gate={gate} />
         <table aria-label="Ranked effects">
-          <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th>dof</th><th>easily taken for</th></tr></thead>
+          <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th class="wide">dof</th>
+            <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
           <tbody>
-            {ranked.map((e) => (
-              <tr key={e.effect} class={(e.evidence ?? 0) < gate ? 'below' : ''} aria-selected={e === chosen}
-                  onMouseEnter={() => (chosenEffect.value = e.effect)}>
-                <td><button class="link" onClick={() => (chosenEffect.value = e.effect)}
-                  onFocus={() => (chosenEffect.value = e.effect)}>{spaced(e.effect)}</button></td>
-                <td class="share"><span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, e.explains ?? 0))}%`}} /></span> {percent(e.explains)}</td>
-                <td>{figure(e.evidence)}</td><td>{percent(e.weight)}</td><td>{e.dof}</td>
-                <td>{(e.confused_with ?? []).map(spaced).join(', ')}</td>
-              </tr>
+            {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
+              <Row key={e.effect} effect={e} chosen={e === chosen} named={wasTested(e) && (e.evidence ?? 0) >= gate} />
             ))}
           </tbody>
         </table>
-        <p class="note">Nothing is named below evidence {figure(gate)}: chance alone reaches it in 5 % of runs.
-          <button class="quiet" onClick={() => saveCsv('effects.csv', [
-            ['effect', 'testable', 'explains', 'explains_held_out', 'evidence', 'weight', 'p_value', 'dof', 'confused_with', 'why'],
-            ...all.map((e) => [e.effect, tested(e), e.explains, e.explains_held_out, e.evidence, e.weight, e.p_value, e.dof,
-              (e.confused_with ?? []).join(' '), e.why ?? e.why_not])])}>CSV</button></p>
-        {untestable.length > 0 && (
-          <details open={ranked.length < 10}>
-            <summary>{untestable.length} not tested</summary>
-            <ul class="untestable">{untestable.map((e) => <li key={e.effect}><b>{spaced(e.effect)}</b> {e.why_not}</li>)}</ul>
-          </details>
-        )}
       </div>
       <div class="side">
         {chosen && <Detail effect={chosen} />}

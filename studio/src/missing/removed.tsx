@@ -1,11 +1,16 @@
-// The residual that the chosen effect would remove, over the photo, beside the residual there is.
+// The residual that the chosen effect would remove, over the photo and on the body, beside the
+// residual there is.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {diverging, gradient, sequential, shown, type Rgb} from '../colours';
+import {diverging, sequential, shown, type Ramp, type Rgb} from '../colours';
 import type {PhotoEntry} from '../document';
+import {saveCsv} from '../download';
 import {spaced} from '../format';
 import {field, fromBase64, picture, type Grid} from '../parts';
+import {savePictures} from '../pictures';
 import {chosenPhoto, run, step} from '../state';
+import {Legend} from '../widgets';
 import {gainOf, residualScale} from '../compare/frames';
+import {OnBody} from './on_body';
 
 /** Cells of a photo; `bytes`: all residuals there are, then all that would be removed (128: 0). */
 interface Cells {
@@ -13,7 +18,7 @@ interface Cells {
   rows: number;
   bytes: string;
 }
-interface Prediction {
+export interface Prediction {
   cell_px: number;
   unit: number;
   photos: Record<string, Cells>;
@@ -85,47 +90,66 @@ function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer
   );
 }
 
-/** Colours of the two pictures with their ends. */
-function Legend() {
-  return (
-    <p class="note legends">
-      <span>0 <i style={{background: gradient(sequential, 0, 1)}} /> {residualScale} σ there is</span>
-      <span>removed <i style={{background: gradient(diverging, -1, 1)}} /> added, ±{residualScale} σ</span>
-    </p>
-  );
+const ramps: Ramp[] = [
+  {title: 'residual there is [σ of noise]', ends: ['0', '', `${residualScale}`], scale: sequential, from: 0},
+  {title: 'change by the effect [σ of noise]', ends: [`−${residualScale} removed`, '0', `+${residualScale}`], scale: diverging, from: -1},
+];
+
+function cellsCsv(prediction: Prediction, name: string, effect: string): void {
+  const {columns, rows, bytes: packed} = prediction.photos[name];
+  const bytes = fromBase64(packed);
+  const table: unknown[][] = [['x', 'y', 'residual_sigma', 'removed_sigma']];
+  for (let i = 0; i < columns * rows; ++i)
+    if (bytes[i] > 0)
+      table.push([(i % columns) * prediction.cell_px, Math.floor(i / columns) * prediction.cell_px,
+        (bytes[i] - 1) * prediction.unit, (bytes[columns * rows + i] - 128) * prediction.unit]);
+  saveCsv(`${effect}-removes-${name}.csv`, table);
 }
 
-export function Removed(props: {effect: string}) {
+/** The prediction of an effect; the one before stays until it is read, so that nothing flickers. */
+function usePrediction(part: string | undefined): Prediction | null {
   const [prediction, setPrediction] = useState<Prediction | null>(null);
-  const part = step.value?.fields[`removes-${props.effect}`];
   useEffect(() => {
     let current = true;
-    setPrediction(null);
     if (part) void field<Prediction>(part).then((p) => current && setPrediction(p), () => undefined);
     return () => {
       current = false;
     };
   }, [part]);
+  return part ? prediction : null;
+}
+
+export function Removed(props: {effect: string}) {
+  const figure = useRef<HTMLElement>(null);
+  const part = step.value?.fields[`removes-${props.effect}`];
+  const prediction = usePrediction(part);
   const photos = run.value.photos.filter((p) => prediction?.photos[p.name]);
   const wanted = run.value.photos[chosenPhoto.value]?.name;
   const entry = photos.find((p) => p.name === wanted) ?? photos[0];
+  if (!part) return <p class="note">Its residual is drawn for the leading effects only.</p>;
   if (!prediction || !entry) return null;
+  const says = `what ${spaced(props.effect)} would remove`;
   return (
-    <figure class="removed">
+    <figure class="removed" ref={figure}>
       <figcaption>
-        <label>What {spaced(props.effect)} would remove in{' '}
+        <label>W{says.slice(1)} in{' '}
           <select value={entry.name} onChange={(e) => {
             chosenPhoto.value = run.value.photos.findIndex((p) => p.name === e.currentTarget.value);
           }}>
             {photos.map((p) => <option key={p.name} value={p.name}>{p.name}</option>)}
           </select>
         </label>
+        <button class="quiet" onClick={() => cellsCsv(prediction, entry.name, props.effect)}>CSV</button>
+        <button class="quiet" onClick={() => savePictures(`${props.effect}-removes-${entry.name}.png`,
+          [...figure.current!.querySelectorAll('.pair > div')].map((part) => (
+            {canvas: part.querySelector('canvas')!, says: part.querySelector('p')!.textContent ?? ''})), ramps)}>PNG</button>
       </figcaption>
       <div class="pair">
-        <Layered prediction={prediction} entry={entry} layer="now" says={`the residual in ${entry.name}`} />
-        <Layered prediction={prediction} entry={entry} layer="removed" says={`what ${spaced(props.effect)} would remove of it`} />
+        <Layered prediction={prediction} entry={entry} layer="now" says="the residual there is" />
+        <Layered prediction={prediction} entry={entry} layer="removed" says={says} />
+        <OnBody prediction={prediction} example={entry.example} says={`${says}, on the body in ${entry.example}`} />
       </div>
-      <Legend />
+      <div class="legends">{ramps.map((ramp) => <Legend key={ramp.title} ramp={ramp} />)}</div>
     </figure>
   );
 }
