@@ -20,6 +20,7 @@ export function Chart(props: {
   xLabel: string;
   yLabel: string;
   log?: boolean;
+  visited?: [number, number];  // shaded along x: where the data are
 }) {
   const ref = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -41,7 +42,9 @@ export function Chart(props: {
           {...axis, label: props.xLabel, labelSize: 22, ...(names && {
             splits: () => props.x, values: (_: uPlot, at: number[]) => at.map((i) => names[i] ?? ''),
           })},
-          {...axis, label: props.yLabel, labelSize: 22, size: 56},
+          {...axis, label: props.yLabel, labelSize: 22, size: props.log ? 56 : 68, ...(!props.log && {
+            values: (_: uPlot, at: number[]) => at.map((v) => `${Number(v.toPrecision(4))}`),
+          })},
         ],
         series: [
           {label: props.xLabel, value: names ? (_, v) => names[v] ?? '–' : undefined},
@@ -54,7 +57,17 @@ export function Chart(props: {
             value: (_: uPlot, v: number | null) => (v === null ? '–' : v.toPrecision(4)),
           })),
         ],
-        bands: props.bands?.map((series) => ({series, fill: faint})),
+        hooks: {
+          drawClear: props.visited ? [(u: uPlot) => {
+            const [from, to] = props.visited!.map((v) => u.valToPos(v, 'x', true));
+            u.ctx.save();
+            u.ctx.globalAlpha = 0.35;
+            u.ctx.fillStyle = faint;
+            u.ctx.fillRect(from, u.bbox.top, to - from, u.bbox.height);
+            u.ctx.restore();
+          }] : [],
+        },
+        bands: props.bands?.map((series) => ({series, fill: '#2166ac44'})),
       },
       [props.x, ...props.lines.map((line) => line.values)] as uPlot.AlignedData,
       box,
