@@ -130,7 +130,7 @@ std::vector<Refinement> refinements(const ModelForm& form, const Fitted& fitted)
       out.push_back(new_point(model, static_cast<int>(a), x, typical));
   }
   const std::vector<std::string> normal = {"E11", "E22", "E33"};
-  for (const char* name : {"E11", "E22", "E33", "E12", "E13", "E23"})
+  for (const char* name : {"E11", "E22", "E33", "E12", "E13", "E23", "I1bar", "J"})
     if (!model.find(name)) out.push_back(new_addend(model, name, true, typical));
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = i + 1; j < 3; ++j) {

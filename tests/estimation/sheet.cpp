@@ -137,6 +137,8 @@ std::vector<Motion> motions(const SheetOptions& o) {
                      6.0 * s, 9.0 * s, 4.0 * s),
          o.fitted != "shear" || middle});
   }
+  if (o.only_fitted)
+    std::erase_if(all, [&](const Motion& m) { return m.name.rfind(o.fitted, 0) != 0; });
   return all;
 }
 
@@ -240,9 +242,10 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
             X.z(), noisy(moved(scene->body->mesh, state.q, X), o.position_sigma), o.position_sigma);
     if (o.kinds.count("forces") && example.name != "rest") {
       const std::string grip = example.name.rfind("corner", 0) == 0 ? "corner" : "upper";
+      const Vector3d force = support_force(state, scene->body->regions.at(grip));
+      const double sigma = std::max(o.force_sigma, o.force_share * force.norm());
       text += fmt::format("      - {{force_on: {}, value: {}, sigma: {:g}}}\n", grip,
-                          noisy(support_force(state, scene->body->regions.at(grip)), o.force_sigma),
-                          o.force_sigma);
+                          noisy(force, sigma), sigma);
     }
     if (o.kinds.count("photos")) {
       RenderOptions options = render_options(*scene);
