@@ -274,6 +274,24 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   return score;
 }
 
+/// Diagnosis::mesh_note: what the fitted parameters do once the change `mesh` is there in full.
+std::string note_of_mesh(const Context& context, const Candidate& mesh, int base) {
+  const Eigen::MatrixXd to_base = project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base;
+  const auto parameters = context.fitted.form.parameters();
+  std::vector<std::string> moved;
+  for (int i = 0; i < base; ++i) {
+    const double shift = -to_base(i, 0);
+    const double half = 0.5 * (context.fitted.high[i] - context.fitted.low[i]);
+    if (std::abs(shift) > half)
+      moved.push_back(fmt::format("{} by {:+.2g}{}{} ({:.1f} times half its interval)",
+                                  parameters[i].name, shift, parameters[i].unit.empty() ? "" : " ",
+                                  parameters[i].unit, std::abs(shift) / half));
+  }
+  if (moved.empty()) return "";
+  return fmt::format("the intervals know of noise, not of the mesh: a finer one would move {}",
+                     fmt::join(moved, ", "));
+}
+
 /// Share of each effect's signature that the others can imitate.
 void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candidate>& candidates,
                      const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores) {
@@ -368,6 +386,8 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   }
   for (const auto& [name, value] : by_effect(candidates, evidence)) {
     EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
+    if (candidates[best[name]].effect->group() == EffectGroup::numerical)
+      out.mesh_note = note_of_mesh(context, candidates[best[name]], base);
     score.evidence = value;
     const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
     score.p_value = (1.0 + above) / (1.0 + null.size());

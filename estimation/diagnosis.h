@@ -46,6 +46,9 @@ struct Diagnosis {
   double effective_count = 0.0;
   double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
+  /// Fitted parameters that a finer mesh would move beyond their intervals, which know of noise and
+  /// not of the mesh; first order. Empty: none.
+  std::string mesh_note;
 };
 
 struct DiagnosisOptions {

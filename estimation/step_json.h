@@ -9,6 +9,9 @@
 namespace hookeye {
 
 nlohmann::json to_json(const Floor& floor);
+/// Name, unit, words and value of each; `low` and `high` where they are told.
+nlohmann::json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& value,
+                               const VectorXd* low, const VectorXd* high);
 nlohmann::json to_json(const Diagnosis& diagnosis);
 /// A diagnosis as to_json() wrote it, for the model it was made of: what `plan` and `add` need of
 /// it (no base_step). Throws InputError (`file`) where it is not one.

@@ -76,6 +76,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   });
   session.document = run.timeline();
   session.say("{}\n{}", steps_table(found), parameter_table(found.steps.back().fitted));
+  if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
+    session.say("{}\n", note);
   session.say("\n{}: {}\n", to_string(found.verdict), found.sentence);
   session.say("run: {}\n", arguments.run);
 }

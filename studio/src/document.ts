@@ -115,7 +115,7 @@ export interface TimelineStep {
 export interface StepEntry {
   folder: string;
   metrics: Metrics | null;
-  diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number} | null;
+  diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number; mesh_note?: string} | null;
   residuals: Record<string, Picture>;
   fields: Record<string, string>;
   files: string[];

@@ -97,6 +97,7 @@ export function Falls() {
           <button class="quiet" onClick={() => saveCsv('parameters.csv', [['name', 'unit', 'value', 'low', 'high'],
             ...(now?.parameters ?? []).map((p) => [p.name, p.unit, p.value, p.low, p.high])])}>CSV</button></h3>
         {now ? <Parameters list={now.parameters} /> : <p class="empty">run.json tells nothing of this step.</p>}
+        {step.value?.diagnosis?.mesh_note && <p class="note">{step.value.diagnosis.mesh_note}</p>}
         {now?.undetermined?.map((sentence) => <p class="note" key={sentence}>{sentence}</p>)}
         {now?.converged === false && <p class="note">This fit did not converge in {now.iterations} iterations.</p>}
         <Measured />

@@ -1,0 +1,145 @@
+// What is missing and what to photograph next, as product.md's JSON.
+#include <stdexcept>
+
+#include "capture_io/input_error.h"
+#include "estimation/step_json.h"
+
+namespace hookeye {
+
+using nlohmann::json;
+
+namespace {
+
+constexpr double kNormal95 = 1.959964;  ///< half a 95 % interval in standard deviations
+
+json effect_json(const EffectScore& score) {
+  json out = {{"effect", score.effect}, {"testable", score.testable}};
+  if (!score.why_not.empty()) out["why_not"] = score.why_not;
+  if (!score.best) return out;
+  out["variant"] = score.best->variant();
+  out["explains"] = score.explains;
+  out["explains_held_out"] = score.explains_held_out;
+  out["fall"] = score.fall;
+  out["dof"] = score.dof;
+  out["evidence"] = score.evidence;
+  out["p_value"] = score.p_value;
+  out["weight"] = score.weight;
+  out["confused_with"] = json::array();
+  out["confusion"] = json::array();
+  for (const auto& other : score.confused_with) {
+    out["confused_with"].push_back(other.effect);
+    out["confusion"].push_back({{"effect", other.effect}, {"cosine", other.cosine}});
+  }
+  out["why"] = score.why;
+  if (!score.displaced.empty()) out["pictures"] = "removed/" + score.effect;
+  const VectorXd low = score.values - kNormal95 * score.standard_error;
+  const VectorXd high = score.values + kNormal95 * score.standard_error;
+  out["predicted"] = parameters_json(score.best->parameters(), score.values, &low, &high);
+  return out;
+}
+
+}  // namespace
+
+json to_json(const Diagnosis& diagnosis) {
+  json effects = json::array();
+  for (const auto& score : diagnosis.effects) effects.push_back(effect_json(score));
+  return {{"floor", to_json(diagnosis.floor)},
+          {"gate", diagnosis.gate},
+          {"effective_count", diagnosis.effective_count},
+          {"whiteness_p", diagnosis.whiteness_p},
+          {"mesh_note", diagnosis.mesh_note},
+          {"effects", std::move(effects)}};
+}
+
+namespace {
+
+EffectScore score_from_json(const json& one, const Model& model) {
+  EffectScore score;
+  score.effect = one.at("effect");
+  score.testable = one.at("testable");
+  score.why_not = one.value("why_not", "");
+  if (!one.contains("variant")) return score;
+  const Effect* effect = find_effect(score.effect);
+  if (effect) score.best = effect->candidate(model, one.at("variant"));
+  const json& predicted = one.at("predicted");
+  if (!score.best || score.best->parameters().size() != predicted.size())
+    throw std::runtime_error("effect " + score.effect);
+  score.dof = one.at("dof");
+  score.values.resize(score.dof);
+  score.standard_error.resize(score.dof);
+  for (int i = 0; i < score.dof; ++i) {
+    score.values[i] = predicted[i].at("value");
+    score.standard_error[i] = (predicted[i].at("high").get<double>() - score.values[i]) / kNormal95;
+  }
+  score.explains = one.at("explains");
+  score.explains_held_out = one.at("explains_held_out");
+  score.fall = one.at("fall");
+  score.evidence = one.at("evidence");
+  score.p_value = one.at("p_value");
+  score.weight = one.at("weight");
+  for (const auto& other : one.at("confusion"))
+    score.confused_with.push_back({other.at("effect"), other.at("cosine")});
+  score.why = one.at("why");
+  return score;
+}
+
+}  // namespace
+
+Diagnosis diagnosis_from_json(const json& document, const Model& model,
+                              const std::filesystem::path& file) {
+  Diagnosis out;
+  try {
+    const json& floor = document.at("floor");
+    out.floor.chi = floor.at("chi");
+    out.floor.cell_variance = floor.at("cell_variance");
+    out.floor.source = floor.at("source");
+    out.gate = document.at("gate");
+    out.effective_count = document.at("effective_count");
+    out.whiteness_p = document.at("whiteness_p");
+    out.mesh_note = document.value("mesh_note", "");
+    for (const auto& one : document.at("effects"))
+      out.effects.push_back(score_from_json(one, model));
+  } catch (const std::exception& error) {
+    throw InputError({file.string()}, std::string("not a diagnosis of this model: ") + error.what(),
+                     "make it anew with `hookeye diagnose RUN`");
+  }
+  return out;
+}
+
+json to_json(const Plan& plan) {
+  auto separation = [](const Separation& s) -> json {
+    if (s.effect.empty()) return {};
+    return {{"effect", s.effect},
+            {"rival", s.rival},
+            {"cosine", s.cosine},
+            {"angle_deg", s.angle_deg()},
+            {"evidence", s.margin}};
+  };
+  json ratings = json::array();
+  for (const auto& rating : plan.ratings) {
+    const bool load = rating.candidate.kind == PlanCandidate::Kind::load;
+    json one = {{"name", rating.candidate.name},
+                {"kind", load ? "load" : "view"},
+                {"words", rating.candidate.words},
+                {"told", rating.candidate.told},
+                {"capture", capture_lines(rating.candidate)}};
+    if (!rating.why_not.empty()) {
+      one["why_not"] = rating.why_not;
+    } else {
+      one["photos"] = rating.photos;
+      one["worst_pair"] = separation(rating.worst);
+      one["difference"] = {{"px", rating.px}, {"chi", rating.chi}, {"most", rating.most}};
+      one["makes_testable"] = rating.makes_testable;
+      one["sentence"] = rating.sentence;
+    }
+    ratings.push_back(std::move(one));
+  }
+  return {{"hookeye", 1},
+          {"confused", plan.confused},
+          {"now", separation(plan.now)},
+          {"untestable", plan.untestable},
+          {"candidates", std::move(ratings)},
+          {"sentence", plan.sentence}};
+}
+
+}  // namespace hookeye
