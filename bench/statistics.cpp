@@ -32,7 +32,9 @@ Repeat once(unsigned seed, bool same_renderer) {
       std::log(fitted.p[0] / truth) / (std::log(fitted.high[0] / fitted.low[0]) / (2.0 * 1.959964));
   for (const auto& effect : diagnosis.effects) {
     out.p_value = std::min(out.p_value, effect.p_value);
-    if (out.named.empty() && nameable(effect, diagnosis)) out.named = effect.effect;
+    if (out.named.empty() && nameable(effect, diagnosis))
+      out.named = fmt::format("{} (as {:.4f} px would)", effect.effect,
+                              std::sqrt(effect.fall / diagnosis.floor.per_px2));
   }
   return out;
 }

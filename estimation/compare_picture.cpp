@@ -56,8 +56,12 @@ void colour_bar(cv::Mat& panel) {
   for (int x = 0; x < width; ++x)
     cv::line(panel, {x0 + x, y0}, {x0 + x, y0 + height},
              cv::Scalar(diverging(2.0 * x / (width - 1) - 1.0)));
-  label(panel, fmt::format("-{0:.0f}..+{0:.0f} sigma of noise (model - photo)", kResidualScale),
-        {x0 + width + 8, y0 + height}, 0.45);
+  std::string text = fmt::format("-{0:.0f}..+{0:.0f} sigma, model - photo", kResidualScale);
+  const double scale = 0.45;
+  const int room = panel.cols - (x0 + width + 8) - 2;
+  if (cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, scale, 1, nullptr).width > room)
+    text = fmt::format("-{0:.0f}..+{0:.0f} sigma", kResidualScale);
+  label(panel, text, {x0 + width + 8, y0 + height}, scale);
 }
 
 /// Arrow scale: a round number of times such that the median arrow spans about a cell.

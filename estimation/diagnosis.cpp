@@ -274,22 +274,22 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   return score;
 }
 
-/// Diagnosis::mesh_note: what the fitted parameters do once the change `mesh` is there in full.
-std::string note_of_mesh(const Context& context, const Candidate& mesh, int base) {
-  const Eigen::MatrixXd to_base = project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base;
+/// mesh_shift and mesh_note: what the fitted parameters do once the change `mesh` is there in full.
+void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagnosis& out) {
+  if (base == 0) return;
+  out.mesh_shift = -project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
   const auto parameters = context.fitted.form.parameters();
   std::vector<std::string> moved;
   for (int i = 0; i < base; ++i) {
-    const double shift = -to_base(i, 0);
     const double half = 0.5 * (context.fitted.high[i] - context.fitted.low[i]);
-    if (std::abs(shift) > half)
-      moved.push_back(fmt::format("{} by {:+.2g}{}{} ({:.1f} times half its interval)",
-                                  parameters[i].name, shift, parameters[i].unit.empty() ? "" : " ",
-                                  parameters[i].unit, std::abs(shift) / half));
+    if (std::abs(out.mesh_shift[i]) > half)
+      moved.push_back(fmt::format("{} by {:+.2g}{}{}", parameters[i].name, out.mesh_shift[i],
+                                  parameters[i].unit.empty() ? "" : " ", parameters[i].unit));
   }
-  if (moved.empty()) return "";
-  return fmt::format("the intervals know of noise, not of the mesh: a finer one would move {}",
-                     fmt::join(moved, ", "));
+  if (!moved.empty())
+    out.mesh_note =
+        fmt::format("a mesh of 0.7 times the edge would move {}; the intervals reach there",
+                    fmt::join(moved, ", "));
 }
 
 /// Share of each effect's signature that the others can imitate.
@@ -339,7 +339,21 @@ void weigh(std::vector<EffectScore>& scores) {
 
 }  // namespace
 
-double least_fall(const Floor& floor) { return 0.1 * std::max(0.0, floor.chi * floor.chi - 1.0); }
+double least_fall(const Floor& floor) {
+  constexpr double kTrustedPx = 0.01;
+  return std::max(0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
+                  kTrustedPx * kTrustedPx * floor.per_px2);
+}
+
+void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
+  constexpr double kToTheLimit = 1.0 / (1.0 - 0.7 * 0.7);
+  const auto parameters = fitted.form.parameters();
+  for (int i = 0; i < diagnosis.mesh_shift.size(); ++i) {
+    const double reach = kToTheLimit * diagnosis.mesh_shift[i];
+    double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
+    end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
+  }
+}
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
@@ -387,7 +401,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   for (const auto& [name, value] : by_effect(candidates, evidence)) {
     EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
     if (candidates[best[name]].effect->group() == EffectGroup::numerical)
-      out.mesh_note = note_of_mesh(context, candidates[best[name]], base);
+      tell_of_mesh(context, candidates[best[name]], base, out);
     score.evidence = value;
     const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
     score.p_value = (1.0 + above) / (1.0 + null.size());

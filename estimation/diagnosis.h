@@ -46,9 +46,10 @@ struct Diagnosis {
   double effective_count = 0.0;
   double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
-  /// Fitted parameters that a finer mesh would move beyond their intervals, which know of noise and
-  /// not of the mesh; first order. Empty: none.
-  std::string mesh_note;
+  /// Change of the fitted parameters that a mesh of 0.7 times the edge would bring, to first order.
+  /// Empty: not known (the mesh cannot be made finer, or has been).
+  VectorXd mesh_shift;
+  std::string mesh_note;  ///< those that move beyond their intervals for noise; empty: none
 };
 
 struct DiagnosisOptions {
@@ -61,6 +62,11 @@ struct DiagnosisOptions {
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options = {});
+
+/// Extends the intervals, which know of noise alone, to where an ever finer mesh would take the
+/// values. The error falls with the square of the edge (Richardson's extrapolation, second order:
+/// quadratic elements beside clamps and corners): 1/(1 - 0.7^2) times mesh_shift.
+void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis);
 
 /// Sums of the fitted examples, every photo weighted by its effective share of independent cells.
 EffectiveSums effective_sums(const Evaluation& evaluation, const Floor& floor);
@@ -75,9 +81,11 @@ constexpr double kTie = 3.0;
 constexpr int kPictured = 3;
 
 /// Fall of chi^2 below which an effect is not named although noise alone would not give it: a tenth
-/// of what the rest photos keep over their noise after alignment. That part is texture and shading
-/// that the renderer gets wrong, the same way in every photo, so no null of independent noise
-/// covers it. Zero where the rest photos are explained to their noise.
+/// of what the rest photos keep over their noise after alignment (texture and shading that the
+/// renderer gets wrong, the same way in every photo, so no null of independent noise knows it), and
+/// what 0.01 px of motion all over the surface would bring. Below that two renderers of one scene
+/// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
+/// correlation trusts its matches no further.
 double least_fall(const Floor& floor);
 /// Testable, above the simulated gate, and above the renderer's own errors.
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);

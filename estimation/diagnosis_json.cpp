@@ -92,6 +92,7 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     const json& floor = document.at("floor");
     out.floor.chi = floor.at("chi");
     out.floor.cell_variance = floor.at("cell_variance");
+    out.floor.per_px2 = floor.value("per_px2", 0.0);
     out.floor.source = floor.at("source");
     out.gate = document.at("gate");
     out.effective_count = document.at("effective_count");

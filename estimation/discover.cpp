@@ -211,6 +211,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     auto diagnosis = diagnose(workspace, step.fitted, options.diagnosis);
     if (auto* failure = std::get_if<NumericalFailure>(&diagnosis)) return *failure;
     step.diagnosis = std::get<Diagnosis>(std::move(diagnosis));
+    reach_for_mesh(step.fitted, step.diagnosis);
     out.floor = step.diagnosis.floor;
     if (events.step) events.step(step);
     if (added >= options.max_effects) break;

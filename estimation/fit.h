@@ -42,7 +42,9 @@ struct RefinementStage {
 struct Fitted {
   ModelForm form;
   VectorXd p;
-  VectorXd low, high;                     ///< 95 % intervals, not fooled by correlated residuals
+  /// 95 % intervals, not fooled by correlated residuals; of the mesh they know once
+  /// reach_for_mesh() has been there.
+  VectorXd low, high;
   std::vector<std::string> undetermined;  ///< sentences: what these data cannot fix
   Evaluation evaluation;                  ///< fitted and held-out, pictures and derivatives
   int iterations = 0;

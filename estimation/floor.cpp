@@ -49,10 +49,24 @@ int degree_for(const FlowField& flow) {
   return degree;
 }
 
+/// Floor::per_px2.
+double fall_per_px2(const Evaluation& evaluation) {
+  double information = 0.0, pixels = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos)
+      for (const auto& cell : photo.flow.cells) {
+        if (example.held_out) continue;
+        information += 0.5 * (cell.information(0, 0) + cell.information(1, 1));
+        pixels += cell.pixels;
+      }
+  return pixels > 0.0 ? information / pixels : 0.0;
+}
+
 }  // namespace
 
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   Floor floor;
+  floor.per_px2 = fall_per_px2(evaluation);
   double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0, inflation = 0.0, photos = 0.0;
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;

@@ -16,6 +16,9 @@ struct Floor {
   /// Variance of a smooth signature's score over that under white noise: the same errors summed
   /// over their correlation from cell to cell (FlowStatistics::inflation).
   double cell_inflation = 1.0;
+  /// Fall of chi^2 that one pixel of motion of the whole surface brings, mean over directions and
+  /// the fitted photos: how sharp and how free of noise they are.
+  double per_px2 = 0.0;
   std::string source = "noise model";  ///< or "rest photos"
 };
 

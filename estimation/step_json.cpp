@@ -17,7 +17,10 @@ namespace hookeye {
 using nlohmann::json;
 
 json to_json(const Floor& floor) {
-  return {{"chi", floor.chi}, {"cell_variance", floor.cell_variance}, {"source", floor.source}};
+  return {{"chi", floor.chi},
+          {"cell_variance", floor.cell_variance},
+          {"per_px2", floor.per_px2},
+          {"source", floor.source}};
 }
 
 json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& value,
@@ -176,8 +179,6 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
   return out;
 }
 
-namespace {
-
 std::string parameters_csv(const Fitted& fitted) {
   std::string csv = "name,unit,long_name,value,low,high\n";
   const auto parameters = fitted.form.parameters();
@@ -187,6 +188,8 @@ std::string parameters_csv(const Fitted& fitted) {
                     parameters[i].long_name, fitted.p[i], fitted.low[i], fitted.high[i]);
   return csv;
 }
+
+namespace {
 
 void write_photo(const std::filesystem::path& folder, const Scene& scene, const Model& model,
                  const PhotoEvaluation& photo) {

@@ -24,6 +24,9 @@ nlohmann::json timeline_entry(const Step& step);
 /// forces, what is undetermined, the facts of the capture and of the mesh.
 nlohmann::json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor);
 
+/// parameters.csv: name, unit, words, value and interval of each.
+std::string parameters_csv(const Fitted& fitted);
+
 /// Fills a step's folder: model.yaml, metrics.json, diagnosis.json, parameters.csv,
 /// residuals/EXAMPLE-CAMERA.{exr,png}, compare/EXAMPLE-CAMERA.png, deformed/EXAMPLE.vtu, and what
 /// the page draws: page/ (page_data.h).

@@ -13,20 +13,61 @@ double blackman_harris(double v) {
   return 0.35875 - 0.48829 * std::cos(a) + 0.14128 * std::cos(2 * a) - 0.01168 * std::cos(3 * a);
 }
 
+namespace {
+
+/// Variance of the window itself in units of width^2 (its mean square, by the trapezoidal rule).
+double window_variance() {
+  constexpr int kSteps = 2000;
+  double sum = 0, square = 0;
+  for (int i = 1; i < kSteps; ++i) {
+    const double v = static_cast<double>(i) / kSteps - 0.5;
+    sum += blackman_harris(v);
+    square += blackman_harris(v) * v * v;
+  }
+  return square / sum;
+}
+
+}  // namespace
+
+std::vector<double> PixelFilter::sampled(double width_px) const {
+  const auto place = [&](int tap, int other) {
+    return (tap - margin - (n - 1) / 2.0 + shift(other - margin, n)) / n;
+  };
+  std::vector<double> weights;
+  double sum = 0;
+  for (int j = 0; j < taps(); ++j)
+    for (int i = 0; i < taps(); ++i)
+      sum += weights.emplace_back(blackman_harris(place(i, j) / width_px) *
+                                  blackman_harris(place(j, i) / width_px));
+  if (sum <= 0)  // A window narrower than the ray spacing of an even pattern: the plain mean.
+    weights.assign(weights.size(), 1.0), sum = static_cast<double>(weights.size());
+  for (double& w : weights) w /= sum;
+  return weights;
+}
+
+double PixelFilter::variance(const std::vector<double>& weights) const {
+  double out = 0;
+  for (int j = 0; j < taps(); ++j)
+    for (int i = 0; i < taps(); ++i) {
+      const double px = (i - margin - (n - 1) / 2.0 + shift(j - margin, n)) / n;
+      out += weights[static_cast<size_t>(j) * taps() + i] * px * px;
+    }
+  return out;
+}
+
 PixelFilter::PixelFilter(int rays_per_axis, double width_px) : n(rays_per_axis) {
   const double least = 0.01 * blackman_harris(0.0);
   // Offsets of the first ray outside the pixel: (n+1)/2/n px, then one more ray each.
   while (blackman_harris(((n + 1) / 2.0 + margin) / n / width_px) > least) ++margin;
-  const auto along = [&](int tap, int other) {
-    const double px = (tap - margin - (n - 1) / 2.0 + shift(other - margin, n)) / n;
-    return blackman_harris(px / width_px);
-  };
-  double sum = 0;
-  for (int j = 0; j < taps(); ++j)
-    for (int i = 0; i < taps(); ++i) sum += weights_.emplace_back(along(i, j) * along(j, i));
-  if (sum <= 0)  // A window narrower than the ray spacing of an even pattern: the plain mean.
-    weights_.assign(weights_.size(), 1.0), sum = static_cast<double>(weights_.size());
-  for (double& w : weights_) w /= sum;
+  weights_ = sampled(width_px);
+  const double wanted = window_variance() * width_px * width_px;
+  double narrow = width_px, wide = 2.0 * width_px;
+  if (variance(sampled(wide)) < wanted) return;  // one ray, or a window narrower than its spacing
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (narrow + wide);
+    (variance(sampled(middle)) < wanted ? narrow : wide) = middle;
+  }
+  weights_ = sampled(wide);
 }
 
 namespace {

@@ -11,7 +11,9 @@ namespace hookeye {
 /// Correlated Multi-Jittered Sampling, 2013): an upright edge is seen to 1/n^2 px, on a plain grid
 /// to 1/n, and bodies stand upright. A pixel is the weighted mean of its rays and, where the window
 /// reaches them, of `margin` further rays on each side. Rays whose weight along an axis is below
-/// 1 % of the centre's are left out.
+/// 1 % of the centre's are left out. A few rays see less of the window than there is (3 an axis:
+/// 0.0053 px^2 of 0.0432): it is widened until their variance is the window's own, so that pictures
+/// of other numbers of rays, and of renderers that take many, are as sharp to second order.
 struct PixelFilter {
   PixelFilter(int rays_per_axis, double width_px);
   int n = 1, margin = 0;
@@ -26,6 +28,8 @@ struct PixelFilter {
   double weight(int i, int j) const { return weights_[static_cast<size_t>(j) * taps() + i]; }
 
  private:
+  std::vector<double> sampled(double width_px) const;         ///< weights of a window
+  double variance(const std::vector<double>& weights) const;  ///< along an axis [px^2]
   std::vector<double> weights_;
 };
 

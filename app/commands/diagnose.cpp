@@ -16,6 +16,7 @@ void run_diagnose(const std::string& folder, Session& session) {
   DiagnosisOptions options;
   options.cancel = &interrupted();
   step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
+  reach_for_mesh(step.fitted, step.diagnosis);
   record_diagnosis(run, step);
   session.document = to_json(step.diagnosis);
   session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name, step.fitted.evaluation.chi(false),

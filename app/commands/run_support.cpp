@@ -70,6 +70,10 @@ void record_diagnosis(Run& run, const Step& step) {
         write_text(file, to_json(step.diagnosis).dump(1) + "\n");
       },
       true);
+  run.add_file(
+      folder, "parameters.csv",
+      [&](const std::filesystem::path& file) { write_text(file, parameters_csv(step.fitted)); },
+      true);
   if (has_pictures(step.diagnosis))
     run.add_file(
         folder, "removed",
@@ -77,6 +81,7 @@ void record_diagnosis(Run& run, const Step& step) {
   run.update([&](nlohmann::json& timeline) {
     const auto entry = timeline_entry(step);
     timeline["steps"].back()["diagnosis"] = entry["diagnosis"];
+    timeline["steps"].back()["parameters"] = entry["parameters"];
     if (entry.contains("gate")) timeline["steps"].back()["gate"] = entry["gate"];
     timeline["floor"] = to_json(step.diagnosis.floor);
   });

@@ -51,6 +51,25 @@ TEST(Fit, ReachesTheTruthFromPixelsAway) {
   EXPECT_LT(fitted.iterations, 20);
 }
 
+/// The truth is solved on a finer mesh, and the fitted modulus makes up for it.
+TEST(Intervals, ReachForTheFinerMesh) {
+  const SmallScene small({.told = "0.021", .truth_mesh = "0.5", .same_renderer = true});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Fitted fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  const Diagnosis diagnosis = std::get<Diagnosis>(diagnose(workspace, fitted));
+  ASSERT_EQ(diagnosis.mesh_shift.size(), 1);
+  const double off = 0.02 - fitted.p[0], low = fitted.low[0], high = fitted.high[0];
+  ASSERT_GT(std::abs(off), 0.3 * (high - low)) << "the mesh makes no error, this proves nothing";
+  EXPECT_GT(diagnosis.mesh_shift[0] / off, 0.4) << diagnosis.mesh_note;
+  EXPECT_LT(diagnosis.mesh_shift[0] / off, 1.3) << diagnosis.mesh_note;
+  reach_for_mesh(fitted, diagnosis);
+  EXPECT_EQ(fitted.low[0] < low, off < 0.0);
+  EXPECT_EQ(fitted.high[0] > high, off > 0.0);
+  EXPECT_LE(fitted.low[0], 0.02);
+  EXPECT_GE(fitted.high[0], 0.02);
+}
+
 /// Noise alone: with other rays than the fit's the pixel filter differs by a hair, and `defocus`
 /// says so (bench/statistics --other-renderer).
 TEST(Discover, NothingIsMissingWhereNothingIsHidden) {
