@@ -8,6 +8,7 @@
 
 #include "simulation/additive.h"
 #include "simulation/laws/additive_addends.h"
+#include "simulation/laws/material_frame.h"
 
 namespace hookeye {
 namespace {
@@ -157,26 +158,10 @@ class Reader {
   }
 
   void read_frame(AdditiveModel& model) {
-    if (find("frame")) {
-      const auto& value = need("frame", 9, "three rows: the axes 1, 2, 3 in rest coordinates");
-      model.frame = Eigen::Map<const Matrix3d>(value.numbers.data());  // rows become columns
-      const double off = (model.frame.transpose() * model.frame - Matrix3d::Identity()).norm();
-      // As for a camera's rotation: rounded to 1e-4, the nearest exact one is used.
-      if (!(off < 3e-4))
-        throw InputError(value.place, "the material frame is not orthonormal",
-                         "three unit vectors at right angles, one a row");
-      const Eigen::JacobiSVD<Matrix3d> svd(model.frame, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      if (!model.frame.isIdentity(0.0)) model.frame = svd.matrixU() * svd.matrixV().transpose();
-    }
-    if (spec_.parameters.count("frame.axis") || spec_.parameters.count("frame.center")) {
-      const auto& axis = need("frame.axis", 3, "a direction: [0, 0, 1]");
-      const auto& center = need("frame.center", 3, "a point on the axis: [0, 0, 0]");
-      model.cylinder = {Eigen::Map<const Eigen::Vector3d>(axis.numbers.data()),
-                        Eigen::Map<const Eigen::Vector3d>(center.numbers.data())};
-      if (!(model.cylinder->axis.norm() > 0))
-        throw InputError(axis.place, "the axis of the frame has no length", "a direction");
-      model.cylinder->axis.normalize();
-    }
+    if (const auto* rows = find("frame")) model.frame = laws::read_frame(*rows);
+    if (spec_.parameters.count("frame.axis") || spec_.parameters.count("frame.center"))
+      model.cylinder = laws::read_cylinder(need("frame.axis", 0, "a direction: [0, 0, 1]"),
+                                           need("frame.center", 0, "a point on it: [0, 0, 0]"));
   }
   void read_barrier(AdditiveModel& model) {
     if (!spec_.parameters.count("barrier.modulus") && !spec_.parameters.count("barrier.below"))
