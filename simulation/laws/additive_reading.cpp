@@ -84,6 +84,20 @@ std::optional<AdditiveFault> addend_fault(const AdditiveModel& model, const Adde
   return {};
 }
 
+/// The values that lower the eigenvalue most: v^T H v is the sum of what the addends bring.
+std::string least_convex(const AdditiveModel& model, const ConvexityTest& test) {
+  std::string key;
+  double lowest = 0.0;
+  Eigen::Index offset = 0;
+  for (const Addend& a : model.addends) {
+    if (a.fixed) continue;
+    const double brings = test.gradient.segment(offset, a.stiffness.size()).dot(a.stiffness);
+    offset += a.stiffness.size();
+    if (brings < lowest) lowest = brings, key = a.name + ".stiffness";
+  }
+  return key;
+}
+
 /// The small-strain stiffness must resist every strain.
 std::optional<AdditiveFault> rest_fault(const AdditiveModel& model) {
   const Matrix9d D = additive(model)->dP_dF(Matrix3d::Identity());
@@ -260,7 +274,7 @@ std::optional<AdditiveFault> fault(const AdditiveModel& model) {
   for (const Addend& a : model.addends) scale = std::max(scale, a.stiffness.cwiseAbs().maxCoeff());
   const ConvexityTest convex = smallest_eigenvalue(model);
   if (convex.smallest < -1e-12 * scale)
-    return AdditiveFault{"",
+    return AdditiveFault{least_convex(model, convex),
                          fmt::format("the energy is not convex at {}: smallest eigenvalue {:.3g}",
                                      convex.where, convex.smallest),
                          "raise the tangent moduli there, or lower the coupling moduli"};
