@@ -9,6 +9,7 @@
 #include "estimation/sheet.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Dense>
@@ -118,6 +119,9 @@ Result run(const Material& material, const std::string& motion, const fs::path& 
   out.values = find_additive(additive.form, additive.p).model.size();
   std::cerr << fmt::format("{} {}: StVK misfit {:.6g}\n", material.name, motion,
                            normal_equations(stvk.evaluation).r2);
+  for (const Addend& a : find_additive(additive.form, additive.p).model.addends)
+    std::cerr << fmt::format("  {} at {}: {}\n", a.name, fmt::join(a.at, " "),
+                             fmt::join(a.stiffness, " "));
   for (const RefinementStage& stage : additive.refinements)
     std::cerr << fmt::format(
         "  {}: {} values, evidence {:.1f}, misfit {:.6g}, held out {:.6g} {}\n", stage.what,
@@ -213,7 +217,8 @@ std::vector<Image> inputs_of(const Material& material, const fs::path& folder,
   return out;
 }
 
-void run_all(const fs::path& folder, const Resolution& how, const std::string& only) {
+void run_all(const fs::path& folder, const Resolution& how, const std::string& only,
+             const std::string& only_motion) {
   fs::create_directories(folder);
   const std::vector<Material> materials = {
       {"knit", test::woven_sheet(0.05, 0.15, 0.06, 8.0, 0.02, 2.0), 1.0},
@@ -226,6 +231,7 @@ void run_all(const fs::path& folder, const Resolution& how, const std::string& o
   for (const Material& material : materials) {
     if (!only.empty() && material.name != only) continue;
     for (const char* motion : {"corner", "shear"}) {
+      if (!only_motion.empty() && motion != only_motion) continue;
       const Result r = run(material, motion, folder, how);
       for (const char* on : {"corner", "shear"}) {
         const bool corner = std::string(on) == "corner";
@@ -238,11 +244,12 @@ void run_all(const fs::path& folder, const Resolution& how, const std::string& o
       }
       if (std::string(motion) == "corner") shown.push_back(r);
     }
-    for (Image& image : inputs_of(material, folder, how)) inputs.push_back(std::move(image));
+    if (only_motion.empty())
+      for (Image& image : inputs_of(material, folder, how)) inputs.push_back(std::move(image));
   }
   std::ofstream(folder / "sheet.md") << table;
   std::cout << table;
-  draw(shown, inputs, folder / "sheet.png");
+  if (only_motion.empty()) draw(shown, inputs, folder / "sheet.png");
 }
 
 }  // namespace
@@ -251,7 +258,7 @@ void run_all(const fs::path& folder, const Resolution& how, const std::string& o
 int main(int argc, char** argv) {
   CLI::App app("Thin orthotropic sheets: St Venant-Kirchhoff against the additive model");
   std::string folder;
-  std::string only;
+  std::string only, motion;
   hookeye::Resolution how;
   app.add_option("-o,--out", folder, "Folder for the captures, the table and the picture")
       ->required();
@@ -260,9 +267,10 @@ int main(int argc, char** argv) {
   app.add_option("--levels", how.levels, "Load levels of every motion");
   app.add_option("--refinements", how.refinements, "At most");
   app.add_option("--material", only, "knit or denim alone");
+  app.add_option("--motion", motion, "corner or shear alone is fitted (no picture)");
   CLI11_PARSE(app, argc, argv);
   try {
-    hookeye::run_all(folder, how, only);
+    hookeye::run_all(folder, how, only, motion);
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;
