@@ -228,12 +228,12 @@ std::pair<ModelForm, VectorXd> with_structure(const ModelForm& form, const Vecto
 }
 
 void set_frames(EnergyModel::Part& part, const TetMesh& mesh) {
-  const AdditiveModel* model = additive_model(*part.term);
-  if (!model || !model->cylinder || part.frames.cols() == mesh.size()) return;
+  const CylinderFrame* cylinder = part.term->cylinder();
+  if (!cylinder || part.frames.cols() == mesh.size()) return;
   Matrix3Xd centroids = Matrix3Xd::Zero(3, mesh.size());
   for (int e = 0; e < mesh.size(); ++e)
     for (int a = 0; a < 4; ++a) centroids.col(e) += 0.25 * mesh.X.col(mesh.elements(a, e));
-  part.frames = cylinder_frames(*model->cylinder, centroids);
+  part.frames = cylinder_frames(*cylinder, centroids);
 }
 
 }  // namespace hookeye

@@ -77,6 +77,50 @@ double residual_count(const Evaluation& evaluation) {
   return std::max(count, 1.0);
 }
 
+/// Normal equations at p, and how many residuals are in them.
+struct SumsAt {
+  Workspace& workspace;
+  const ModelForm& form;
+  EvaluationOptions evaluation;
+  double residuals = 1.0;
+  std::variant<NormalEquations, NumericalFailure> operator()(const VectorXd& p) {
+    auto result = workspace.evaluate(form, p, evaluation);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+    residuals = residual_count(std::get<Evaluation>(result));
+    return normal_equations(std::get<Evaluation>(result));
+  }
+};
+
+/// Values that the data leave open stay near the start: a Cauchy prior about it, as wide as the
+/// material is stiff at rest. It costs what one residual costs on average, and a value that the
+/// data want elsewhere little more the farther it goes. Without it noise and the mesh's error move
+/// such values by many times the stiffness, which other motions then feel.
+struct Draw {
+  VectorXd centre, width;  ///< in x; width 0: not drawn
+  Draw(const AdditiveModel& in_x, int offset, VectorXd x) : centre(std::move(x)) {
+    double rest = 0.0;
+    for (size_t a = 0; a < in_x.addends.size(); ++a)
+      if (in_x.addends[a].second < 0)
+        rest = std::max(rest, addend_curve(in_x, static_cast<int>(a), 0.0)[2]);
+    width.setZero(centre.size());
+    width.segment(offset, in_x.size()).setConstant(rest);
+  }
+  double cost(const VectorXd& x) const {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (width[i] > 0) sum += std::log1p(std::pow((x[i] - centre[i]) / width[i], 2));
+    return sum;
+  }
+  void add_to(MatrixXd& H, VectorXd& g, const VectorXd& x, double weight) const {
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      if (!(width[i] > 0)) continue;
+      const double d = x[i] - centre[i], share = weight / (width[i] * width[i] + d * d);
+      H(i, i) += share;
+      g[i] += share * d;
+    }
+  }
+};
+
 /// The damped quadratic model of one step, in x.
 struct Step {
   MatrixXd H;
@@ -106,13 +150,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   auto chosen = comparison(workspace, form, start, options);
   if (auto* failure = std::get_if<NumericalFailure>(&chosen)) return *failure;
   const EvaluationOptions evaluation = std::get<EvaluationOptions>(chosen);
-  double residuals = 1.0;
-  const auto sums_at = [&](const VectorXd& p) -> std::variant<NormalEquations, NumericalFailure> {
-    auto result = workspace.evaluate(form, p, evaluation);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    residuals = residual_count(std::get<Evaluation>(result));
-    return normal_equations(std::get<Evaluation>(result));
-  };
+  SumsAt sums_at{workspace, form, evaluation};
   ConvexFit out;
   out.registered = evaluation.registered;
   out.p = start;
@@ -120,11 +158,14 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   auto first = sums_at(start);
   if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
   NormalEquations sums = std::get<NormalEquations>(std::move(first));
+  const Draw draw(model, part.offset, scaled.to_x(start));
   double damping = 1e-3;
   for (; out.iterations < options.max_iterations; ++out.iterations) {
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
     const VectorXd x = scaled.to_x(out.p), d = scaled.dp_dx(out.p);
-    const Step step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
+    Step step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
+    const double noise = sums.r2 / sums_at.residuals;  // variance over what was told
+    draw.add_to(step.H, step.g, x, noise);
     bool accepted = false;
     double fall = 0.0;
     // A damping of 1e6 moves nothing: then there is no lower place to go.
@@ -141,8 +182,8 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
         continue;  // no equilibrium there: a shorter step
       }
       NormalEquations& there = std::get<NormalEquations>(trial);
-      if (!(there.r2 < sums.r2)) continue;
-      fall = sums.r2 - there.r2;
+      fall = sums.r2 - there.r2 + noise * (draw.cost(x) - draw.cost(next.x));
+      if (!(fall > 0)) continue;
       sums = std::move(there);
       out.p = p;
       out.eigenvalues.push_back(smallest_eigenvalue(find_additive(form, p).model).smallest);
@@ -150,8 +191,8 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
     }
     if (options.progress)
       options.progress({fmt::format("additive, {} values", part.model.size()), out.iterations + 1,
-                        options.max_iterations, std::sqrt(sums.r2 / residuals)});
-    if (!accepted || fall < 1e-6 * sums.r2) {
+                        options.max_iterations, std::sqrt(sums.r2 / sums_at.residuals)});
+    if (!accepted || fall < 1e-5 * sums.r2) {
       out.converged = true;
       break;
     }
@@ -188,6 +229,9 @@ std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
 }
 
 namespace {
+
+/// Refinements that are fitted at once.
+constexpr int kMostAtOnce = 6;
 
 struct Scored {
   size_t index;
@@ -252,6 +296,62 @@ RefinementStage stage_of(const std::string& what, double evidence, const Fitted&
   return stage;
 }
 
+/// What to fit next, by falling promise: all that the residual asks for at once (a control point at
+/// the end of a range bends the middle as well until that has a point of its own), then the two
+/// that it asks for most.
+struct Next {
+  std::string what;
+  AdditiveModel model;
+  double evidence;
+};
+std::vector<Next> next_models(const AdditiveModel& present, const std::vector<Refinement>& all,
+                              const std::vector<Scored>& ranked) {
+  std::vector<Next> out;
+  Next together{"", present, 0.0};
+  int count = 0;
+  for (const Scored& one : ranked) {
+    if (one.evidence < kTie || count == kMostAtOnce) break;
+    const Refinement& refinement = all[one.index];
+    refinement.add(together.model);
+    together.what += (count++ ? ", " : "") + refinement.what;
+    together.evidence = std::max(together.evidence, one.evidence);
+    if (count > 2) continue;
+    out.push_back({refinement.what, present, one.evidence});
+    refinement.add(out.back().model);
+  }
+  if (count > 1) out.insert(out.begin(), std::move(together));
+  return out;
+}
+
+/// The next model fitted: the first that held-out examples like better than the present one, else
+/// the one they like best; without held-out examples the first. Empty where the residual asks for
+/// nothing.
+std::variant<std::optional<Fitted>, NumericalFailure> one_more(
+    Workspace& workspace, const Fitted& present, const FitOptions& options,
+    std::vector<RefinementStage>& stages) {
+  const std::vector<Refinement> all = refinements(present.form, present);
+  if (all.empty()) return std::nullopt;
+  auto scored = score(workspace, present, all, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&scored)) return *failure;
+  const auto before = held_out_misfit(present);
+  std::optional<Fitted> best;
+  for (const Next& one : next_models(find_additive(present.form, present.p).model, all,
+                                     std::get<std::vector<Scored>>(scored))) {
+    const auto [larger, p] = with_structure(present.form, present.p, one.model);
+    auto result = fit(workspace, larger, p, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (failure->reason == "cancelled") return *failure;
+      continue;
+    }
+    Fitted& next = std::get<Fitted>(result);
+    stages.push_back(stage_of(one.what, one.evidence, next));
+    const auto after = held_out_misfit(next);
+    if (!best || (after && *after < *held_out_misfit(*best))) best = std::move(next);
+    if (!before || (after && *after < *before)) break;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace, const ModelForm& form,
@@ -259,36 +359,29 @@ std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace, con
                                                        const ProgressiveOptions& options) {
   auto first = fit(workspace, form, start, options.fit);
   if (std::holds_alternative<NumericalFailure>(first)) return first;
-  Fitted best = std::get<Fitted>(std::move(first));
+  Fitted present = std::get<Fitted>(std::move(first)), best = present;
   std::vector<RefinementStage> stages = {stage_of("start", 0.0, best)};
   stages.back().kept = true;
+  // A refinement may pay only together with the next, so a refused one is followed further.
+  std::vector<size_t> path;  // stages since the best
   for (int round = 0; round < options.most_refinements; ++round) {
-    const std::vector<Refinement> all = refinements(best.form, best);
-    if (all.empty()) break;
-    auto scored = score(workspace, best, all, options.fit);
-    if (auto* failure = std::get_if<NumericalFailure>(&scored)) return *failure;
-    const auto& ranked = std::get<std::vector<Scored>>(scored);
-    bool kept = false;
-    // A refinement that held-out examples refuse may have a rival that they like.
-    for (size_t k = 0; !kept && k < std::min<size_t>(2, ranked.size()); ++k) {
-      if (ranked[k].evidence < kTie) break;
-      const Refinement& one = all[ranked[k].index];
-      const auto [larger, p] = with_structure(best.form, best.p, one.model);
-      auto result = fit(workspace, larger, p, options.fit);
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-        if (failure->reason == "cancelled") return *failure;
-        continue;
-      }
-      Fitted& next = std::get<Fitted>(result);
-      RefinementStage stage = stage_of(one.what, ranked[k].evidence, next);
-      const auto after = stage.misfit_held_out;
-      const auto present = held_out_misfit(best);
-      kept = present ? after && *after < *present : true;
-      stage.kept = kept;
-      stages.push_back(stage);
-      if (kept) best = std::move(next);
+    const size_t tried = stages.size();
+    auto result = one_more(workspace, present, options.fit, stages);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+    auto& next = std::get<std::optional<Fitted>>(result);
+    if (!next) break;
+    present = std::move(*next);
+    const auto held_out = held_out_misfit(present);
+    size_t mine = tried;
+    while (stages[mine].misfit_held_out != held_out) ++mine;
+    path.push_back(mine);
+    if (!held_out || *held_out < *held_out_misfit(best)) {
+      best = present;
+      for (size_t stage : path) stages[stage].kept = true;
+      path.clear();
+    } else if (static_cast<int>(path.size()) > options.patience) {
+      break;
     }
-    if (!kept) break;
   }
   best.refinements = std::move(stages);
   return best;

@@ -3,6 +3,8 @@
 // more where the residual asks for it; stopped by the held-out error.
 #pragma once
 
+#include <functional>
+
 #include "estimation/fit.h"
 #include "simulation/additive.h"
 
@@ -11,6 +13,8 @@ namespace hookeye {
 struct ProgressiveOptions {
   FitOptions fit;
   int most_refinements = 24;
+  /// Refinements in a row that are followed although held-out examples agree worse.
+  int patience = 2;
 };
 
 /// Gauss-Newton steps with Marquardt's damping from `start`, at full size. Every step is the
@@ -40,7 +44,7 @@ std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
 /// new addend. Zero at its null.
 struct Refinement {
   std::string what;                             ///< "control point E11 = 0.21", "addend E22"
-  AdditiveModel model;                          ///< with it: the same energy
+  std::function<void(AdditiveModel&)> add;      ///< puts it in; the energy stays the same
   std::shared_ptr<const Ingredient> candidate;  ///< the function alone, to be scored
 };
 /// What the strains of the fitted examples would let the data see: the middles of the intervals
@@ -48,8 +52,10 @@ struct Refinement {
 /// pairs of components that have one.
 std::vector<Refinement> refinements(const ModelForm& form, const Fitted& fitted);
 
-/// From a form with an additive material (to_additive). Without held-out examples the log evidence
-/// alone decides (kTie), which `Fitted::refinements` tells.
+/// From a form with an additive material (to_additive): refinements one after the other, scored
+/// without refitting, the leading ones fitted; what is returned agrees best with the held-out
+/// examples, and `Fitted::refinements` tells which led there. Without held-out examples the
+/// log evidence alone decides (kTie).
 std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& start,
                                                        const ProgressiveOptions& options = {});

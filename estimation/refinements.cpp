@@ -86,8 +86,13 @@ std::vector<double> new_points(const Addend& a, double low, double high) {
 
 Refinement new_point(const AdditiveModel& model, int addend, double x, double typical) {
   Refinement out;
-  out.model = refined(model, addend, x);
-  const Addend& a = out.model.addends[addend];
+  out.add = [name = model.addends[addend].name, x](AdditiveModel& to) {
+    for (size_t i = 0; i < to.addends.size(); ++i)
+      if (to.addends[i].name == name) to = refined(to, static_cast<int>(i), x);
+  };
+  AdditiveModel larger = model;
+  out.add(larger);
+  const Addend& a = larger.addends[addend];
   const auto i = static_cast<size_t>(std::lower_bound(a.at.begin(), a.at.end(), x) - a.at.begin());
   std::vector<double> at;
   for (size_t k = i == 0 ? 0 : i - 1; k < std::min(i + 2, a.at.size()); ++k) at.push_back(a.at[k]);
@@ -103,10 +108,11 @@ Refinement new_point(const AdditiveModel& model, int addend, double x, double ty
 Refinement new_addend(const AdditiveModel& model, const std::string& name, bool one_sided,
                       double typical) {
   Refinement out;
-  out.model = model;
-  std::vector<double> at_second;
-  if (name.find('_') != std::string::npos) at_second = {0.0};
-  add_addend(out.model, name, {0.0}, at_second, VectorXd::Zero(1));
+  out.add = [name](AdditiveModel& to) {
+    std::vector<double> at_second;
+    if (name.find('_') != std::string::npos) at_second = {0.0};
+    add_addend(to, name, {0.0}, at_second, VectorXd::Zero(1));
+  };
   out.what = "addend " + name;
   out.candidate =
       candidate_of(alone(model, name, {0.0}, VectorXd::Ones(1)), one_sided, typical, out.what);
@@ -130,7 +136,7 @@ std::vector<Refinement> refinements(const ModelForm& form, const Fitted& fitted)
       out.push_back(new_point(model, static_cast<int>(a), x, typical));
   }
   const std::vector<std::string> normal = {"E11", "E22", "E33"};
-  for (const char* name : {"E11", "E22", "E33", "E12", "E13", "E23"})
+  for (const char* name : {"E11", "E22", "E33", "E12", "E13", "E23", "I1bar", "J"})
     if (!model.find(name)) out.push_back(new_addend(model, name, true, typical));
   for (size_t i = 0; i < 3; ++i)
     for (size_t j = i + 1; j < 3; ++j) {

@@ -44,11 +44,6 @@ struct Addend {
   bool fixed = false;  ///< a wall: no parameters
 };
 
-/// A frame that varies over the body: a1 away from the axis, a2 around it, a3 along it.
-struct CylinderFrame {
-  Eigen::Vector3d axis, center;
-};
-
 struct AdditiveModel {
   Matrix3d frame = Matrix3d::Identity();  ///< columns a1 a2 a3, orthonormal, rest axes
   std::optional<CylinderFrame> cylinder;  ///< then the body's part carries the frames

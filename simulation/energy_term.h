@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ namespace hookeye {
 
 using Eigen::Matrix3d;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
+
+/// A frame that varies over the body, a tube's: a1 away from the axis, a2 around it, a3 along it.
+struct CylinderFrame {
+  Eigen::Vector3d axis, center;
+};
 
 /// W(F) per rest volume [stress]. 9-vectors and 9x9 stack F column by column (Eigen's order).
 /// Frame: rest axes; an anisotropic law keeps its own directions as parameters.
@@ -36,6 +42,8 @@ class EnergyTerm {
   virtual Matrix3d dP_dtheta(const Matrix3d& F, int k) const = 0;
   /// All of them: column k is vec(dP / dtheta_k). A law with many parameters overrides it.
   virtual Eigen::Matrix<double, 9, Eigen::Dynamic> all_dP_dtheta(const Matrix3d& F) const;
+  /// Where the law is told in the frames of a tube: then the body's part carries them. Else null.
+  virtual const CylinderFrame* cylinder() const { return nullptr; }
   /// Number of parameters.
   virtual int size() const { return static_cast<int>(parameters(Units{}).size()); }
 };
@@ -60,6 +68,17 @@ std::shared_ptr<const EnergyTerm> ogden(const std::vector<double>& mu,
 /// b = b11 b22 b33 b12 b23 b13 g12 g23 g13.
 std::shared_ptr<const EnergyTerm> fung(double c, const Eigen::Matrix<double, 9, 1>& b,
                                        double kappa);
+/// Matrix and families of fibres. `angles` [degrees], measured in the plane of the frame's columns
+/// 1 and 2 from the first, are parameters; or fixed unit `directions` in rest axes.
+struct HolzapfelValues {
+  double mu = 0, k1 = 0, k2 = 0, kappa = 0;
+  double dispersion = 0, toe = 0.01;
+  Matrix3d frame = Matrix3d::Identity();
+  std::vector<double> angles;
+  std::vector<Eigen::Vector3d> directions;
+  std::optional<CylinderFrame> cylinder;
+};
+std::shared_ptr<const EnergyTerm> holzapfel(const HolzapfelValues& values);
 /// Fibre term stiffness/2 (I4bar - 1)^2, I4bar = J^(-2/3) a.C a, a unit, along a (all strains).
 std::shared_ptr<const EnergyTerm> fibre(double stiffness, const Eigen::Vector3d& direction);
 

@@ -2,13 +2,14 @@
 // stiffening sheets under corner pull and complex shear, two materials, data from another law on
 // another mesh. St Venant-Kirchhoff and the additive model are fitted to one motion and shown on
 // both.
-//   bench_sheet -o FOLDER [--kinds positions,forces] [--quick]
+//   bench_sheet -o FOLDER [--material knit] [--edge 5] ...
 // writes FOLDER/sheet.md (the table) and FOLDER/sheet.png (rows: error of StVK, error of the
 // additive model, rendered result, input; columns: the largest corner pull and shear of both
 // materials).
 #include "estimation/sheet.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Dense>
@@ -17,6 +18,7 @@
 #include <iostream>
 
 #include "estimation/additive_material.h"
+#include "estimation/normal_equations.h"
 #include "estimation/photo_evaluation.h"
 #include "estimation/progressive.h"
 
@@ -28,6 +30,12 @@ namespace fs = std::filesystem;
 struct Material {
   std::string name;
   std::shared_ptr<const EnergyTerm> law;
+  double stretch;  ///< size of its motions: a stiff cloth is pulled less far
+};
+
+struct Resolution {
+  double edge = 5.0, finer = 0.7;  ///< told mesh [mm]; edge of the truth's over it
+  int levels = 3, refinements = 24;
 };
 
 /// Root mean square distance [mm] of the markers from the measured places, per motion.
@@ -60,35 +68,65 @@ T value(std::variant<T, NumericalFailure> result, const std::string& what) {
 struct Result {
   Errors stvk, additive;
   int values = 0;
-  std::shared_ptr<const Scene> scene;
-  Fitted stvk_fit, additive_fit;
+  std::shared_ptr<const Scene> scene;  ///< both motions
+  Fitted stvk_fit, additive_fit;       ///< seen on both, fitted to one
 };
 
-Result run(const Material& material, const std::string& motion, const fs::path& folder,
-           bool quick) {
+test::SheetOptions options_for(const Material& material, const fs::path& folder,
+                               const Resolution& how) {
   test::SheetOptions o;
-  o.folder = folder / (material.name + "_" + motion);
+  o.folder = folder;
   o.truth = material.law;
-  o.kinds = {"positions", "forces"};
+  o.force_share = 0.01;
+  o.stretch = material.stretch;
+  o.edge = how.edge;
+  o.finer = how.finer;
+  o.levels = how.levels;
+  return o;
+}
+
+/// The fitted model on another scene of the same sheet, nothing moved.
+Fitted shown_on(const std::shared_ptr<const Scene>& scene, const Fitted& fitted) {
+  ModelForm form = fitted.form;
+  form.scene = scene;
+  form.start = base_form(scene).start;
+  Workspace workspace(scene);
+  return value(assess(workspace, form, fitted.p), "shown");
+}
+
+Result run(const Material& material, const std::string& motion, const fs::path& folder,
+           const Resolution& how) {
+  test::SheetOptions o = options_for(material, folder / (material.name + "_" + motion), how);
   o.fitted = motion;
-  if (quick) o.edge = 10.0, o.levels = 2;
+  // The fit never sees the other motion, not even to judge a refinement.
+  o.only_fitted = true;
+  const auto seen = test::make_sheet(o);
+  o.only_fitted = false;
+  o.folder += "_both";
   Result out;
   out.scene = test::make_sheet(o);
-  Workspace workspace(out.scene);
-  const ModelForm base = base_form(out.scene);
-  out.stvk_fit = value(fit(workspace, base, base.initial()), "StVK");
+  Workspace workspace(seen);
+  const ModelForm base = base_form(seen);
+  const Fitted stvk = value(fit(workspace, base, base.initial()), "StVK");
+  out.stvk_fit = shown_on(out.scene, stvk);
   out.stvk = errors_of(*out.scene, out.stvk_fit);
-  const auto [form, start] = to_additive(base, out.stvk_fit.p);
+  const auto [form, start] = to_additive(base, stvk.p);
   ProgressiveOptions options;
-  if (quick) options.most_refinements = 8;
-  options.fit.max_iterations = 12;
-  out.additive_fit = value(fit_progressive(workspace, form, start, options), "additive");
+  options.most_refinements = how.refinements;
+  const Fitted additive = value(fit_progressive(workspace, form, start, options), "additive");
+  out.additive_fit = shown_on(out.scene, additive);
   out.additive = errors_of(*out.scene, out.additive_fit);
-  out.values = find_additive(out.additive_fit.form, out.additive_fit.p).model.size();
-  for (const RefinementStage& stage : out.additive_fit.refinements)
-    std::cerr << fmt::format("  {} {}: {} values {} misfit {:.6g} held out {:.6g} {}\n",
-                             material.name, motion, stage.what, stage.values, stage.misfit_fit,
-                             stage.misfit_held_out.value_or(0), stage.kept ? "kept" : "refused");
+  out.values = find_additive(additive.form, additive.p).model.size();
+  std::cerr << fmt::format("{} {}: StVK misfit {:.6g}\n", material.name, motion,
+                           normal_equations(stvk.evaluation).r2);
+  for (const Addend& a : find_additive(additive.form, additive.p).model.addends)
+    std::cerr << fmt::format("  {} at {}: {}\n", a.name, fmt::join(a.at, " "),
+                             fmt::join(a.stiffness, " "));
+  for (const RefinementStage& stage : additive.refinements)
+    std::cerr << fmt::format(
+        "  {}: {} values, evidence {:.1f}, misfit {:.6g}, held out {:.6g} {}\n", stage.what,
+        stage.values, stage.evidence, stage.misfit_fit, stage.misfit_held_out.value_or(0),
+        stage.kept ? "kept" : "refused");
   return out;
 }
 
@@ -168,12 +206,10 @@ void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs,
 }
 
 /// What the camera saw: photos of the truth, made for the picture only.
-std::vector<Image> inputs_of(const Material& material, const fs::path& folder, bool quick) {
-  test::SheetOptions o;
-  o.folder = folder / (material.name + "_input");
-  o.truth = material.law;
+std::vector<Image> inputs_of(const Material& material, const fs::path& folder,
+                             const Resolution& how) {
+  test::SheetOptions o = options_for(material, folder / (material.name + "_input"), how);
   o.kinds = {"photos"};
-  if (quick) o.edge = 10.0, o.levels = 2;
   test::make_sheet(o);
   std::vector<Image> out;
   for (const char* motion : {"corner", "shear"})
@@ -181,33 +217,39 @@ std::vector<Image> inputs_of(const Material& material, const fs::path& folder, b
   return out;
 }
 
-void run_all(const fs::path& folder, bool quick) {
+void run_all(const fs::path& folder, const Resolution& how, const std::string& only,
+             const std::string& only_motion) {
   fs::create_directories(folder);
   const std::vector<Material> materials = {
-      {"knit", test::woven_sheet(0.05, 0.15, 0.06, 8.0, 0.02, 2.0)},
-      {"denim", test::woven_sheet(0.08, 0.25, 1.0, 4.0, 0.4, 10.0)}};
+      {"knit", test::woven_sheet(0.05, 0.15, 0.06, 8.0, 0.02, 2.0), 1.0},
+      {"denim", test::woven_sheet(0.08, 0.25, 1.0, 4.0, 0.4, 10.0), 0.6}};
   std::vector<Result> shown;
   std::vector<Image> inputs;
   std::string table =
       "| material | fitted to | shown on | StVK [mm] | additive [mm] | ratio | control values |\n"
       "|---|---|---|---|---|---|---|\n";
   for (const Material& material : materials) {
+    if (!only.empty() && material.name != only) continue;
     for (const char* motion : {"corner", "shear"}) {
-      const Result r = run(material, motion, folder, quick);
+      if (!only_motion.empty() && motion != only_motion) continue;
+      const Result r = run(material, motion, folder, how);
       for (const char* on : {"corner", "shear"}) {
         const bool corner = std::string(on) == "corner";
         const double a = corner ? r.stvk.corner : r.stvk.shear;
         const double b = corner ? r.additive.corner : r.additive.shear;
-        table += fmt::format("| {} | {} | {} | {:.3f} | {:.3f} | {:.1f} | {} |\n", material.name,
-                             motion, on, a, b, a / b, r.values);
+        const std::string row = fmt::format("| {} | {} | {} | {:.3f} | {:.3f} | {:.1f} | {} |\n",
+                                            material.name, motion, on, a, b, a / b, r.values);
+        std::cerr << row;
+        table += row;
       }
       if (std::string(motion) == "corner") shown.push_back(r);
     }
-    for (Image& image : inputs_of(material, folder, quick)) inputs.push_back(std::move(image));
+    if (only_motion.empty())
+      for (Image& image : inputs_of(material, folder, how)) inputs.push_back(std::move(image));
   }
   std::ofstream(folder / "sheet.md") << table;
   std::cout << table;
-  draw(shown, inputs, folder / "sheet.png");
+  if (only_motion.empty()) draw(shown, inputs, folder / "sheet.png");
 }
 
 }  // namespace
@@ -216,13 +258,19 @@ void run_all(const fs::path& folder, bool quick) {
 int main(int argc, char** argv) {
   CLI::App app("Thin orthotropic sheets: St Venant-Kirchhoff against the additive model");
   std::string folder;
-  bool quick = false;
+  std::string only, motion;
+  hookeye::Resolution how;
   app.add_option("-o,--out", folder, "Folder for the captures, the table and the picture")
       ->required();
-  app.add_flag("--quick", quick, "A coarse mesh and few refinements: does it run?");
+  app.add_option("--edge", how.edge, "Mesh that is fitted [mm]");
+  app.add_option("--finer", how.finer, "Edge of the truth's mesh over that one");
+  app.add_option("--levels", how.levels, "Load levels of every motion");
+  app.add_option("--refinements", how.refinements, "At most");
+  app.add_option("--material", only, "knit or denim alone");
+  app.add_option("--motion", motion, "corner or shear alone is fitted (no picture)");
   CLI11_PARSE(app, argc, argv);
   try {
-    hookeye::run_all(folder, quick);
+    hookeye::run_all(folder, how, only, motion);
   } catch (const std::exception& error) {
     std::cerr << error.what() << "\n";
     return 1;

@@ -8,6 +8,7 @@
 
 #include "simulation/additive.h"
 #include "simulation/laws/additive_addends.h"
+#include "simulation/laws/material_frame.h"
 
 namespace hookeye {
 namespace {
@@ -81,6 +82,20 @@ std::optional<AdditiveFault> addend_fault(const AdditiveModel& model, const Adde
   if (!a.stiffness.allFinite())
     return AdditiveFault{key, fmt::format("a value of `{}` is not finite", key), "finite numbers"};
   return {};
+}
+
+/// The values that lower the eigenvalue most: v^T H v is the sum of what the addends bring.
+std::string least_convex(const AdditiveModel& model, const ConvexityTest& test) {
+  std::string key;
+  double lowest = 0.0;
+  Eigen::Index offset = 0;
+  for (const Addend& a : model.addends) {
+    if (a.fixed) continue;
+    const double brings = test.gradient.segment(offset, a.stiffness.size()).dot(a.stiffness);
+    offset += a.stiffness.size();
+    if (brings < lowest) lowest = brings, key = a.name + ".stiffness";
+  }
+  return key;
 }
 
 /// The small-strain stiffness must resist every strain.
@@ -157,26 +172,10 @@ class Reader {
   }
 
   void read_frame(AdditiveModel& model) {
-    if (find("frame")) {
-      const auto& value = need("frame", 9, "three rows: the axes 1, 2, 3 in rest coordinates");
-      model.frame = Eigen::Map<const Matrix3d>(value.numbers.data());  // rows become columns
-      const double off = (model.frame.transpose() * model.frame - Matrix3d::Identity()).norm();
-      // As for a camera's rotation: rounded to 1e-4, the nearest exact one is used.
-      if (!(off < 3e-4))
-        throw InputError(value.place, "the material frame is not orthonormal",
-                         "three unit vectors at right angles, one a row");
-      const Eigen::JacobiSVD<Matrix3d> svd(model.frame, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      if (!model.frame.isIdentity(0.0)) model.frame = svd.matrixU() * svd.matrixV().transpose();
-    }
-    if (spec_.parameters.count("frame.axis") || spec_.parameters.count("frame.center")) {
-      const auto& axis = need("frame.axis", 3, "a direction: [0, 0, 1]");
-      const auto& center = need("frame.center", 3, "a point on the axis: [0, 0, 0]");
-      model.cylinder = {Eigen::Map<const Eigen::Vector3d>(axis.numbers.data()),
-                        Eigen::Map<const Eigen::Vector3d>(center.numbers.data())};
-      if (!(model.cylinder->axis.norm() > 0))
-        throw InputError(axis.place, "the axis of the frame has no length", "a direction");
-      model.cylinder->axis.normalize();
-    }
+    if (const auto* rows = find("frame")) model.frame = laws::read_frame(*rows);
+    if (spec_.parameters.count("frame.axis") || spec_.parameters.count("frame.center"))
+      model.cylinder = laws::read_cylinder(need("frame.axis", 0, "a direction: [0, 0, 1]"),
+                                           need("frame.center", 0, "a point on it: [0, 0, 0]"));
   }
   void read_barrier(AdditiveModel& model) {
     if (!spec_.parameters.count("barrier.modulus") && !spec_.parameters.count("barrier.below"))
@@ -275,7 +274,7 @@ std::optional<AdditiveFault> fault(const AdditiveModel& model) {
   for (const Addend& a : model.addends) scale = std::max(scale, a.stiffness.cwiseAbs().maxCoeff());
   const ConvexityTest convex = smallest_eigenvalue(model);
   if (convex.smallest < -1e-12 * scale)
-    return AdditiveFault{"",
+    return AdditiveFault{least_convex(model, convex),
                          fmt::format("the energy is not convex at {}: smallest eigenvalue {:.3g}",
                                      convex.where, convex.smallest),
                          "raise the tangent moduli there, or lower the coupling moduli"};

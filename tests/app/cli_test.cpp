@@ -174,6 +174,40 @@ TEST_F(Cli, AnUnknownLawIsNamedWithItsPlace) {
   EXPECT_THAT(result.err, HasSubstr("neo-hookean"));
 }
 
+TEST_F(Cli, AMaterialThatCannotBeIsNamedWithItsPlace) {
+  write_cube("{z: 1}");
+  const std::string text = read(folder_ / "capture.yaml");
+  const size_t begin = text.find("  material:"), end = text.find('\n', begin);
+  const int line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + begin, '\n'));
+  const std::string rubber =
+      "I1bar: {at: [0], stiffness: [0.05]}, J: {at: [0], stiffness: [0.5]}, ";
+  struct Case {
+    std::string material, value, wrong;  // the fault is told at the value
+  };
+  const std::vector<Case> cases = {
+      {"law: additive, " + rubber + "E11: {at: [0, 0.2, 0.1], stiffness: [1, 1, 1]}",
+       "[0, 0.2, 0.1]", "out of order: 0.1 after 0.2"},
+      {"law: additive, " + rubber + "E11: {at: [0, 0.2, 0.2], stiffness: [1, 1, 1]}",
+       "[0, 0.2, 0.2]", "0.2 of `E11.at` stands twice"},
+      {"law: additive, " + rubber + "E22: {at: [0, 0.3], stiffness: [0.1, -0.7]}", "[0.1, -0.7]",
+       "not convex at E22 = 0.3"},
+      {"law: additive, " + rubber + "frame: [[1, 0, 0], [0.1, 1, 0], [0, 0, 1]]", "[[1, 0, 0]",
+       "not orthonormal"},
+      {"law: holzapfel, mu: 0.05, k1: 0.1, k2: 1, angles: [30], kappa: 0.5, dispersion: 0.35",
+       "0.35", "`dispersion` is 0.35"},
+      {"law: ogden, mu: [0.05, 0.01], alpha: [2], kappa: 0.5", "[2]", "2 moduli"}};
+  for (const Case& one : cases) {
+    const std::string told = "  material: {" + one.material + "}";
+    write("capture.yaml", text.substr(0, begin) + told + text.substr(end));
+    const Result result = hookeye("check .");
+    EXPECT_EQ(result.status, 2) << one.material;
+    EXPECT_THAT(result.err, HasSubstr("capture.yaml:" + std::to_string(line) + ":" +
+                                      std::to_string(1 + told.find(one.value)) + ": "))
+        << one.material;
+    EXPECT_THAT(result.err, HasSubstr(one.wrong));
+  }
+}
+
 TEST_F(Cli, CheckSaysWhatItUnderstood) {
   write_cube("{z: 1}");
   const Result lines = hookeye("check .");

@@ -58,31 +58,40 @@ class Woven final : public EnergyTerm {
   std::array<double, 2> k_, lock_;
 };
 
-const char* const kSurface = R"(v 0 0 -1
-v 40 0 -1
-v 40 40 -1
-v 0 40 -1
-v 0 0 1
-v 40 0 1
-v 40 40 1
-v 0 40 1
-vt 0 0
-vt 1 0
-vt 1 1
-vt 0 1
-f 1/1 3/3 2/2
-f 1/1 4/4 3/3
-f 5/1 6/2 7/3
-f 5/1 7/3 8/4
-f 1/1 2/2 6/3
-f 1/1 6/3 5/4
-f 2/1 3/2 7/3
-f 2/1 7/3 6/4
-f 3/1 4/2 8/3
-f 3/1 8/3 7/4
-f 4/1 1/2 5/3
-f 4/1 5/3 8/4
-)";
+constexpr double kLines[] = {0, 8.5, 17, 25.5, 34, 40};
+constexpr int kCells = 5;
+
+/// Rectangles between the lines, so that the corner's grip ends at edges of every mesh. A grip that
+/// ends within elements is as large as the nodes in it: positions differ by a millimetre from mesh
+/// to mesh then.
+std::string surface() {
+  std::string out;
+  for (int z : {-1, 1})
+    for (int j = 0; j <= kCells; ++j)
+      for (int i = 0; i <= kCells; ++i) out += fmt::format("v {} {} {}\n", kLines[i], kLines[j], z);
+  for (int j = 0; j <= kCells; ++j)
+    for (int i = 0; i <= kCells; ++i)
+      out += fmt::format("vt {} {}\n", kLines[i] / 40, kLines[j] / 40);
+  constexpr int kSide = kCells + 1, kLayer = kSide * kSide;
+  const auto corner = [](int k) { return fmt::format("{}/{}", k + 1, k % kLayer + 1); };
+  const auto square = [&](int a, int b, int c, int d) {
+    out += fmt::format("f {} {} {}\nf {} {} {}\n", corner(a), corner(b), corner(c), corner(a),
+                       corner(c), corner(d));
+  };
+  const auto wall = [&](int a, int b) { square(a, b, b + kLayer, a + kLayer); };
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const int a = j * kSide + i, up = a + kLayer;
+      square(a, a + kSide, a + kSide + 1, a + 1);
+      square(up, up + 1, up + kSide + 1, up + kSide);
+    }
+    wall(i, i + 1);
+    wall(kCells * kSide + i + 1, kCells * kSide + i);
+    wall((i + 1) * kSide, i * kSide);
+    wall(i * kSide + kCells, (i + 1) * kSide + kCells);
+  }
+  return out;
+}
 
 std::string head(const SheetOptions& o) {
   return fmt::format(R"(hookeye: 1
@@ -137,6 +146,8 @@ std::vector<Motion> motions(const SheetOptions& o) {
                      6.0 * s, 9.0 * s, 4.0 * s),
          o.fitted != "shear" || middle});
   }
+  if (o.only_fitted)
+    std::erase_if(all, [&](const Motion& m) { return m.name.rfind(o.fitted, 0) != 0; });
   return all;
 }
 
@@ -211,7 +222,7 @@ std::shared_ptr<const EnergyTerm> woven_sheet(double mu, double kappa, double st
 
 std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
   fs::create_directories(o.folder / "photos");
-  std::ofstream(o.folder / "sheet.obj") << kSurface;
+  std::ofstream(o.folder / "sheet.obj") << surface();
   write_albedo(o.folder / "albedo.png");
   std::ofstream(o.folder / "capture.yaml") << head(o) << examples_text(o, {}, false);
   const auto scene = truth_scene(o);
@@ -240,9 +251,10 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
             X.z(), noisy(moved(scene->body->mesh, state.q, X), o.position_sigma), o.position_sigma);
     if (o.kinds.count("forces") && example.name != "rest") {
       const std::string grip = example.name.rfind("corner", 0) == 0 ? "corner" : "upper";
+      const Vector3d force = support_force(state, scene->body->regions.at(grip));
+      const double sigma = std::max(o.force_sigma, o.force_share * force.norm());
       text += fmt::format("      - {{force_on: {}, value: {}, sigma: {:g}}}\n", grip,
-                          noisy(support_force(state, scene->body->regions.at(grip)), o.force_sigma),
-                          o.force_sigma);
+                          noisy(force, sigma), sigma);
     }
     if (o.kinds.count("photos")) {
       RenderOptions options = render_options(*scene);

@@ -25,13 +25,16 @@ struct SheetOptions {
   int levels = 3;        ///< load levels of every motion
   double stretch = 1.0;  ///< size of all motions
   double position_sigma = 0.02, force_sigma = 0.005;  ///< [mm], [N]
+  double force_share = 0.0;  ///< a force's noise is at least this share of it
+  bool only_fitted = false;  ///< the other motion is not in the capture
   unsigned seed = 1;
 };
 
 /// 40 x 40 x 2 mm; axes 1 and 2 in its plane. corner_K: the left edge is held, the upper right
 /// corner pulled along its diagonal and out of the plane. shear_K: the lower edge is held, the
 /// upper one moved along itself, away and turned. Level K of the fitted motion is fitted, its
-/// middle one held out; the other motion is held out. Truth: another mesh, noise on everything.
+/// middle one held out; the other motion is held out, or left out. Truth: another mesh, noise on
+/// everything.
 std::shared_ptr<const Scene> make_sheet(const SheetOptions& options);
 
 /// Orthotropic, stiffening, softer in compression than in tension in its plane: exponential fibres

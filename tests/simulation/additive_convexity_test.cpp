@@ -210,9 +210,9 @@ TEST(AdditiveInput, NamesTheFaultAndItsPlace) {
   expect_fault(with({{"E11.at", {0, 0.1}}, {"E11.stiffness", {1}}}), "1 values", "E11.stiffness");
   expect_fault(with({{"E11.at", {0}}}), "lacks `E11.stiffness`", "");
   expect_fault(with({{"E11.at", {0}}, {"E11.stiffness", {-0.1}}}),
-               "not convex at E11 = 0: smallest eigenvalue -0.1", "");
+               "not convex at E11 = 0: smallest eigenvalue -0.1", "E11.stiffness");
   expect_fault(with({{"E11_E22.at", {0}}, {"E11_E22.at_2", {0}}, {"E11_E22.stiffness", {1}}}),
-               "not convex at E11 = 0, E22 = 0: smallest eigenvalue -1", "");
+               "not convex at E11 = 0, E22 = 0: smallest eigenvalue -1", "E11_E22.stiffness");
   expect_fault(with({{"frame", {1, 0, 0, 0.1, 1, 0, 0, 0, 1}}}), "not orthonormal", "frame");
   expect_fault(with({{"frame", {1, 0, 0}}}), "3 numbers", "frame");
   expect_fault(with({{"E14.at", {0}}, {"E14.stiffness", {1}}}), "no addend `E14`", "E14.at");

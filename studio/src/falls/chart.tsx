@@ -29,6 +29,7 @@ export function Chart(props: {
   yLabel: string;
   log?: boolean;
   tall?: boolean;
+  visited?: [number, number];  // shaded along x: where the data are
 }) {
   const ref = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -65,9 +66,18 @@ export function Chart(props: {
             value: (_: uPlot, v: number | null) => (v === null ? '–' : v.toPrecision(4)),
           })),
         ],
-        // figures before anything is pointed at
-        hooks: {ready: [(u) => u.setLegend({idx: props.x.length - 1})]},
-        bands: props.bands?.map((series) => ({series, fill: faint})),
+        hooks: {
+          ready: [(u) => u.setLegend({idx: props.x.length - 1})],  // figures before anything is pointed at
+          drawClear: props.visited ? [(u) => {
+            const [from, to] = props.visited!.map((v) => u.valToPos(v, 'x', true));
+            u.ctx.save();
+            u.ctx.globalAlpha = 0.35;
+            u.ctx.fillStyle = faint;
+            u.ctx.fillRect(from, u.bbox.top, to - from, u.bbox.height);
+            u.ctx.restore();
+          }] : [],
+        },
+        bands: props.bands?.map((series) => ({series, fill: '#2166ac44'})),
       },
       [props.x, ...props.lines.map((line) => line.values)] as uPlot.AlignedData,
       box,

@@ -53,17 +53,17 @@ function Interval(props: {p: ParameterValue}) {
 function Energy(props: {curve: EnergyCurve}) {
   const {curve} = props;
   const lines = useMemo<Line[]>(() => [
-    {label: 'upper', values: curve.high, colour: '#8888'},
-    {label: curve.name, values: curve.value, colour: '#2166ac'},
-    {label: 'lower', values: curve.low, colour: '#8888'},
+    {label: 'upper', values: curve.high, colour: '#2166ac66'},
+    {label: 'energy', values: curve.value, colour: '#2166ac'},
+    {label: 'lower', values: curve.low, colour: '#2166ac66'},
   ], [curve]);
   const axis = curve.axis ?? 'stretch';
   const other = Object.entries(curve.at ?? {}).map(([name, value]) => `, ${name} = ${figure(value)}`).join('');
   return <>
     <Chart title={`Energy of ${curve.name}`} file={`energy-${curve.name}`}
            says={`Energy of ${curve.name} over ${axis}, with its 95 % band`} x={curve.stretch} lines={lines}
-           bands={[[1, 3]]} xLabel={axis + other} yLabel={`${curve.name} [${curve.unit}]`} />
-    {curve.visited && <p class="note">{axis} visited: {figure(curve.visited[0])} to {figure(curve.visited[1])}
+           bands={[[1, 3]]} xLabel={axis + other} yLabel={`${curve.name} [${curve.unit}]`} visited={curve.visited} />
+    {curve.visited && <p class="note">{axis} visited (shaded): {figure(curve.visited[0])} to {figure(curve.visited[1])}
       {curve.beyond ? `; beyond the control points in ${curve.beyond} of ${curve.elements} elements` : ''}</p>}
   </>;
 }
