@@ -1,5 +1,6 @@
 // The blind benchmark: draws recipes, photographs them, lets `hookeye discover` look, scores.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -20,6 +21,8 @@ struct Options {
   std::vector<std::string> effects;
   unsigned first = 1;
   int seeds = 3;
+  double size = 1.0;
+  bool left_out = false;
 };
 
 std::string shell_quoted(const fs::path& path) {
@@ -44,7 +47,7 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   failed.hidden = effect;
   failed.seed = seed;
   if (!fs::exists(capture)) {
-    write_text(folder / "recipe.yaml", draw_recipe(effect, seed));
+    write_text(folder / "recipe.yaml", draw_recipe(effect, seed, options.size));
     const int status = run(fmt::format(
         "{} synth {} -o {} {} 2> {}", shell_quoted(options.hookeye),
         shell_quoted(folder / "recipe.yaml"), shell_quoted(capture),
@@ -58,9 +61,11 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   if (!fs::exists(found)) {
     // discover works on the folder alone; the truth beside it is read below, after it has ended
     const int status = run(fmt::format(
-        "{0} discover --json {1} -o {2} > {3}.part 2> {4} && mv {3}.part {3}",
+        "{0} discover --json {1} -o {2} {5} > {3}.part 2> {4} && mv {3}.part {3}",
         shell_quoted(options.hookeye), shell_quoted(capture), shell_quoted(folder / "run"),
-        shell_quoted(found), shell_quoted(folder / "discover.log")));
+        shell_quoted(found), shell_quoted(folder / "discover.log"),
+        options.left_out ? fmt::format("--without {}", fmt::join(effects_of(effect), " --without "))
+                         : ""));
     if (status != 0) {
       failed.status = fmt::format("discover {}", status);
       return failed;
@@ -69,6 +74,7 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   Score done = score(nlohmann::json::parse(read_text(found)),
                      nlohmann::json::parse(read_text(truth_file(capture))));
   done.seed = seed;
+  done.left_out = options.left_out;
   done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return done;
 }
@@ -82,8 +88,12 @@ int main_of(int argc, char** argv) {
                  "Command that takes the pictures (docs/synth.md); default: our renderer");
   app.add_option("-n,--seeds", options.seeds, "Captures per effect");
   app.add_option("--first-seed", options.first, "Seed of the first of them");
+  app.add_option("--size", options.size, "Times 1.5 to 3.5 px (rms): the size of what is hidden");
+  app.add_flag("--left-out", options.left_out,
+               "Leave what is hidden out of the catalogue: no other name may explain it");
   app.add_option("-e,--effects", options.effects,
-                 "Names; `none` hides nothing (default: none and the whole catalogue)")
+                 "Names, or several at once as gravity+creep; `none` hides nothing (default: none "
+                 "and the whole catalogue)")
       ->delimiter(',');
   CLI11_PARSE(app, argc, argv);
   if (options.effects.empty()) {

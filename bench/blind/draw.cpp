@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <random>
+#include <sstream>
 
 namespace hookeye::blind {
 
@@ -28,8 +29,16 @@ class Dice {
 
 }  // namespace
 
-std::string draw_recipe(const std::string& effect, unsigned seed) {
-  Dice dice(effect, seed);
+std::vector<std::string> effects_of(const std::string& hidden) {
+  std::vector<std::string> out;
+  std::istringstream names(hidden);
+  for (std::string name; std::getline(names, name, '+');)
+    if (name != "none") out.push_back(name);
+  return out;
+}
+
+std::string draw_recipe(const std::string& hidden, unsigned seed, double size) {
+  Dice dice(hidden, seed);
   const char* shapes[] = {"block", "cylinder", "blob"};
   const double height = dice(50, 70), width = dice(0.42, 0.58) * height;
   const double mu = dice(0.02, 0.08), turn = dice(-180, 180);
@@ -63,8 +72,10 @@ std::string draw_recipe(const std::string& effect, unsigned seed) {
       dice(0.3, 0.45), bend * dice(0.8, 1.2) * std::cos(side),
       bend * dice(0.8, 1.2) * std::sin(side), dice.sign() * dice(18, 32), -dice(0.06, 0.1),
       bend * dice(-1, 1), bend * dice(-1, 1), dice(0.15, 0.3), -dice(0.03, 0.045));
-  if (effect != "none")
-    out += fmt::format("hidden:\n  - {{effect: {}, rms_px: {:.2f}}}\n", effect, dice(1.5, 3.5));
+  const auto effects = effects_of(hidden);
+  if (!effects.empty()) out += "hidden:\n";
+  for (const std::string& effect : effects)
+    out += fmt::format("  - {{effect: {}, rms_px: {:.3f}}}\n", effect, size * dice(1.5, 3.5));
   return out;
 }
 

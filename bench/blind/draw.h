@@ -2,10 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace hookeye::blind {
 
-/// A recipe that hides `effect` ("none": nothing) in a body, a rig, a light and loads of its own.
-std::string draw_recipe(const std::string& effect, unsigned seed);
+/// Names in "gravity+creep", several effects at once; empty for "none".
+std::vector<std::string> effects_of(const std::string& hidden);
+
+/// A recipe that hides the effects of `hidden` in a body, a rig, a light and loads of its own. Each
+/// moves the surface by 1.5 to 3.5 px (rms) times `size`.
+std::string draw_recipe(const std::string& hidden, unsigned seed, double size = 1.0);
 
 }  // namespace hookeye::blind

@@ -7,6 +7,9 @@
 #include <map>
 #include <set>
 
+#include "bench/blind/draw.h"
+#include "estimation/effect.h"
+
 namespace hookeye::blind {
 
 using nlohmann::json;
@@ -22,17 +25,45 @@ double left(double before, double after, double floor) {
   return before > floor ? std::max(0.0, after - floor) / (before - floor) : 0.0;
 }
 
+bool numerical(const std::string& name) {
+  const Effect* effect = find_effect(name);
+  return effect && effect->group() == EffectGroup::numerical;
+}
+
 }  // namespace
 
+bool Score::right_first() const {
+  if (left_out)
+    return verdict != "explained" || first == "none" || first == "stiffness_field" ||
+           first == "swelling";
+  if (hidden == "none") return first == "none";
+  const auto names = effects_of(hidden);
+  return std::find(names.begin(), names.end(), first) != names.end();
+}
+
 bool Score::right_or_tie() const {
-  return right_first() || std::find(tie.begin(), tie.end(), hidden) != tie.end();
+  if (right_first()) return true;
+  const auto names = effects_of(hidden);
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return std::find(tie.begin(), tie.end(), name) != tie.end();
+  });
+}
+
+bool Score::exact_set() const {
+  const auto names = effects_of(hidden);
+  std::set<std::string> found;
+  for (const std::string& name : added)
+    if (!numerical(name)) found.insert(name);
+  return found == std::set<std::string>(names.begin(), names.end());
 }
 
 Score score(const json& run, const json& truth) {
   Score out;
   out.hidden = "none";
-  if (!truth["hidden"].empty()) {
-    out.hidden = truth["hidden"][0]["effect"];
+  std::vector<std::string> hidden;
+  for (const json& one : truth["hidden"]) hidden.push_back(one["effect"]);
+  if (!hidden.empty()) {
+    out.hidden = fmt::format("{}", fmt::join(hidden, "+"));
     out.hidden_px = truth["hidden"][0]["rms_px"];
   }
   out.verdict = run.value("verdict", "");
@@ -41,7 +72,9 @@ Score score(const json& run, const json& truth) {
   const json& steps = run["steps"];
   for (const json& step : steps)
     if (step["added"].is_string()) out.added.push_back(step["added"]);
-  if (!out.added.empty()) out.first = out.added.front();
+  const bool mesh_hidden = !hidden.empty() && numerical(hidden[0]);
+  for (const std::string& name : out.added)
+    if (out.first == "none" && (mesh_hidden || !numerical(name))) out.first = name;
   out.fit_before = number(steps.front(), "chi_fit");
   out.fit_after = number(steps.back(), "chi_fit");
   out.held_before = number(steps.front(), "chi_validate");
@@ -51,22 +84,24 @@ Score score(const json& run, const json& truth) {
 
 std::string csv(const std::vector<Score>& scores) {
   std::string out =
-      "hidden,seed,status,first,right_first,right_or_tie,verdict,added,tie,hidden_px,floor,"
+      "hidden,seed,status,first,right_first,right_or_tie,exact_set,verdict,added,tie,hidden_px,"
+      "floor,"
       "fit_before,fit_after,held_out_before,held_out_after,seconds\n";
   for (const Score& s : scores)
     out += fmt::format(
-        "{},{},{},{},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
+        "{},{},{},{},{:d},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
         "{:.0f}\n",
-        s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(), s.verdict,
-        fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px, s.floor, s.fit_before,
-        s.fit_after, s.held_before, s.held_after, s.seconds);
+        s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(), s.exact_set(),
+        s.verdict, fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px, s.floor,
+        s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds);
   return out;
 }
 
 std::string summary(const std::vector<Score>& scores) {
-  int guilty = 0, right = 0, tie = 0, innocent = 0, alarms = 0, failed = 0;
+  int guilty = 0, right = 0, tie = 0, exact = 0, finer = 0, innocent = 0, alarms = 0, failed = 0;
   std::vector<double> share;
   for (const Score& s : scores) {
+    finer += std::any_of(s.added.begin(), s.added.end(), numerical);
     if (s.status != "ok") {
       ++failed;
     } else if (s.hidden == "none") {
@@ -76,13 +111,16 @@ std::string summary(const std::vector<Score>& scores) {
       ++guilty;
       right += s.right_first();
       tie += s.right_or_tie();
+      exact += s.exact_set();
       share.push_back(left(s.held_before, s.held_after, s.floor));
     }
   }
   std::string out = fmt::format(
       "right name first      {} of {}\nright or declared tie {} of {}\n"
-      "false alarms          {} of {} captures that hide nothing\nfailed                {}\n",
-      right, guilty, tie, guilty, alarms, innocent, failed);
+      "exactly the hidden    {} of {}\n"
+      "false alarms          {} of {} captures that hide nothing\n"
+      "finer mesh asked for  {} of {}\nfailed                {}\n",
+      right, guilty, tie, guilty, exact, guilty, alarms, innocent, finer, scores.size(), failed);
   if (!share.empty()) {
     std::nth_element(share.begin(), share.begin() + share.size() / 2, share.end());
     out += fmt::format("held-out error over the floor that stays: {:.0f} % in the median\n",
@@ -125,8 +163,10 @@ std::string confusion_svg(const std::vector<Score>& scores) {
       const int x = left_margin + column * cell, y = top + row * cell;
       // right ones blue, wrong ones red; the paler the rarer
       const int pale = static_cast<int>(255 - 190 * share);
-      const std::string fill = hidden == first ? fmt::format("rgb({},{},255)", pale, pale)
-                                               : fmt::format("rgb(255,{},{})", pale, pale);
+      const bool right =
+          hidden == first || ("+" + hidden + "+").find("+" + first + "+") != std::string::npos;
+      const std::string fill = right ? fmt::format("rgb({},{},255)", pale, pale)
+                                     : fmt::format("rgb(255,{},{})", pale, pale);
       out += fmt::format(
           "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" "
           "stroke=\"#ccc\"/>\n",

@@ -9,19 +9,26 @@
 namespace hookeye::blind {
 
 struct Score {
-  std::string hidden;  ///< the effect's name, "none"
+  std::string hidden;  ///< names joined by "+", or "none"
   unsigned seed = 0;
   std::string status = "ok";   ///< else what went wrong: "synth 3", "discover 3"
-  std::string first = "none";  ///< first named effect
+  std::string first = "none";  ///< first named effect that is not numerical
+  /// Everything that was added. A numerical effect among it (mesh_resolution) is no name for what
+  /// was hidden: the captures are made on a finer mesh, so it tells the truth.
   std::vector<std::string> added, tie;
   std::string verdict;
-  double hidden_px = 0.0;  ///< size of the hidden effect
+  bool left_out = false;   ///< the hidden effects were not in the catalogue
+  double hidden_px = 0.0;  ///< size of the first hidden effect
   double floor = 0.0, fit_before = 0.0, fit_after = 0.0, held_before = 0.0, held_after = 0.0;
   double seconds = 0.0;
 
-  bool right_first() const { return first == hidden; }
-  /// The right name, or a tie that was declared and holds it.
+  /// A hidden one; where they were left out of the catalogue: no confident wrong name, which is no
+  /// explanation or a field (of stiffness, of swelling) that stands for any cause.
+  bool right_first() const;
+  /// The right name, or a tie that was declared and holds one.
   bool right_or_tie() const;
+  /// Just the hidden ones were added, beside numerical effects.
+  bool exact_set() const;
 };
 
 /// `run`: what `discover --json` printed; `truth`: CAPTURE.truth.json.

@@ -116,6 +116,7 @@ regions:
   left: {{box: [[-0.1, -1, -2], [0.1, 41, 2]]}}
   corner: {{box: [[34, 34, -2], [41, 41, 2]]}}
   lower: {{box: [[-1, -0.1, -2], [41, 0.1, 2]]}}
+  right: {{box: [[39.9, -1, -2], [40.1, 41, 2]]}}
   upper: {{box: [[-1, 39.9, -2], [41, 40.1, 2]]}}
 examples:
 )",
@@ -144,6 +145,13 @@ std::vector<Motion> motions(const SheetOptions& o) {
                      "      - {{region: upper, rigid: {{rotate: {{axis: [0, 0, 1], degrees: {:g}, "
                      "center: [20, 40, 0]}}, move: [{:g}, {:g}, 0]}}}}\n",
                      6.0 * s, 9.0 * s, 4.0 * s),
+         o.fitted != "shear" || middle});
+    all.push_back(
+        {fmt::format("shear_side_{}", k), "right",
+         fmt::format("      - {{region: left, fix: [x, y, z]}}\n"
+                     "      - {{region: right, rigid: {{rotate: {{axis: [0, 0, 1], degrees: {:g}, "
+                     "center: [40, 20, 0]}}, move: [{:g}, {:g}, 0]}}}}\n",
+                     -6.0 * s, 4.0 * s, 9.0 * s),
          o.fitted != "shear" || middle});
   }
   if (o.only_fitted)

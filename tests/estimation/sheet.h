@@ -31,10 +31,11 @@ struct SheetOptions {
 };
 
 /// 40 x 40 x 2 mm; axes 1 and 2 in its plane. corner_K: the left edge is held, the upper right
-/// corner pulled along its diagonal and out of the plane. shear_K: the lower edge is held, the
-/// upper one moved along itself, away and turned. Level K of the fitted motion is fitted, its
-/// middle one held out; the other motion is held out, or left out. Truth: another mesh, noise on
-/// everything.
+/// corner pulled along its diagonal and out of the plane. The complex shear, shear_K: the lower
+/// edge is held, the upper one moved along itself, away and turned; and shear_side_K, the same with
+/// the left and right edges, since one of them alone stretches the fibres of one axis only. Level K
+/// of the fitted motion is fitted, its middle one held out; the other motion is held out, or left
+/// out. Truth: another mesh, noise on everything.
 std::shared_ptr<const Scene> make_sheet(const SheetOptions& options);
 
 /// Orthotropic, stiffening, softer in compression than in tension in its plane: exponential fibres
