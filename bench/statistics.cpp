@@ -1,7 +1,7 @@
 // Do the statistics hold? Captures that hide nothing, over and over with other textures and noise:
 // p-values must be uniform (or larger), false alarms at most 5 %, intervals must cover, and a
 // placebo is no better off than the rest. With --hidden, captures that hide gravity: the placebo
-// must never come first.
+// must never come first. With --power, gravity of falling size: how often is it named?
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -50,16 +50,46 @@ Counts count(const Options& options) {
   return out;
 }
 
+/// Share of captures in which self-weight is named, over its size.
+int power(Options options) {
+  fmt::print("  rms px  of noise  named  placebo\n");
+  for (const double px : {0.3, 0.1, 0.05, 0.02, 0.01, 0.005}) {
+    options.hidden = fmt::format("hidden:\n  - {{effect: gravity, rms_px: {:g}}}\n", px);
+    int named = 0, placebo = 0;
+    double fall = 0.0;
+    for (int i = 0; i < options.repeats; ++i) {
+      const unsigned seed = options.first + i;
+      const test::Placebo rival(seed);
+      DiagnosisOptions diagnosis;
+      diagnosis.also = {&rival};
+      const test::Repeat one = test::repeat(
+          {.hidden = options.hidden, .same_renderer = !options.other_renderer, .seed = seed},
+          diagnosis);
+      named += one.named.rfind("gravity", 0) == 0;
+      placebo += one.named.rfind("placebo", 0) == 0;
+      fall += one.gravity_fall / options.repeats;
+    }
+    // sqrt of the fall: how many standard deviations the best estimate of the size stands off zero
+    fmt::print("  {:<6g}  {:<8.1f}  {:.2f}   {:.2f}\n", px, std::sqrt(fall),
+               static_cast<double>(named) / options.repeats,
+               static_cast<double>(placebo) / options.repeats);
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
 int main_of(int argc, char** argv) {
   Options options;
-  bool gravity = false;
+  bool gravity = false, sizes = false;
   CLI::App app("Statistics of captures that hide nothing");
   app.add_option("-n,--repeats", options.repeats, "Captures");
   app.add_option("--first-seed", options.first, "Seed of the first");
   app.add_flag("--other-renderer", options.other_renderer,
                "Photos with other rays than the fit's: noise is not all that is left");
   app.add_flag("--hidden", gravity, "Self-weight is hidden; how often does a placebo come first?");
+  app.add_flag("--power", sizes, "Self-weight of falling size is hidden; how often is it named?");
   CLI11_PARSE(app, argc, argv);
+  if (sizes) return power(options);
   const int n = options.repeats, most = test::count_95(n);
   if (gravity) options.hidden = "hidden:\n  - {effect: gravity, rms_px: 1.5}\n";
   const Counts counts = count(options);

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "simulation/laws/additive_addends.h"
+#include "simulation/laws/least_distance.h"
 
 namespace hookeye {
 namespace {
@@ -161,29 +162,6 @@ void for_each_test(const AdditiveModel& model, Visit&& visit) {
   }
 }
 
-/// min |L^T (x - target)|^2 with G x >= h: Hildreth's dual coordinate ascent (Luenberger and Ye,
-/// Linear and Nonlinear Programming, 14), which needs no feasible start. metric = L L^T.
-Eigen::VectorXd nearest(const Eigen::LLT<Eigen::MatrixXd>& metric, const Eigen::VectorXd& target,
-                        const Eigen::MatrixXd& G, const Eigen::VectorXd& h) {
-  const Eigen::MatrixXd MG = metric.solve(G.transpose());  // M^-1 G^T
-  const Eigen::MatrixXd A = G * MG;
-  Eigen::VectorXd slack = G * target - h, u = Eigen::VectorXd::Zero(h.size());
-  for (int sweep = 0; sweep < 20000; ++sweep) {
-    double moved = 0.0, size = 0.0;
-    for (Eigen::Index k = 0; k < h.size(); ++k) {
-      if (!(A(k, k) > 0)) continue;
-      const double next = std::max(0.0, u[k] - slack[k] / A(k, k));
-      const double step = next - u[k];
-      if (step != 0.0) slack += step * A.col(k);
-      u[k] = next;
-      moved = std::max(moved, std::abs(step) * std::sqrt(A(k, k)));
-      size = std::max(size, next * std::sqrt(A(k, k)));
-    }
-    if (moved <= 1e-13 * size) break;
-  }
-  return target + MG * u;
-}
-
 }  // namespace
 
 ConvexityTest smallest_eigenvalue(const AdditiveModel& model) {
@@ -231,9 +209,12 @@ ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorX
     if (!normals.empty()) {
       Eigen::MatrixXd G(normals.size(), target.size());
       for (size_t k = 0; k < normals.size(); ++k) G.row(static_cast<Eigen::Index>(k)) = normals[k];
-      out.x = nearest(factor, target, G,
-                      Eigen::Map<const Eigen::VectorXd>(heights.data(),
-                                                        static_cast<Eigen::Index>(heights.size())));
+      const auto nearest =
+          nearest_within(factor, target, G,
+                         Eigen::Map<const Eigen::VectorXd>(
+                             heights.data(), static_cast<Eigen::Index>(heights.size())));
+      if (!nearest) return out;
+      out.x = *nearest;
       if (low.size() != 0) out.x = out.x.cwiseMax(low);
     }
     const Eigen::VectorXd values = out.x.segment(offset, model.size());

@@ -24,6 +24,7 @@ Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
   out.first = diagnosis.effects.front().effect;
   for (const auto& effect : diagnosis.effects) {
     out.p_value = std::min(out.p_value, effect.p_value);
+    if (effect.effect == "gravity") out.gravity_fall = effect.fall;
     if (out.named.empty() && nameable(effect, diagnosis))
       out.named = fmt::format("{} (as {:.4f} px would)", effect.effect,
                               std::sqrt(effect.fall / diagnosis.floor.per_px2));

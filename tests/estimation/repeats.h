@@ -14,6 +14,7 @@ struct Repeat {
   std::string first;     ///< effect of the largest evidence
   /// First effect that would be refitted, with the motion in px that would fall by as much.
   std::string named;
+  double gravity_fall = 0.0;    ///< of sum (residual / noise)^2, as self-weight is scored
   bool covered = false;         ///< the true mu lies in the interval for noise
   double over_deviation = 0.0;  ///< log(mu/true) over the standard error that the interval tells
 };
