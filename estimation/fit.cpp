@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "estimation/additive_material.h"
+#include "estimation/convex_fit.h"
 #include "estimation/normal_equations.h"
-#include "estimation/progressive.h"
 
 namespace hookeye {
 

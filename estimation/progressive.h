@@ -1,6 +1,6 @@
-// Progressive estimation of the additive model (Miguel, Miraut, Otaduy 2016, section 5): local
-// optimization, projection to convexity, equilibrium of all examples; a control point or an addend
-// more where the residual asks for it; stopped by the held-out error.
+// Progressive estimation of the additive model (Miguel, Miraut, Otaduy 2016, section 5): a convex
+// fit, a control point or an addend more where the residual asks for it; stopped by the held-out
+// error.
 #pragma once
 
 #include <functional>
@@ -17,29 +17,6 @@ struct ProgressiveOptions {
   int patience = 2;
 };
 
-/// Gauss-Newton steps with Marquardt's damping from `start`, at full size. Every step is the
-/// minimum of the damped quadratic model over convex control values (project_convex in the metric
-/// of that model); it is accepted only with an equilibrium of all fitted examples and a lower
-/// misfit. So the smallest eigenvalue after every accepted step is not negative: `eigenvalues`, the
-/// start first.
-struct ConvexFit {
-  VectorXd p;
-  std::vector<double> eigenvalues;
-  int iterations = 0;
-  bool converged = false;
-  bool registered = false;  ///< pictures were compared by their motion
-};
-std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const ModelForm& form,
-                                                     const VectorXd& start,
-                                                     const FitOptions& options = {});
-
-/// The same until it settles, far pictures made linear in the motion first, and assessed: what
-/// fit() does with a form that has an additive material.
-std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
-                                                         const ModelForm& form,
-                                                         const VectorXd& start,
-                                                         const FitOptions& options = {});
-
 /// One more function that the material may need: a hat at a new control point of an addend, or a
 /// new addend. Zero at its null.
 struct Refinement {
@@ -52,12 +29,15 @@ struct Refinement {
 /// pairs of components that have one.
 std::vector<Refinement> refinements(const ModelForm& form, const Fitted& fitted);
 
-/// From a form with an additive material (to_additive): refinements one after the other, scored
-/// without refitting, the leading ones fitted; what is returned agrees best with the held-out
-/// examples, and `Fitted::refinements` tells which led there. Without held-out examples the
-/// log evidence alone decides (kTie).
-std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& start,
+/// A form with an additive material and its values (to_additive).
+using AdditiveStart = std::pair<ModelForm, VectorXd>;
+/// From the start that fits best (a textbook law may have run to values from which the additive
+/// energy does not find back; the capture's own are the other start): refinements one after the
+/// other, scored without refitting, the leading ones fitted; what is returned agrees best with the
+/// held-out examples, and `Fitted::refinements` tells which led there. Without held-out examples
+/// the log evidence alone decides (kTie).
+std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace,
+                                                       const std::vector<AdditiveStart>& starts,
                                                        const ProgressiveOptions& options = {});
 
 }  // namespace hookeye

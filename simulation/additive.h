@@ -114,13 +114,12 @@ struct ConvexityTest {
 };
 /// The smallest eigenvalue over all tests. A model without addends: 0 at "".
 ConvexityTest smallest_eigenvalue(const AdditiveModel& model);
-/// All tests whose smallest eigenvalue lies below `threshold`.
-std::vector<ConvexityTest> eigenvalues_below(const AdditiveModel& model, double threshold);
 
 /// The point x nearest to `target`, in the metric, whose control values x[offset] ... make a convex
-/// model and which keeps x >= low (empty: no bounds; -infinity: none for this one). H is linear in
-/// the control values, so a violated test bounds them by v^T H(x) v >= 0, which every convex model
-/// satisfies: cutting planes along the eigenvalues' gradients. metric: positive definite.
+/// model that resists every strain at rest (1e-5 of the stiffest in `model`) and which keeps x >=
+/// low (empty: no bounds; -infinity: none for this one). H is linear in the control values, so a
+/// violated test bounds them by v^T H(x) v >= 0, which every convex model satisfies: cutting planes
+/// along the eigenvalues' gradients. metric: positive definite.
 struct ConvexProjection {
   Eigen::VectorXd x;
   int cuts = 0;

@@ -21,17 +21,17 @@ bool asks_for_additive(const Capture& capture) {
 }
 
 /// The textbook law first, where it can move; then the same energy told additively, refined.
-Fitted fit_additive(Bench& bench, const ModelForm& form, VectorXd p, Session& session) {
+Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p, Session& session) {
   const bool own = find_additive(form, p).ingredient >= 0;
+  std::vector<AdditiveStart> starts = {own ? AdditiveStart(form, p) : to_additive(form, p)};
   if (!own && form.size() > 0) {
     const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options()));
     session.say("{}", parameter_table(base));
-    p = base.p;
+    starts.insert(starts.begin(), to_additive(form, base.p));
   }
-  const auto [additive, start] = own ? std::pair(form, p) : to_additive(form, p);
   ProgressiveOptions options;
   options.fit = fit_options();
-  return value_or_fail(fit_progressive(bench.workspace, additive, start, options));
+  return value_or_fail(fit_progressive(bench.workspace, starts, options));
 }
 
 void say_refinements(const Fitted& fitted, const Session& session) {

@@ -110,10 +110,12 @@ Result run(const Material& material, const std::string& motion, const fs::path& 
   const Fitted stvk = value(fit(workspace, base, base.initial()), "StVK");
   out.stvk_fit = shown_on(out.scene, stvk);
   out.stvk = errors_of(*out.scene, out.stvk_fit);
-  const auto [form, start] = to_additive(base, stvk.p);
   ProgressiveOptions options;
   options.most_refinements = how.refinements;
-  const Fitted additive = value(fit_progressive(workspace, form, start, options), "additive");
+  const Fitted additive =
+      value(fit_progressive(
+                workspace, {to_additive(base, stvk.p), to_additive(base, base.initial())}, options),
+            "additive");
   out.additive_fit = shown_on(out.scene, additive);
   out.additive = errors_of(*out.scene, out.additive_fit);
   out.values = find_additive(additive.form, additive.p).model.size();

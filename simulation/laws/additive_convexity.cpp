@@ -17,6 +17,9 @@ namespace {
 using laws::CompiledAddend;
 using laws::Side;
 
+/// The softest strain at rest over the stiffest, at least: softer, equilibria at rest are singular
+/// to rounding, and no photo of a loaded body tells so soft a strain from one that is softer.
+constexpr double kSoftest = 1e-5;
 /// More places than this: the middles of the cells are left out.
 constexpr size_t kManyPlaces = 20000;
 
@@ -177,15 +180,35 @@ ConvexityTest smallest_eigenvalue(const AdditiveModel& model) {
   return least;
 }
 
-std::vector<ConvexityTest> eigenvalues_below(const AdditiveModel& model, double threshold) {
+namespace {
+
+bool is_rest(const Group& group, const laws::Strains& e) {
+  return std::all_of(group.components.begin(), group.components.end(),
+                     [&](int c) { return e[c] == 0.0; });
+}
+
+/// Largest second derivative of one addend at rest.
+double stiffest_at_rest(const AdditiveModel& model) {
+  double stiffest = 0.0;
+  for (const CompiledAddend& a : laws::compile(model))
+    if (a.second() < 0)
+      stiffest = std::max(stiffest, a.hessian(laws::Strains{}, Side::above, Side::above)[0]);
+  return stiffest;
+}
+
+/// All tests that want more: below zero, or at rest below `at_rest`. `smallest` is over what is
+/// wanted.
+std::vector<ConvexityTest> violated_tests(const AdditiveModel& model, double at_rest) {
   std::vector<ConvexityTest> all;
   for_each_test(model, [&](const Group& group, const laws::Strains& e, const auto& side,
                            const auto& local, double eigenvalue, const Eigen::VectorXd& v) {
-    if (eigenvalue < threshold)
-      all.push_back(finished_test(model, group, e, side, local, eigenvalue, v));
+    const double over = eigenvalue - (is_rest(group, e) ? at_rest : 0.0);
+    if (over < 0.0) all.push_back(finished_test(model, group, e, side, local, over, v));
   });
   return all;
 }
+
+}  // namespace
 
 ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorXd& target,
                                 const Eigen::MatrixXd& metric, int offset,
@@ -204,7 +227,7 @@ ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorX
   AdditiveModel trial = model;
   const double scale = std::max(1e-300, target.segment(offset, model.size()).cwiseAbs().maxCoeff());
   // Cuts ask for a little more than zero, so that the search ends.
-  const double margin = 1e-9 * scale;
+  const double margin = 1e-9 * scale, at_rest = kSoftest * stiffest_at_rest(model);
   for (int round = 0; round < 200; ++round) {
     if (!normals.empty()) {
       Eigen::MatrixXd G(normals.size(), target.size());
@@ -219,7 +242,7 @@ ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorX
     }
     const Eigen::VectorXd values = out.x.segment(offset, model.size());
     trial.set_values(values);
-    std::vector<ConvexityTest> violated = eigenvalues_below(trial, 0.0);
+    std::vector<ConvexityTest> violated = violated_tests(trial, at_rest);
     if (violated.empty()) {
       out.converged = true;
       return out;

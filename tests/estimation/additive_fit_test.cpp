@@ -8,6 +8,7 @@
 
 #include "capture_io/run.h"
 #include "estimation/additive_material.h"
+#include "estimation/convex_fit.h"
 #include "estimation/effects_scene.h"
 #include "estimation/energy_curves.h"
 #include "estimation/normal_equations.h"
@@ -159,7 +160,7 @@ TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
   ProgressiveOptions options;
   options.most_refinements = 3;
   options.fit.max_iterations = 6;
-  const auto result = fit_progressive(workspace, form, p, options);
+  const auto result = fit_progressive(workspace, {{form, p}}, options);
   ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << std::get<NumericalFailure>(result).reason;
   const Fitted& fitted = std::get<Fitted>(result);
   ASSERT_GE(fitted.refinements.size(), 2u);

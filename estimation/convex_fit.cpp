@@ -1,0 +1,228 @@
+#include "estimation/convex_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/additive_material.h"
+#include "estimation/normal_equations.h"
+
+namespace hookeye {
+
+using Eigen::MatrixXd;
+namespace {
+
+VectorXd lower_bounds(const Scaling& scaling) {
+  VectorXd x(scaling.parameters.size());
+  for (int i = 0; i < x.size(); ++i) {
+    const Parameter& one = scaling.parameters[i];
+    x[i] = one.positive && one.low <= 0.0 ? -std::numeric_limits<double>::infinity()
+                                          : scaling.to_x(i, one.low);
+  }
+  return x;
+}
+
+VectorXd within_upper_bounds(const Scaling& scaling, VectorXd p) {
+  for (int i = 0; i < p.size(); ++i) p[i] = std::min(p[i], scaling.parameters[i].high);
+  return p;
+}
+
+/// The model whose control values are those of x: all of an additive material share one scale, so
+/// that H(x) is a multiple of H(p) and keeps its sign.
+double common_scale(Scaling& scaled, const AdditivePart& part) {
+  double scale = 0.0;
+  for (int i = 0; i < part.model.size(); ++i)
+    scale = std::max(scale, scaled.parameters[part.offset + i].typical);
+  for (int i = 0; i < part.model.size(); ++i) scaled.parameters[part.offset + i].typical = scale;
+  return scale;
+}
+
+/// Walls are stiffness in p; in x they are divided by the scale like the values.
+AdditiveModel in_units(AdditiveModel model, double scale) {
+  for (Addend& a : model.addends) a.stiffness /= scale;
+  return model;
+}
+
+/// How the pictures are compared from here on: as in fit(), far ones by their motion.
+std::variant<EvaluationOptions, NumericalFailure> comparison(Workspace& workspace,
+                                                             const ModelForm& form,
+                                                             const VectorXd& p,
+                                                             const FitOptions& options) {
+  EvaluationOptions look;
+  look.derivatives = false;
+  look.pictures = true;
+  look.registered = true;
+  look.cancel = options.cancel;
+  auto first = workspace.evaluate(form, p, look);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  const Evaluation& seen = std::get<Evaluation>(first);
+  EvaluationOptions out;
+  out.cancel = options.cancel;
+  out.registered = seen.motion_px() > kLinearPx;
+  out.huber = options.huber > 0.0 ? options.huber * misfit_scale(seen) : 0.0;
+  return out;
+}
+
+double residual_count(const Evaluation& evaluation) {
+  double count = 0.0;
+  for (const auto& example : evaluation.examples) {
+    for (const auto& photo : example.photos) count += photo.count;
+    count += 3.0 * static_cast<double>(example.measured.size());
+  }
+  return std::max(count, 1.0);
+}
+
+/// Normal equations at p, and how many residuals are in them.
+struct SumsAt {
+  Workspace& workspace;
+  const ModelForm& form;
+  EvaluationOptions evaluation;
+  double residuals = 1.0;
+  std::variant<NormalEquations, NumericalFailure> operator()(const VectorXd& p) {
+    auto result = workspace.evaluate(form, p, evaluation);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+    residuals = residual_count(std::get<Evaluation>(result));
+    return normal_equations(std::get<Evaluation>(result));
+  }
+};
+
+/// Values that the data leave open stay near the start: a Cauchy prior about it, as wide as the
+/// material is stiff at rest. It costs what one residual costs on average, and a value that the
+/// data want elsewhere little more the farther it goes. Without it noise and the mesh's error move
+/// such values by many times the stiffness, which other motions then feel.
+struct Draw {
+  VectorXd centre, width;  ///< in x; width 0: not drawn
+  Draw(const AdditiveModel& in_x, int offset, VectorXd x) : centre(std::move(x)) {
+    double rest = 0.0;
+    for (size_t a = 0; a < in_x.addends.size(); ++a)
+      if (in_x.addends[a].second < 0)
+        rest = std::max(rest, addend_curve(in_x, static_cast<int>(a), 0.0)[2]);
+    width.setZero(centre.size());
+    width.segment(offset, in_x.size()).setConstant(rest);
+  }
+  double cost(const VectorXd& x) const {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (width[i] > 0) sum += std::log1p(std::pow((x[i] - centre[i]) / width[i], 2));
+    return sum;
+  }
+  void add_to(MatrixXd& H, VectorXd& g, const VectorXd& x, double weight) const {
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      if (!(width[i] > 0)) continue;
+      const double d = x[i] - centre[i], share = weight / (width[i] * width[i] + d * d);
+      H(i, i) += share;
+      g[i] += share * d;
+    }
+  }
+};
+
+/// The damped quadratic model of one step, in x.
+struct Step {
+  MatrixXd H;
+  VectorXd g;
+  /// Minimum of the model over convex control values.
+  ConvexProjection solve(const AdditiveModel& model, int offset, const VectorXd& x,
+                         const VectorXd& low, double damping) const {
+    const double floor = 1e-10 * std::max(H.diagonal().maxCoeff(), 1e-300);
+    MatrixXd metric = H;
+    metric.diagonal() += damping * H.diagonal() + VectorXd::Constant(x.size(), floor);
+    const VectorXd target = x - metric.llt().solve(g);
+    return project_convex(model, target, metric, offset, low);
+  }
+};
+
+}  // namespace
+
+std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const ModelForm& form,
+                                                     const VectorXd& start,
+                                                     const FitOptions& options) {
+  const AdditivePart part = find_additive(form, start);
+  if (part.ingredient < 0) throw std::logic_error("fit_convex: no additive material");
+  Scaling scaled{form.parameters()};
+  const double scale = common_scale(scaled, part);
+  const AdditiveModel model = in_units(part.model, scale);
+  const VectorXd low = lower_bounds(scaled);
+  auto chosen = comparison(workspace, form, start, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&chosen)) return *failure;
+  const EvaluationOptions evaluation = std::get<EvaluationOptions>(chosen);
+  SumsAt sums_at{workspace, form, evaluation};
+  ConvexFit out;
+  out.registered = evaluation.registered;
+  out.p = start;
+  out.eigenvalues = {smallest_eigenvalue(part.model).smallest};
+  auto first = sums_at(start);
+  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
+  NormalEquations sums = std::get<NormalEquations>(std::move(first));
+  const Draw draw(model, part.offset, scaled.to_x(start));
+  double damping = 1e-3;
+  for (; out.iterations < options.max_iterations; ++out.iterations) {
+    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+    const VectorXd x = scaled.to_x(out.p), d = scaled.dp_dx(out.p);
+    Step step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
+    const double noise = sums.r2 / sums_at.residuals;  // variance over what was told
+    draw.add_to(step.H, step.g, x, noise);
+    bool accepted = false;
+    double fall = 0.0;
+    // A damping of 1e6 moves nothing: then there is no lower place to go.
+    for (; !accepted && damping < 1e6; damping = accepted ? damping : 8.0 * damping) {
+      const ConvexProjection next = step.solve(model, part.offset, x, low, damping);
+      if (!next.converged) continue;
+      const VectorXd p = within_upper_bounds(scaled, scaled.to_p(next.x));
+      const VectorXd move = next.x - x;
+      // Below a promise of 0.01 the parameters move by a tenth of their standard deviation.
+      if (-2.0 * step.g.dot(move) - move.dot(step.H * move) < 0.01) break;
+      auto trial = sums_at(p);
+      if (const auto* failed = std::get_if<NumericalFailure>(&trial)) {
+        if (failed->reason == "cancelled") return *failed;
+        continue;  // no equilibrium there: a shorter step
+      }
+      NormalEquations& there = std::get<NormalEquations>(trial);
+      fall = sums.r2 - there.r2 + noise * (draw.cost(x) - draw.cost(next.x));
+      if (!(fall > 0)) continue;
+      sums = std::move(there);
+      out.p = p;
+      out.eigenvalues.push_back(smallest_eigenvalue(find_additive(form, p).model).smallest);
+      accepted = true;
+    }
+    if (options.progress)
+      options.progress({fmt::format("additive, {} values", part.model.size()), out.iterations + 1,
+                        options.max_iterations, std::sqrt(sums.r2 / sums_at.residuals)});
+    if (!accepted || fall < 1e-5 * sums.r2) {
+      out.converged = true;
+      break;
+    }
+    damping = std::max(0.2 * damping, 1e-9);
+  }
+  return out;
+}
+
+std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
+                                                         const ModelForm& form,
+                                                         const VectorXd& start,
+                                                         const FitOptions& options) {
+  VectorXd p = start;
+  ConvexFit last;
+  double least = std::numeric_limits<double>::infinity();
+  int iterations = 0;
+  // By motion first where the pictures are far, then by pixels.
+  for (int phase = 0; phase < 2; ++phase) {
+    auto moved = fit_convex(workspace, form, p, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&moved)) return *failure;
+    last = std::get<ConvexFit>(std::move(moved));
+    p = last.p;
+    iterations += last.iterations;
+    least = std::min(least, *std::min_element(last.eigenvalues.begin(), last.eigenvalues.end()));
+    if (!last.registered) break;
+  }
+  auto out = assess(workspace, form, p, options);
+  if (auto* fitted = std::get_if<Fitted>(&out)) {
+    fitted->iterations = iterations;
+    fitted->converged = last.converged;
+    fitted->smallest_eigenvalue = least;
+  }
+  return out;
+}
+
+}  // namespace hookeye
