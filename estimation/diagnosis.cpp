@@ -334,7 +334,8 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     score.evidence = value;
     const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
     score.p_value = (1.0 + above) / (1.0 + null.size());
-    if (projected[best[name]].best_signal() < 4.0) {
+    // What the photos show they can test, however little a typical change would show of it.
+    if (projected[best[name]].best_signal() < 4.0 && value < std::max(kNameable, out.gate)) {
       score.testable = false;
       score.why_not =
           "untestable with these photos: a change that would matter moves them by "

@@ -20,6 +20,13 @@ bool at_floor(const Fitted& fitted, const Floor& floor) {
 
 }  // namespace
 
+std::vector<std::string> effects_in(const ModelForm& form) {
+  std::vector<std::string> names;
+  for (size_t i = base_form(form.scene).ingredients.size(); i < form.ingredients.size(); ++i)
+    names.push_back(form.ingredients[i]->name());
+  return names;
+}
+
 const char* to_string(Verdict verdict) {
   switch (verdict) {
     case Verdict::explained:
@@ -37,11 +44,14 @@ struct EffectiveMisfit {
   double r2 = 0.0, count = 0.0;
 };
 
-/// |z|^2 of `fitted` with the weights that the correlation in `reference` gives.
-EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference) {
+/// |z|^2 of `fitted` with the weights that the correlation in `reference` gives; of all examples or
+/// of those held out.
+EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference,
+                                 bool held_out_alone = false) {
   EffectiveMisfit out;
   for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
     const auto& example = fitted.evaluation.examples[e];
+    if (held_out_alone && !example.held_out) continue;
     for (size_t k = 0; k < example.photos.size(); ++k) {
       const FlowStatistics own = flow_statistics(example.photos[k].flow);
       const FlowStatistics weight =
@@ -66,6 +76,13 @@ double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& f
   const double noise = std::max(floor.cell_variance, misfit.r2 / misfit.count);
   return -0.5 * misfit.count * std::log(noise) - 0.5 * misfit.r2 / noise -
          0.5 * fitted.form.size() * std::log(std::max(misfit.count, 2.0));
+}
+
+bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor) {
+  const EffectiveMisfit after = effective_misfit(with, with, true);
+  if (after.count == 0.0) return true;
+  const double rise = after.r2 - effective_misfit(without, with, true).r2;
+  return 0.5 * rise / std::max(floor.cell_variance, after.r2 / after.count) < kTie;
 }
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
@@ -157,7 +174,7 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
   return refits;
 }
 
-/// Drops an earlier effect that a later one made idle: one backward swap.
+/// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
                               size_t first_effect, const DiscoverOptions& options) {
   const double full = refit_score(current, current, floor);
@@ -176,7 +193,8 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
       auto result = fit(workspace, form, p, warm);
       if (auto* fitted = std::get_if<Fitted>(&result)) {
         const double score = refit_score(*fitted, current, floor);
-        if (score > full - kTie) return Refit{"", std::move(*fitted), score};
+        if (score > full - kTie)
+          return Refit{current.form.ingredients[i]->name(), std::move(*fitted), score};
       }
     }
     offset += n;
@@ -185,16 +203,27 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
 }
 
 std::string say(const Discovery& discovery, const std::string& why) {
-  std::vector<std::string> added;
-  for (const auto& step : discovery.steps)
-    if (!step.added.empty()) added.push_back(step.added);
-  if (added.empty() && discovery.verdict == Verdict::explained)
+  const std::vector<std::string>& missing = discovery.missing;
+  if (missing.empty() && discovery.verdict == Verdict::explained)
     return fmt::format("nothing is missing: {}", why);
   if (!discovery.tie.empty())
     return fmt::format("{}; these could not be told apart: {}", why,
                        fmt::join(discovery.tie, ", "));
-  if (added.empty()) return fmt::format("not in the catalogue: {}", why);
-  return fmt::format("missing: {}; with it, {}", fmt::join(added, " and "), why);
+  if (missing.empty()) return fmt::format("not in the catalogue: {}", why);
+  return fmt::format("missing: {}; with {}, {}", fmt::join(missing, " and "),
+                     missing.size() == 1 ? "it" : "them", why);
+}
+
+/// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
+/// found beside it, the later steps have decided.
+void settle_tie(Discovery& discovery) {
+  const auto has = [&](const std::string& name) {
+    return std::find(discovery.missing.begin(), discovery.missing.end(), name) !=
+           discovery.missing.end();
+  };
+  auto& tie = discovery.tie;
+  if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
+    tie.clear();
 }
 
 }  // namespace
@@ -221,12 +250,10 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     if (ranked.empty()) break;
     Refit& winner = ranked.front();
     const double before = refit_score(step.fitted, winner.fitted, step.diagnosis.floor);
-    const bool held = step.fitted.evaluation.chi(true) > 0.0;
-    const bool pays_held_out =
-        !held || winner.fitted.evaluation.chi(true) < step.fitted.evaluation.chi(true);
     const double fell = std::pow(step.fitted.evaluation.chi(false), 2) -
                         std::pow(winner.fitted.evaluation.chi(false), 2);
-    if (winner.score < before + kNameable || !pays_held_out ||
+    if (winner.score < before + kNameable ||
+        !held_out_allows(winner.fitted, step.fitted, step.diagnosis.floor) ||
         fell < least_fall(step.diagnosis.floor))
       break;
     Step next;
@@ -241,11 +268,13 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     next.fitted = std::move(winner.fitted);
     if (next.fitted.form.ingredients.size() > base_ingredients + 1)
       if (auto lighter = backward(workspace, next.fitted, out.floor, base_ingredients, options))
-        next.fitted = std::move(lighter->fitted);
+        next.dropped = {lighter->effect}, next.fitted = std::move(lighter->fitted);
     out.steps.push_back(std::move(next));
   }
   std::string why;
   const Step& last = out.steps.back();
+  out.missing = effects_in(last.fitted.form);
+  settle_tie(out);
   out.verdict = judge(last.fitted, last.diagnosis, out.tie, &why);
   out.sentence = say(out, why);
   return out;

@@ -16,6 +16,11 @@ namespace hookeye {
 /// photos and measurements; minus (dof/2) log N (BIC). `reference` gives the correlation.
 double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor);
 
+/// Whether the held-out examples speak against `with`: by their log-likelihood, less than a tie
+/// (kTie) is no word. An effect that none of them can show, like a contact in one load case, is
+/// judged by the fitted ones.
+bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor);
+
 struct DiscoverOptions {
   FitOptions fit;
   DiagnosisOptions diagnosis;
@@ -28,10 +33,15 @@ struct DiscoverOptions {
 struct Step {
   std::string name;   ///< "base" or the added effect
   std::string added;  ///< "" for the base
+  /// Effects of earlier steps that the added one made idle: not in this step's model any more.
+  std::vector<std::string> dropped;
   Fitted fitted;
   Diagnosis diagnosis;                                 ///< of this step's model
   std::vector<std::pair<std::string, double>> rivals;  ///< refitted, with score minus the winner's
 };
+
+/// Names of what stands in `form` beyond the capture's own model, in order.
+std::vector<std::string> effects_in(const ModelForm& form);
 
 enum class Verdict { explained, unexplained, ambiguous };
 const char* to_string(Verdict verdict);
@@ -39,8 +49,9 @@ const char* to_string(Verdict verdict);
 struct Discovery {
   std::vector<Step> steps;
   Verdict verdict = Verdict::unexplained;
-  std::string sentence;          ///< one line: what was missing, how sure, what else
-  std::vector<std::string> tie;  ///< effects that could not be told apart
+  std::string sentence;              ///< one line: what was missing, how sure, what else
+  std::vector<std::string> missing;  ///< effects in the last step's model, as they were added
+  std::vector<std::string> tie;      ///< effects that could not be told apart
   Floor floor;
 };
 

@@ -40,6 +40,11 @@ class Effect {
   virtual std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                        std::shared_ptr<const Ingredient> scored,
                                                        Eigen::VectorXd& values) const;
+  /// A smaller form that may say as much once the larger one is refitted (a field that stands out
+  /// in one place: one blob). `values` are moved to it. Null: none; the default.
+  virtual std::shared_ptr<const Ingredient> smaller_form(const Model& model,
+                                                         const Ingredient& refitted,
+                                                         Eigen::VectorXd& values) const;
   /// Whether the form of this variant lives on another mesh than the capture tells; then
   /// refit_scene() makes the scene to fit on, from the capture of `scene`.
   virtual bool remeshes(const std::string& variant) const;

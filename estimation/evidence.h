@@ -37,7 +37,7 @@ struct ProjectedHypothesis {
   bool one_sided = false;
   double most = std::numeric_limits<double>::infinity();
   /// Largest squared signal over noise that a change of typical size makes: below 4 (two standard
-  /// deviations) these photos cannot test the effect.
+  /// deviations) these photos cannot test an effect of that size.
   double best_signal() const;
   Eigen::VectorXd projected_score(const Eigen::VectorXd& s) const;  ///< s~
   /// Step t = -M^+ s~ (directions without signal stay at the null).

@@ -81,6 +81,37 @@ std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, con
   return fit(workspace, form, start, warm(options));
 }
 
+/// Fits; then the smaller form of the last effect, where it has one, from where the larger ended.
+/// The smaller one is kept where it misses no more.
+std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const ModelForm& form,
+                                                    const VectorXd& start,
+                                                    const FitOptions& options) {
+  auto result = fit(workspace, form, start, warm(options));
+  const auto* larger = std::get_if<Fitted>(&result);
+  if (!larger) return result;
+  const Ingredient& refitted = *form.ingredients.back();
+  const auto own = static_cast<Eigen::Index>(refitted.parameters().size());
+  const VectorXd before = larger->p.head(larger->p.size() - own);
+  ModelForm other = larger->form;
+  other.ingredients.pop_back();
+  VectorXd values = larger->p.tail(own);
+  const auto smaller =
+      find_effect(refitted.name())->smaller_form(other.realise(before), refitted, values);
+  if (!smaller) return result;
+  other.ingredients.push_back(smaller);
+  VectorXd there(before.size() + values.size());
+  there << before, values;
+  auto second = fit(workspace, other, there, options);  // far from there: coarse to fine
+  if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
+    if (cancelled(*failure)) return *failure;
+    return result;
+  }
+  const auto misfit = [](const Fitted& one) {
+    return one.evaluation.chi(false) + one.evaluation.chi(true);
+  };
+  return misfit(std::get<Fitted>(second)) <= misfit(*larger) ? second : result;
+}
+
 }  // namespace
 
 std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
@@ -90,7 +121,7 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
   if (auto remeshing = remeshing_form(model, score.best, score.values))
     return fit_on_its_mesh(workspace, model, remeshing, options);
   return from_shares(current, score, options, [&](const Extension& extension) {
-    return fit(workspace, extension.form, extension.start, warm(options));
+    return fit_smallest(workspace, extension.form, extension.start, options);
   });
 }
 
@@ -144,7 +175,7 @@ std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& 
   const Model model = before.realise(racer.trial.p.head(racer.trial.p.size() - added));
   if (auto remeshing = remeshing_form(model, scored, racer.trial.p.tail(added)))
     return fit_on_its_mesh(workspace, model, remeshing, options);
-  return fit(workspace, racer.form, racer.trial.p, warm(options));
+  return fit_smallest(workspace, racer.form, racer.trial.p, options);
 }
 
 }  // namespace hookeye

@@ -42,6 +42,8 @@ json timeline_entry(const Step& step) {
   const double held = fitted.evaluation.chi(true);
   json entry = {{"name", step.name},
                 {"added", step.added.empty() ? json() : json(step.added)},
+                {"dropped", step.dropped},
+                {"effects", effects_in(fitted.form)},
                 {"chi_fit", fitted.evaluation.chi(false)},
                 {"chi_validate", held > 0.0 ? json(held) : json()},
                 {"rms_px_fit", fitted.evaluation.rms_px(false)},

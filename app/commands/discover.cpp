@@ -1,4 +1,5 @@
 // hookeye discover: fit, diagnose, add, until what is left is noise.
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,13 @@ struct DiscoverArguments {
   std::vector<std::string> without;
 };
 
+/// "gravity", "strain_stiffening, without softening".
+std::string name_of(const Step& step) {
+  return step.dropped.empty()
+             ? step.name
+             : fmt::format("{}, without {}", step.name, fmt::join(step.dropped, ", "));
+}
+
 DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
   auto recorded = std::make_shared<bool>(first_is_recorded);
   DiscoverEvents events;
@@ -24,7 +32,7 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
     else
       record(run, step);
     *recorded = false;
-    spdlog::info("{}: chi {:.3f} fitted, {:.3f} held out (floor {:.3f})", step.name,
+    spdlog::info("{}: chi {:.3f} fitted, {:.3f} held out (floor {:.3f})", name_of(step),
                  step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true),
                  step.diagnosis.floor.chi);
     for (const auto& effect : step.diagnosis.effects)
@@ -49,7 +57,7 @@ std::string steps_table(const Discovery& discovery) {
   const double top = discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
   for (const auto& step : discovery.steps) {
     const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
-    rows.push_back({step.name, fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
+    rows.push_back({name_of(step), fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
                     fmt::format("{:.3f}", step.fitted.evaluation.chi(true)),
                     fmt::format("{:.3f}", step.fitted.evaluation.rms_px(false)),
                     fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
@@ -71,6 +79,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   run.update([&](nlohmann::json& timeline) {
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;
+    timeline["missing"] = found.missing;
     timeline["tie"] = found.tie;
     timeline["floor"] = to_json(found.floor);
   });

@@ -70,8 +70,7 @@ Score score(const json& run, const json& truth) {
   out.floor = number(run["floor"], "chi");
   if (run.contains("tie")) out.tie = run["tie"].get<std::vector<std::string>>();
   const json& steps = run["steps"];
-  for (const json& step : steps)
-    if (step["added"].is_string()) out.added.push_back(step["added"]);
+  out.added = run["missing"].get<std::vector<std::string>>();
   const bool mesh_hidden = !hidden.empty() && numerical(hidden[0]);
   for (const std::string& name : out.added)
     if (out.first == "none" && (mesh_hidden || !numerical(name))) out.first = name;

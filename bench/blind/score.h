@@ -13,8 +13,9 @@ struct Score {
   unsigned seed = 0;
   std::string status = "ok";   ///< else what went wrong: "synth 3", "discover 3"
   std::string first = "none";  ///< first named effect that is not numerical
-  /// Everything that was added. A numerical effect among it (mesh_resolution) is no name for what
-  /// was hidden: the captures are made on a finer mesh, so it tells the truth.
+  /// Everything that the last model has beyond the base. A numerical effect among it
+  /// (mesh_resolution) is no name for what was hidden: the captures are made on a finer mesh, so it
+  /// tells the truth.
   std::vector<std::string> added, tie;
   std::string verdict;
   bool left_out = false;   ///< the hidden effects were not in the catalogue

@@ -19,14 +19,9 @@ class CameraPose final : public Effect {
   }
 
   Ingredients candidates(const Model& model, std::string* why_not) const override {
-    const Scene& scene = *model.scene;
-    Ingredients all;
-    for (const auto& camera : scene.capture.cameras)
-      for (const auto& first :
-           first_examples(scene, [&](int e) { return has_photo_of(scene, e, camera.name); }))
-        all.push_back(moved(model, camera, first));
-    if (all.empty() && why_not) *why_not = "no photo is fitted";
-    return all;
+    return per_camera(*model.scene, why_not, [&](const Camera& camera, const FirstExample& first) {
+      return moved(model, camera, first);
+    });
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

@@ -20,14 +20,9 @@ class Defocus final : public Effect {
   }
 
   Ingredients candidates(const Model& model, std::string* why_not) const override {
-    const Scene& scene = *model.scene;
-    Ingredients all;
-    for (const auto& camera : scene.capture.cameras)
-      for (const auto& first :
-           first_examples(scene, [&](int e) { return has_photo_of(scene, e, camera.name); }))
-        all.push_back(blurred(camera.name, first));
-    if (all.empty() && why_not) *why_not = "no photo is fitted";
-    return all;
+    return per_camera(*model.scene, why_not, [&](const Camera& camera, const FirstExample& first) {
+      return blurred(camera.name, first);
+    });
   }
 
   std::string sentence(const Model&, const Ingredient& ingredient,

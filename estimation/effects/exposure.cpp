@@ -21,23 +21,21 @@ class Exposure final : public Effect {
   Ingredients candidates(const Model& model, std::string* why_not) const override {
     const Scene& scene = *model.scene;
     const auto& examples = scene.capture.examples;
-    Ingredients all;
-    for (const auto& camera : scene.capture.cameras)
-      for (const auto& first :
-           first_examples(scene, [&](int e) { return has_photo_of(scene, e, camera.name); }))
-        all.push_back(one_gain(
-            camera.name + " " + first.text,
-            [&](size_t e, const auto& photo) {
-              return static_cast<int>(e) >= first.index && photo.camera == camera.name;
-            },
-            model));
+    Ingredients all =
+        per_camera(scene, why_not, [&](const Camera& camera, const FirstExample& first) {
+          return one_gain(
+              camera.name + " " + first.text,
+              [&](size_t e, const auto& photo) {
+                return static_cast<int>(e) >= first.index && photo.camera == camera.name;
+              },
+              model);
+        });
     for (size_t k = 0; k < examples.size(); ++k)
       if (!examples[k].validate && examples[k].photos.size() > 1)
         all.push_back(one_gain(
             "all cameras in " + examples[k].name, [&](size_t e, const auto&) { return e == k; },
             model));
     if (!all.empty()) all.push_back(every_photo(model));
-    if (all.empty() && why_not) *why_not = "no photo is fitted";
     return all;
   }
 

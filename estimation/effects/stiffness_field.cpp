@@ -57,9 +57,9 @@ class StiffnessField final : public Effect {
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
     if (variant == "free blob") return free_blob(model);
+    if (const auto place = blob_in(variant))
+      return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>());
     const auto n = numbers_in(variant);
-    if (starts_with(variant, "blob") && n.size() == 4)
-      return blob(model, Vector3d(n[0], n[1], n[2]), n[3], std::make_shared<ScaledForces>());
     if (!starts_with(variant, "field") || n.size() < 4 || n.size() % 3 != 1) return nullptr;
     std::vector<Vector3d> centres;
     for (size_t i = 1; i + 2 < n.size(); i += 3) centres.emplace_back(n[i], n[i + 1], n[i + 2]);
@@ -69,11 +69,23 @@ class StiffnessField final : public Effect {
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
-    const auto n = numbers_in(scored->variant());
-    if (!starts_with(scored->variant(), "blob") || n.size() != 4) return scored;
-    VectorXd start(5);
-    start << values[0], n[0], n[1], n[2], n[3];
-    values = start;
+    const auto place = blob_in(scored->variant());
+    if (!place) return scored;
+    values = freed(*place, values[0]);
+    return free_blob(model);
+  }
+
+  /// The bump that is farthest from the others, as a blob.
+  std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
+                                                 VectorXd& values) const override {
+    const auto n = numbers_in(refitted.variant());
+    if (!starts_with(refitted.variant(), "field") || n.size() < 4) return nullptr;
+    VectorXd sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    const VectorXd over = values.array() - sorted[sorted.size() / 2];
+    Eigen::Index i = 0;
+    over.cwiseAbs().maxCoeff(&i);
+    values = freed({Vector3d(n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]), n[0]}, over[i]);
     return free_blob(model);
   }
 
@@ -82,15 +94,11 @@ class StiffnessField final : public Effect {
     if (starts_with(ingredient.variant(), "field"))
       return fmt::format("stiffness varies over the body by factors from {} to {}",
                          figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
-    VectorXd v(5);
-    const auto n = numbers_in(ingredient.variant());
-    if (values.size() == 5)
-      v = values;
-    else
-      v << values[0], n.at(0), n.at(1), n.at(2), n.at(3);
+    const Blob place = blob_of(ingredient, values);
     return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
-                       v[0] >= 0 ? "stiff" : "soft", figure(std::exp(v[0])), figure(v[4]),
-                       model.scene->capture.units.length, vector_text(v.segment<3>(1), 1));
+                       values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
+                       figure(place.radius), model.scene->capture.units.length,
+                       vector_text(place.centre, 1));
   }
 
  private:
@@ -148,7 +156,7 @@ class StiffnessField final : public Effect {
                                          std::shared_ptr<ScaledForces> forces) const {
     radius = std::stod(fmt::format("{:.3g}", radius));
     IngredientSpec spec;
-    spec.variant = fmt::format("blob around {}, radius {:g}", place_text(centre), radius);
+    spec.variant = blob_text({centre, radius});
     spec.parameters = {amplitude("stiffness_field.a")};
     return linear(std::move(spec), {gaussian_bump(model.scene->body->mesh, centre, radius)},
                   std::move(forces));

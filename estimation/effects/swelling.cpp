@@ -54,19 +54,17 @@ class Swelling final : public Effect {
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
     if (variant == "free blob") return free_blob(model);
-    const auto n = numbers_in(variant);
-    if (!starts_with(variant, "blob") || n.size() != 4) return nullptr;
-    return blob(model, Vector3d(n[0], n[1], n[2]), n[3], forces_by_log_stretch());
+    const auto place = blob_in(variant);
+    if (!place) return nullptr;
+    return blob(model, place->centre, place->radius, forces_by_log_stretch());
   }
 
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
-    const auto n = numbers_in(scored->variant());
-    if (!starts_with(scored->variant(), "blob") || n.size() != 4) return scored;
-    VectorXd start(5);
-    start << values[0], n[0], n[1], n[2], n[3];
-    values = start;
+    const auto place = blob_in(scored->variant());
+    if (!place) return scored;
+    values = freed(*place, values[0]);
     return free_blob(model);
   }
 
@@ -76,12 +74,9 @@ class Swelling final : public Effect {
         fmt::format("{} by {} % in length", values[0] >= 0 ? "swollen" : "shrunk",
                     figure(100.0 * std::abs(values[0])));
     if (ingredient.variant() == "uniform") return "the body has " + change;
-    const auto n = numbers_in(ingredient.variant());
-    const Vector3d centre =
-        values.size() == 5 ? Vector3d(values.segment<3>(1)) : Vector3d(n.at(0), n.at(1), n.at(2));
-    const double radius = values.size() == 5 ? values[4] : n.at(3);
-    return fmt::format("a place of radius {} {} around {} has {}", figure(radius),
-                       model.scene->capture.units.length, vector_text(centre, 1), change);
+    const Blob place = blob_of(ingredient, values);
+    return fmt::format("a place of radius {} {} around {} has {}", figure(place.radius),
+                       model.scene->capture.units.length, vector_text(place.centre, 1), change);
   }
 
  private:
@@ -114,8 +109,7 @@ class Swelling final : public Effect {
   std::shared_ptr<const Ingredient> blob(const Model& model, const Vector3d& centre, double radius,
                                          std::shared_ptr<ElementForces> forces) const {
     radius = std::stod(fmt::format("{:.3g}", radius));
-    return of_field(fmt::format("blob around ({:g}, {:g}, {:g}), radius {:g}", centre.x(),
-                                centre.y(), centre.z(), radius),
+    return of_field(blob_text({centre, radius}),
                     gaussian_bump(model.scene->body->mesh, centre, radius), std::move(forces));
   }
 

@@ -229,4 +229,39 @@ bool has_photo_of(const Scene& scene, int example, const std::string& camera) {
   return false;
 }
 
+Ingredients per_camera(
+    const Scene& scene, std::string* why_not,
+    const std::function<std::shared_ptr<const Ingredient>(const Camera&, const FirstExample&)>&
+        make) {
+  Ingredients all;
+  for (const Camera& camera : scene.capture.cameras)
+    for (const FirstExample& first :
+         first_examples(scene, [&](int e) { return has_photo_of(scene, e, camera.name); }))
+      all.push_back(make(camera, first));
+  if (all.empty() && why_not) *why_not = "no photo is fitted";
+  return all;
+}
+
+std::string blob_text(const Blob& blob) {
+  return fmt::format("blob around ({:g}, {:g}, {:g}), radius {:g}", blob.centre.x(),
+                     blob.centre.y(), blob.centre.z(), blob.radius);
+}
+
+std::optional<Blob> blob_in(const std::string& variant) {
+  const auto n = numbers_in(variant);
+  if (!starts_with(variant, "blob") || n.size() != 4) return std::nullopt;
+  return Blob{{n[0], n[1], n[2]}, n[3]};
+}
+
+VectorXd freed(const Blob& blob, double amplitude) {
+  VectorXd values(5);
+  values << amplitude, blob.centre, blob.radius;
+  return values;
+}
+
+Blob blob_of(const Ingredient& ingredient, const VectorXd& values) {
+  if (values.size() == 5) return {values.segment<3>(1), values[4]};
+  return blob_in(ingredient.variant()).value();
+}
+
 }  // namespace hookeye

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -96,5 +97,24 @@ struct FirstExample {
 std::vector<FirstExample> first_examples(const Scene& scene,
                                          const std::function<bool(int example)>& concerned);
 bool has_photo_of(const Scene& scene, int example, const std::string& camera);
+/// `make` for every camera with fitted photos and every example from which it may have changed.
+/// Says why where there is none.
+Ingredients per_camera(
+    const Scene& scene, std::string* why_not,
+    const std::function<std::shared_ptr<const Ingredient>(const Camera&, const FirstExample&)>&
+        make);
+
+/// A Gaussian place in the body. Effects write it as "blob X Y Z RADIUS" while it stands where it
+/// was scored, and as values (amplitude, X, Y, Z, radius) once it is free.
+struct Blob {
+  Vector3d centre;
+  double radius;
+};
+std::string blob_text(const Blob& blob);
+std::optional<Blob> blob_in(const std::string& variant);
+/// Values of the free form, from the amplitude of the scored one.
+VectorXd freed(const Blob& blob, double amplitude);
+/// Where a blob of either form is.
+Blob blob_of(const Ingredient& ingredient, const VectorXd& values);
 
 }  // namespace hookeye

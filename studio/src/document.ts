@@ -98,6 +98,8 @@ export interface EnergyCurve {
 export interface TimelineStep {
   name: string;
   added: string | null;
+  dropped?: string[];  // effects of earlier steps that the added one made idle
+  effects?: string[];  // all that stand in this step's model
   chi_fit: number;
   chi_validate: number | null;
   rms_px_fit: number;

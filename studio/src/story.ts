@@ -59,8 +59,10 @@ function missing(): Told {
   const tie = timeline.tie ?? [];
   if (timeline.verdict === 'ambiguous' && tie.length > 1)
     return {headline: tie.map(spaced).join(' or '), sentence: 'these photos cannot tell which; hookeye plan names the photos that can'};
+  const standing = timelineOf(steps[steps.length - 1])?.effects;
   const added = steps.flatMap((entry, i) => {
     const name = timelineOf(entry)?.added;
+    if (name && standing && !standing.includes(name)) return [];  // a later one made it idle
     const score = i > 0 && name ? effectsOf(steps[i - 1]).find((e) => e.effect === name) : undefined;
     return score ? [{score, before: steps[i - 1]}] : [];
   });

@@ -86,6 +86,7 @@ TEST(Discover, NamesTheHiddenWeightAndTheErrorFalls) {
                            .told = "0.021"}));
   ASSERT_EQ(found.steps.size(), 2u) << found.sentence;
   EXPECT_EQ(found.steps[1].added, "gravity");
+  EXPECT_THAT(found.missing, testing::ElementsAre("gravity"));
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
   EXPECT_TRUE(found.tie.empty());
   const Fitted& base = found.steps[0].fitted;

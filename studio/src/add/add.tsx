@@ -1,5 +1,5 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
-import {figure, duration, spaced} from '../format';
+import {figure, duration, listed, spaced} from '../format';
 import {chosenStep, effectsOf, gateOf, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
 import {Share} from '../widgets';
 import {add, stop} from './job';
@@ -40,8 +40,8 @@ export function JobLine() {
 
 function Steps() {
   const newest = run.value.steps.length - 1;
-  const added = new Set(run.value.timeline.steps.map((s) => s.added));
-  run.value.timeline.steps.forEach((s) => s.name.startsWith('without-') && added.delete(s.name.slice(8)));
+  const {steps} = run.value.timeline;
+  const added = new Set(steps[steps.length - 1]?.effects);
   return (
     <table class="steps" aria-label="Steps of the run">
       <thead><tr><th>step</th><th>χ fitted</th><th>χ held out</th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
@@ -50,7 +50,7 @@ function Steps() {
           const t = timelineOf(entry);
           return (
             <tr key={entry.folder} aria-selected={i === stepIndex.value}>
-              <td>{entry.folder}</td>
+              <td>{entry.folder}{t?.dropped?.length ? `, without ${listed(t.dropped)}` : ''}</td>
               <td>{figure(t?.chi_fit, 4)}</td><td>{figure(t?.chi_validate, 4)}</td><td>{figure(t?.rms_px_fit)}</td>
               <td><input type="radio" name="show" aria-label={`show ${entry.folder}`} checked={i === stepIndex.value}
                 onChange={() => (chosenStep.value = i === newest ? -1 : i)} /></td>

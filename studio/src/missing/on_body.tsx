@@ -7,7 +7,7 @@ import {surface, type Surface} from '../fails/surface';
 import {useScene} from '../fails/use_scene';
 import {fromBase64} from '../parts';
 import {step, theme} from '../state';
-import type {Prediction} from './removed';
+import type {Prediction} from './prediction';
 
 /** What would be left less what there is [sigma]: negative where the effect removes; NaN: unseen. */
 export function changeOnNodes(s: Surface, prediction: Prediction): Float32Array {

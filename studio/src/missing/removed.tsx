@@ -1,28 +1,17 @@
 // The residual that the chosen effect would remove, over the photo and on the body, beside the
 // residual there is.
-import {useEffect, useRef, useState} from 'preact/hooks';
+import {useEffect, useRef} from 'preact/hooks';
 import {diverging, sequential, shown, type Ramp, type Rgb} from '../colours';
 import type {PhotoEntry} from '../document';
 import {saveCsv} from '../download';
 import {spaced} from '../format';
-import {field, fromBase64, picture, type Grid} from '../parts';
+import {fromBase64, picture, type Grid} from '../parts';
 import {savePictures} from '../pictures';
 import {chosenPhoto, run, step} from '../state';
 import {Legend} from '../widgets';
 import {gainOf, residualScale} from '../compare/frames';
 import {OnBody} from './on_body';
-
-/** Cells of a photo; `bytes`: all residuals there are, then all that would be removed (128: 0). */
-interface Cells {
-  columns: number;
-  rows: number;
-  bytes: string;
-}
-export interface Prediction {
-  cell_px: number;
-  unit: number;
-  photos: Record<string, Cells>;
-}
+import {usePrediction, type Cells, type Prediction} from './prediction';
 
 /** The smallest box of cells that count. */
 function box(cells: Cells, now: Uint8Array): {left: number; top: number; columns: number; rows: number} {
@@ -104,19 +93,6 @@ function cellsCsv(prediction: Prediction, name: string, effect: string): void {
       table.push([(i % columns) * prediction.cell_px, Math.floor(i / columns) * prediction.cell_px,
         (bytes[i] - 1) * prediction.unit, (bytes[columns * rows + i] - 128) * prediction.unit]);
   saveCsv(`${effect}-removes-${name}.csv`, table);
-}
-
-/** The prediction of an effect; the one before stays until it is read, so that nothing flickers. */
-function usePrediction(part: string | undefined): Prediction | null {
-  const [prediction, setPrediction] = useState<Prediction | null>(null);
-  useEffect(() => {
-    let current = true;
-    if (part) void field<Prediction>(part).then((p) => current && setPrediction(p), () => undefined);
-    return () => {
-      current = false;
-    };
-  }, [part]);
-  return part ? prediction : null;
 }
 
 export function Removed(props: {effect: string}) {
