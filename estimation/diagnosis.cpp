@@ -216,9 +216,10 @@ void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagn
                                   parameters[i].unit.empty() ? "" : " ", parameters[i].unit));
   }
   if (!moved.empty())
-    out.mesh_note =
-        fmt::format("a mesh of 0.7 times the edge would move {}; the intervals reach there",
-                    fmt::join(moved, ", "));
+    out.mesh_note = fmt::format(
+        "a mesh of 0.7 times the edge would move {}; the intervals reach there, and adding "
+        "mesh_resolution fits on it",
+        fmt::join(moved, ", "));
 }
 
 /// Share of each effect's signature that the others can imitate.

@@ -12,10 +12,25 @@ namespace {
 /// What texture and shading errors of another renderer leave over the floor of the rest photos.
 constexpr double kAtFloor = 1.3;
 
+bool numerical(const std::string& effect) {
+  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
+  return found && found->group() == EffectGroup::numerical;
+}
+
 /// Within 1.3 times the floor on the fitted photos and on the held-out ones.
 bool at_floor(const Fitted& fitted, const Floor& floor) {
   return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
          fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
+}
+
+/// The photos are explained but for what a finer mesh would change. That is told beside the
+/// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
+/// times all that was fitted before, and name nothing.
+bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis) {
+  return at_floor(fitted, diagnosis.floor) &&
+         std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
+           return numerical(effect.effect) || !nameable(effect, diagnosis);
+         });
 }
 
 }  // namespace
@@ -88,8 +103,9 @@ bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& flo
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why) {
   const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
-  bool something = false;
-  for (const auto& effect : diagnosis.effects) something |= nameable(effect, diagnosis);
+  const bool something = !only_numerical_left(fitted, diagnosis) &&
+                         std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                     [&](const auto& e) { return nameable(e, diagnosis); });
   if (why)
     *why = fmt::format(
         "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
@@ -114,10 +130,6 @@ bool cancelled(const NumericalFailure& failure) { return failure.reason == "canc
 /// none.
 bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
 
-bool numerical(const Racer& racer) {
-  return find_effect(racer.effect)->group() == EffectGroup::numerical;
-}
-
 /// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
 /// two steps may still be right. A numerical error that comes near the first is refitted too,
 /// whatever its rank: nothing is named before the mesh is settled.
@@ -131,7 +143,7 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
   const Racer winner = racers.front();
   racers.erase(std::remove_if(racers.begin() + most, racers.end(),
                               [&](const Racer& racer) {
-                                return !numerical(racer) || !may_tie(racer, winner);
+                                return !numerical(racer.effect) || !may_tie(racer, winner);
                               }),
                racers.end());
 }
@@ -174,6 +186,17 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
   return refits;
 }
 
+/// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
+/// with which no effect is idle.
+bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own) {
+  for (size_t k = 0; k < own.size(); ++k) {
+    const auto i = offset + static_cast<Eigen::Index>(k);
+    const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * 1.96);
+    if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
+  }
+  return false;
+}
+
 /// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
                               size_t first_effect, const DiscoverOptions& options) {
@@ -183,7 +206,8 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
     const int n = static_cast<int>(current.form.ingredients[i]->parameters().size());
     const Effect* effect = find_effect(current.form.ingredients[i]->name());
     const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
-    if (i >= first_effect && !mesh) {
+    if (i >= first_effect && !mesh &&
+        !stands(current, offset, current.form.ingredients[i]->parameters())) {
       ModelForm form = current.form;
       form.ingredients.erase(form.ingredients.begin() + i);
       VectorXd p(current.p.size() - n);
@@ -243,7 +267,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     reach_for_mesh(step.fitted, step.diagnosis);
     out.floor = step.diagnosis.floor;
     if (events.step) events.step(step);
-    if (added >= options.max_effects) break;
+    if (added >= options.max_effects || only_numerical_left(step.fitted, step.diagnosis)) break;
     auto refits = refit_leaders(workspace, step, options, events);
     if (auto* failure = std::get_if<NumericalFailure>(&refits)) return *failure;
     auto& ranked = std::get<std::vector<Refit>>(refits);

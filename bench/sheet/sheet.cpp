@@ -168,7 +168,8 @@ Image error_map(const Scene& scene, const Fitted& fitted, int e, double full) {
         const double d = std::hypot(told.point.x() - X, told.point.y() - Y);
         if (d < near) near = d, error = (one.predicted - told.value).norm();
       }
-      if (near < 3.6) tile.values[y * kTile + x] = static_cast<float>(0.05 + 0.95 * error / full);
+      // The picture is written as sRGB: grey as it is seen grows with the error.
+      if (near < 3.6) tile.values[y * kTile + x] = static_cast<float>(std::pow(error / full, 2.2));
     }
   return tile;
 }
@@ -180,7 +181,7 @@ void paste(const Image& tile, Image& out, int column, int row) {
           std::min(1.0f, tile.values[y * tile.width + x]);
 }
 
-void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs,
+void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs, int levels,
           const fs::path& file) {
   Image out{static_cast<int>(2 * shown.size()) * (kTile + 4), 4 * (kTile + 4), 1, {}};
   out.values.assign(out.pixels(), 1.0f);
@@ -188,9 +189,10 @@ void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs,
   for (size_t i = 0; i < shown.size(); ++i)
     for (const char* motion : {"corner", "shear"}) {
       const Result& r = shown[i];
+      const std::string name = fmt::format("{}_{}", motion, levels);
       int last = -1;
       for (size_t e = 0; e < r.scene->capture.examples.size(); ++e)
-        if (r.scene->capture.examples[e].name.rfind(motion, 0) == 0) last = static_cast<int>(e);
+        if (r.scene->capture.examples[e].name == name) last = static_cast<int>(e);
       // One scale a column: the largest error of St Venant-Kirchhoff.
       double full = 0;
       for (const auto& one : r.stvk_fit.evaluation.find(last)->measured) {
@@ -251,7 +253,7 @@ void run_all(const fs::path& folder, const Resolution& how, const std::string& o
   }
   std::ofstream(folder / "sheet.md") << table;
   std::cout << table;
-  if (only_motion.empty()) draw(shown, inputs, folder / "sheet.png");
+  if (only_motion.empty()) draw(shown, inputs, how.levels, folder / "sheet.png");
 }
 
 }  // namespace

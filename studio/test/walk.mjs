@@ -7,16 +7,11 @@ import {cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, stat
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
-import {chromium} from 'playwright-core';
+import {launch} from './browser.mjs';
 import {smallCapture} from './small_capture.mjs';
 
 const hookeye = process.argv[2];
 const shots = process.argv[3];
-const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
-if (!browserPath) {
-  console.log('NOT RUN: chromium is not there (packages.txt), so the page was not tried in a browser');
-  process.exit(77);
-}
 const axeSource = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const verbs = ['compare', 'fails', 'missing', 'add', 'falls', 'facts'];
 const folder = mkdtempSync(join(tmpdir(), 'hookeye-page-'));
@@ -26,11 +21,7 @@ const runJson = () => JSON.parse(readFileSync(join(run, 'run.json'), 'utf8'));
 let program;
 const say = (what) => console.log('ok', what);
 
-const browser = await chromium.launch({
-  executablePath: browserPath,
-  args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-});
+const browser = await launch();
 
 /** A page that notes every error and every request that is not allowed to leave. */
 async function open(url, size = {width: 1280, height: 800}, colorScheme = 'light') {
