@@ -264,6 +264,29 @@ TEST(Catalogue, ForcesTurnWithTheSetUp) {
   EXPECT_GT(tried, 40);
 }
 
+/// With one value off its null, what is left of it in fewer parameters is the same model.
+TEST(Catalogue, SmallerFormsSayTheSameWhereOneValueStandsOut) {
+  const VectorXd q = deformed_state(*block_scene());
+  int tried = 0;
+  for (const Case& c : all_cases(true)) {
+    const VectorXd nulls = null_values(*c.ingredient);
+    for (Eigen::Index k = 0; k < nulls.size(); ++k) {
+      VectorXd values = nulls;
+      values[k] = some_values(*c.ingredient)[k];
+      VectorXd fewer = values;
+      const auto smaller = c.effect->smaller_form(base_model(), *c.ingredient, fewer);
+      if (!smaller) break;
+      EXPECT_LT(smaller->parameters().size(), c.ingredient->parameters().size()) << c.label();
+      const ModelForm form = extended(base(), c.ingredient), other = extended(base(), smaller);
+      const VectorXd expected = signature(form.realise(with_values(form, values)), q);
+      const VectorXd found = signature(other.realise(with_values(other, fewer)), q);
+      EXPECT_LT((found - expected).norm(), 1e-9 * expected.norm()) << c.label() << " value " << k;
+      ++tried;
+    }
+  }
+  EXPECT_GT(tried, 0);
+}
+
 }  // namespace
 
 }  // namespace hookeye::test
