@@ -1,7 +1,7 @@
 // Do the statistics hold? Captures that hide nothing, over and over with other textures and noise:
 // p-values must be uniform (or larger), false alarms at most 5 %, intervals must cover, and a
 // placebo is no better off than the rest. With --hidden, captures that hide gravity: the placebo
-// must never come first. With --power, gravity of falling size: how often is it named?
+// must never come first. With --power, gravity of falling size: how often does it lead?
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -50,9 +50,10 @@ Counts count(const Options& options) {
   return out;
 }
 
-/// Share of captures in which self-weight is named, over its size.
+/// Share of captures in which self-weight leads the ranking of what stands out, over its size;
+/// before the race and the refits of discover.
 int power(Options options) {
-  fmt::print("  rms px  of noise  named  placebo\n");
+  fmt::print("  rms px  over noise  first  placebo\n");
   for (const double px : {0.3, 0.1, 0.05, 0.02, 0.01, 0.005}) {
     options.hidden = fmt::format("hidden:\n  - {{effect: gravity, rms_px: {:g}}}\n", px);
     int named = 0, placebo = 0;
@@ -69,8 +70,8 @@ int power(Options options) {
       placebo += one.named.rfind("placebo", 0) == 0;
       fall += one.gravity_fall / options.repeats;
     }
-    // sqrt of the fall: how many standard deviations the best estimate of the size stands off zero
-    fmt::print("  {:<6g}  {:<8.1f}  {:.2f}   {:.2f}\n", px, std::sqrt(fall),
+    // sqrt of the fall: what the effect changes in a pixel, over its noise (rms)
+    fmt::print("  {:<6g}  {:<10.2f}  {:.2f}   {:.2f}\n", px, std::sqrt(fall),
                static_cast<double>(named) / options.repeats,
                static_cast<double>(placebo) / options.repeats);
     std::fflush(stdout);
@@ -87,7 +88,7 @@ int main_of(int argc, char** argv) {
   app.add_flag("--other-renderer", options.other_renderer,
                "Photos with other rays than the fit's: noise is not all that is left");
   app.add_flag("--hidden", gravity, "Self-weight is hidden; how often does a placebo come first?");
-  app.add_flag("--power", sizes, "Self-weight of falling size is hidden; how often is it named?");
+  app.add_flag("--power", sizes, "Self-weight of falling size is hidden; how often does it lead?");
   CLI11_PARSE(app, argc, argv);
   if (sizes) return power(options);
   const int n = options.repeats, most = test::count_95(n);
