@@ -54,19 +54,25 @@ double cauchy_difference(const Law& law, const Matrix3d& F) {
   return sigma(0, 0) - sigma(2, 2);
 }
 
+/// At constant volume s1 - s3 = 2 rubber(l) (dW/dI1 + second(l) dW/dI2) (Treloar).
+using OfStretch = std::function<double(double)>;
+std::vector<Curve> laws_of_invariants(const OfStretch& rubber, const OfStretch& I1,
+                                      const OfStretch& second) {
+  return {{neo_hookean(0.05, kKappa), [=](double l) { return 0.05 * rubber(l); }},
+          {mooney_rivlin(0.02, 0.013, kKappa),
+           [=](double l) { return 2 * rubber(l) * (0.02 + 0.013 * second(l)); }},
+          {yeoh(0.03, -0.002, 0.0007, kKappa), [=](double l) {
+             const double x = I1(l) - 3;
+             return 2 * rubber(l) * (0.03 - 2 * 0.002 * x + 3 * 0.0007 * x * x);
+           }}};
+}
+
 TEST(LawCurves, UniaxialAtConstantVolume) {
-  // F = diag(l, l^-1/2, l^-1/2): s1 - s3 = 2 (l^2 - 1/l) (dW/dI1 + 1/l dW/dI2) (Treloar).
+  // F = diag(l, l^-1/2, l^-1/2).
   const auto rubber = [](double l) { return l * l - 1 / l; };
   const auto I1 = [](double l) { return l * l + 2 / l; };
-  const std::vector<Curve> all = {
-      {neo_hookean(0.05, kKappa), [&](double l) { return 0.05 * rubber(l); }},
-      {mooney_rivlin(0.02, 0.013, kKappa),
-       [&](double l) { return 2 * rubber(l) * (0.02 + 0.013 / l); }},
-      {yeoh(0.03, -0.002, 0.0007, kKappa),
-       [&](double l) {
-         const double x = I1(l) - 3;
-         return 2 * rubber(l) * (0.03 - 2 * 0.002 * x + 3 * 0.0007 * x * x);
-       }},
+  std::vector<Curve> all = laws_of_invariants(rubber, I1, [](double l) { return 1 / l; });
+  const std::vector<Curve> others = {
       {ogden({0.03, -0.01}, {1.3, -2.7}, kKappa),
        [](double l) {
          return 0.03 * (pow(l, 1.3) - pow(l, -0.65)) - 0.01 * (pow(l, -2.7) - pow(l, 1.35));
@@ -82,6 +88,7 @@ TEST(LawCurves, UniaxialAtConstantVolume) {
          return (kMu + 2 * kSpread * w) * rubber(l) +
                 2 * (1 - 3 * kSpread) * w * l * l * kCos * kCos;
        }}};
+  all.insert(all.end(), others.begin(), others.end());
   for (const Curve& curve : all)
     for (double l : kStretches) {
       const Matrix3d F = Vector3d(l, 1 / std::sqrt(l), 1 / std::sqrt(l)).asDiagonal();
@@ -92,18 +99,11 @@ TEST(LawCurves, UniaxialAtConstantVolume) {
 }
 
 TEST(LawCurves, EquibiaxialAtConstantVolume) {
-  // F = diag(l, l, l^-2): s1 - s3 = 2 (l^2 - l^-4) (dW/dI1 + l^2 dW/dI2).
+  // F = diag(l, l, l^-2).
   const auto rubber = [](double l) { return l * l - pow(l, -4); };
   const auto I1 = [](double l) { return 2 * l * l + pow(l, -4); };
-  const std::vector<Curve> all = {
-      {neo_hookean(0.05, kKappa), [&](double l) { return 0.05 * rubber(l); }},
-      {mooney_rivlin(0.02, 0.013, kKappa),
-       [&](double l) { return 2 * rubber(l) * (0.02 + 0.013 * l * l); }},
-      {yeoh(0.03, -0.002, 0.0007, kKappa),
-       [&](double l) {
-         const double x = I1(l) - 3;
-         return 2 * rubber(l) * (0.03 - 2 * 0.002 * x + 3 * 0.0007 * x * x);
-       }},
+  std::vector<Curve> all = laws_of_invariants(rubber, I1, [](double l) { return l * l; });
+  const std::vector<Curve> others = {
       {ogden({0.03, -0.01}, {1.3, -2.7}, kKappa),
        [](double l) {
          return 0.03 * (pow(l, 1.3) - pow(l, -2.6)) - 0.01 * (pow(l, -2.7) - pow(l, 5.4));
@@ -119,6 +119,7 @@ TEST(LawCurves, EquibiaxialAtConstantVolume) {
          return (kMu + 2 * kSpread * w) * rubber(l) +
                 2 * (1 - 3 * kSpread) * w * l * l * kCos * kCos;
        }}};
+  all.insert(all.end(), others.begin(), others.end());
   for (const Curve& curve : all)
     for (double l : {0.8, 0.9, 1.05, 1.3, 1.6}) {
       const Matrix3d F = Vector3d(l, l, 1 / (l * l)).asDiagonal();
