@@ -94,6 +94,9 @@ TEST(Discover, NamesTheHiddenWeightAndTheErrorFalls) {
   EXPECT_GT(base.evaluation.chi(false), 2.0);
   EXPECT_LT(last.evaluation.chi(false), 1.3 * found.floor.chi);
   EXPECT_LT(last.evaluation.chi(true), base.evaluation.chi(true));
+  EXPECT_TRUE(held_out_allows(last, base, found.floor));
+  EXPECT_TRUE(held_out_allows(last, last, found.floor));  // no change is no word against it
+  EXPECT_FALSE(held_out_allows(base, last, found.floor));
   double g = 0.0;
   parameter(last, "gravity.z", &g);
   EXPECT_NEAR(g, -9000.0, 300.0);
