@@ -62,7 +62,15 @@ struct MaterialSpec {
   std::string law;
   Place place;
   std::map<std::string, Value> parameters;  ///< "mu" -> {0.05}
-  std::string region;                       ///< "" = the whole body, else a group of the volume
+  std::string region;  ///< "" = the whole body, else a group of the volume, or of `blend` the name
+  /// Weight of the law over the body: piecewise linear along a direction of rest coordinates,
+  /// constant beyond its ends.
+  struct Blend {
+    Eigen::Vector3d along;           ///< unit
+    std::vector<double> at, weight;  ///< rising places [length]; >= 0
+    double of(const Eigen::Vector3d& X) const;
+  };
+  std::optional<Blend> blend;
 };
 
 struct BodySpec {

@@ -66,6 +66,31 @@ void read_law_values(const YamlNode& node, const std::string& name,
   values[name] = std::move(value);
 }
 
+MaterialSpec::Blend read_blend(const YamlNode& node) {
+  const YamlSection section(node, "blend", {"along", "at", "weight"});
+  const std::string right = "write `blend: {along: [0, 0, 1], at: [0, 60], weight: [1, 0]}`";
+  const YamlNode &along = section.need("along", right), &at = section.need("at", right),
+                 &weight = section.need("weight", right);
+  MaterialSpec::Blend blend{read_vector3(along, "the direction of the blend"),
+                            read_numbers(at, "the places of the blend"),
+                            read_numbers(weight, "the weights of the blend")};
+  if (!(blend.along.norm() > 0.0))
+    throw InputError(along.place, "the direction of the blend is zero", right);
+  blend.along.normalize();
+  if (blend.at.size() != blend.weight.size())
+    throw InputError(weight.place,
+                     fmt::format("{} weights at {} places", blend.weight.size(), blend.at.size()),
+                     "give one weight at every place");
+  for (size_t i = 0; i + 1 < blend.at.size(); ++i)
+    if (!(blend.at[i] < blend.at[i + 1]))
+      throw InputError(at.place, "the places of the blend do not rise", "order them");
+  for (const double w : blend.weight)
+    if (w < 0.0)
+      throw InputError(weight.place, fmt::format("a weight of the blend is {}", w),
+                       "weights are zero or positive");
+  return blend;
+}
+
 MaterialSpec read_material(const YamlNode& node, const std::string& region) {
   if (node.kind != YamlNode::Kind::map)
     unexpected(node, "material", "write `{law: neo-hookean, mu: 0.05, kappa: 0.5}`");
@@ -76,6 +101,8 @@ MaterialSpec read_material(const YamlNode& node, const std::string& region) {
     if (entry.key == "law") {
       material.law = read_string(entry.value, "law of the material");
       material.place = entry.value.place;
+    } else if (entry.key == "blend") {
+      material.blend = read_blend(entry.value);
     } else {
       read_law_values(entry.value, entry.key, material.parameters);
     }
@@ -86,8 +113,8 @@ MaterialSpec read_material(const YamlNode& node, const std::string& region) {
   return material;
 }
 
-/// One law for the whole body, or a map from region of the body to law: the latter has maps as all
-/// its values and no `law`.
+/// One law for the whole body, or a map from region of the body, or from the name of what is
+/// blended over the body, to law: the latter has maps as all its values and no `law`.
 std::vector<MaterialSpec> read_materials(const YamlNode& node, const BodySpec& body) {
   const bool by_region =
       node.kind == YamlNode::Kind::map && !node.entries.empty() &&
@@ -95,17 +122,28 @@ std::vector<MaterialSpec> read_materials(const YamlNode& node, const BodySpec& b
         return e.value.kind == YamlNode::Kind::map && e.key != "law";
       });
   if (!by_region) return {read_material(node, "")};
-  if (body.volume.empty())
-    throw InputError(node.place,
-                     "material names regions of the body, but the body has no volume mesh",
-                     "give `body: {volume: FILE}` with named groups, or one law");
   std::vector<MaterialSpec> materials;
   for (const YamlNode::Entry& entry : node.entries)
     materials.push_back(read_material(entry.value, entry.key));
+  const bool blended = std::all_of(materials.begin(), materials.end(),
+                                   [](const MaterialSpec& one) { return one.blend.has_value(); });
+  if (body.volume.empty() && !blended)
+    throw InputError(node.place,
+                     "material names regions of the body, but the body has no volume mesh",
+                     "give `body: {volume: FILE}` with named groups, one law, or a `blend` each");
   return materials;
 }
 
 }  // namespace
+
+double MaterialSpec::Blend::of(const Eigen::Vector3d& X) const {
+  const double s = along.dot(X);
+  const auto next = std::upper_bound(at.begin(), at.end(), s) - at.begin();
+  if (next == 0) return weight.front();
+  if (next == static_cast<std::ptrdiff_t>(at.size())) return weight.back();
+  const double share = (s - at[next - 1]) / (at[next] - at[next - 1]);
+  return (1.0 - share) * weight[next - 1] + share * weight[next];
+}
 
 Units read_units(const YamlNode& node) {
   const YamlSection units(node, "units", {"length", "force"});

@@ -1,4 +1,6 @@
 // The base model of a capture: what the user believes, and what the capture leaves open.
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 
 #include "estimation/additive_material.h"
@@ -10,7 +12,6 @@ namespace hookeye {
 namespace {
 
 VectorXd elements_of_group(const TetMesh& mesh, const MaterialSpec& spec) {
-  if (spec.region.empty()) return {};
   const auto group = mesh.volume_groups.find(spec.region);
   if (group == mesh.volume_groups.end()) {
     std::vector<std::string> known;
@@ -23,6 +24,37 @@ VectorXd elements_of_group(const TetMesh& mesh, const MaterialSpec& spec) {
   VectorXd weight = VectorXd::Zero(mesh.size());
   for (int e : group->second) weight[e] = 1.0;
   return weight;
+}
+
+/// Weight of a law, one an element; empty: 1 everywhere. A blend is taken at the middle of the
+/// element's corners.
+VectorXd element_weights(const TetMesh& mesh, const MaterialSpec& spec) {
+  if (!spec.blend) return spec.region.empty() ? VectorXd() : elements_of_group(mesh, spec);
+  VectorXd weight(mesh.size());
+  for (int e = 0; e < mesh.size(); ++e) {
+    Vector3d middle = Vector3d::Zero();
+    for (int a = 0; a < 4; ++a) middle += mesh.X.col(mesh.elements(a, e)) / 4.0;
+    weight[e] = spec.blend->of(middle);
+  }
+  return weight;
+}
+
+/// No element may be without a law.
+void check_cover(const EnergyModel& energy, const Capture& capture, const TetMesh& mesh) {
+  VectorXd sum = VectorXd::Zero(mesh.size());
+  for (const auto& part : energy.parts)
+    if (part.weight.size() == 0)
+      sum.array() += 1.0;
+    else
+      sum += part.weight;
+  Eigen::Index least = 0;
+  if (sum.size() == 0 || sum.minCoeff(&least) > 0.0) return;
+  const Vector3d X = mesh.X.col(mesh.elements(0, static_cast<int>(least)));
+  throw InputError(capture.materials.front().place,
+                   fmt::format("{} elements have no material, one of them at ({:.4g}, {:.4g}, "
+                               "{:.4g})",
+                               (sum.array() <= 0.0).count(), X.x(), X.y(), X.z()),
+                   "every part of the body needs a law with a weight above zero");
 }
 
 PhotoState told_photo(const Capture& capture, const PhotoSpec& spec) {
@@ -55,9 +87,10 @@ Model told_model(std::shared_ptr<const Scene> scene) {
   Model model;
   model.scene = scene;
   for (const auto& spec : capture.materials) {
-    model.energy.parts.push_back({make_law(spec), elements_of_group(mesh, spec)});
+    model.energy.parts.push_back({make_law(spec), element_weights(mesh, spec)});
     set_frames(model.energy.parts.back(), mesh);
   }
+  check_cover(model.energy, capture, mesh);
   for (const auto& spec : capture.examples) {
     ExampleModel example;
     example.loading = make_loading(capture, spec, mesh, scene->body->regions);

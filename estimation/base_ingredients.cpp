@@ -240,7 +240,8 @@ std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
             region.empty() ? declared[k].name : region + "." + declared[k].name;
         known.push_back(qualified);
         // The name of an addend stands for all of its control values.
-        const bool of_addend = declared[k].name.rfind(capture.fit[i] + ".", 0) == 0;
+        const bool of_addend = declared[k].name.rfind(capture.fit[i] + ".", 0) == 0 ||
+                               qualified.rfind(capture.fit[i] + ".", 0) == 0;
         if (capture.fit[i] != qualified && capture.fit[i] != declared[k].name && !of_addend)
           continue;
         Parameter parameter = declared[k];

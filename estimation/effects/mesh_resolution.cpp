@@ -195,7 +195,7 @@ class MeshResolution final : public Effect {
     if (!linear && capture.body.surface.empty())
       reason = "the volume is told without a surface, so that it cannot be meshed anew";
     for (const auto& material : capture.materials)
-      if (!linear && !material.region.empty())
+      if (!linear && !material.region.empty() && !material.blend)
         reason = "the materials belong to groups of the told volume, which a new mesh has not";
     if (why_not && !reason.empty()) *why_not = reason;
     if (!reason.empty()) return {};

@@ -130,7 +130,27 @@ const BrokenCase broken_cases[] = {
     {"RegionsOfMaterialWithoutVolume",
      swap("{law: neo-hookean, mu: 0.05, kappa: 0.5}", "{core: {law: stvk, mu: 1, lambda: 1}}"),
      "capture.yaml:11:13: material names regions of the body, but the body has no volume mesh\n"
-     "  give `body: {volume: FILE}` with named groups, or one law"},
+     "  give `body: {volume: FILE}` with named groups, one law, or a `blend` each"},
+    {"BlendWeights",
+     swap("{law: neo-hookean, mu: 0.05, kappa: 0.5}",
+          "{law: stvk, mu: 1, lambda: 1, blend: {along: [0, 0, 1], at: [0, 5], weight: [1]}}"),
+     "capture.yaml:11:89: 1 weights at 2 places\n"
+     "  give one weight at every place"},
+    {"BlendPlaces",
+     swap("{law: neo-hookean, mu: 0.05, kappa: 0.5}",
+          "{law: stvk, mu: 1, lambda: 1, blend: {along: [0, 0, 1], at: [5, 0], weight: [1, 0]}}"),
+     "capture.yaml:11:73: the places of the blend do not rise\n"
+     "  order them"},
+    {"BlendNegative",
+     swap("{law: neo-hookean, mu: 0.05, kappa: 0.5}",
+          "{law: stvk, mu: 1, lambda: 1, blend: {along: [0, 0, 1], at: [0, 5], weight: [1, -1]}}"),
+     "capture.yaml:11:89: a weight of the blend is -1\n"
+     "  weights are zero or positive"},
+    {"BlendNowhere",
+     swap("{law: neo-hookean, mu: 0.05, kappa: 0.5}",
+          "{law: stvk, mu: 1, lambda: 1, blend: {along: [0, 0, 0], at: [0, 5], weight: [1, 0]}}"),
+     "capture.yaml:11:58: the direction of the blend is zero\n"
+     "  write `blend: {along: [0, 0, 1], at: [0, 60], weight: [1, 0]}`"},
     {"FitTwice", swap("[mu, kappa]", "[mu, mu]"),
      "capture.yaml:12:13: `mu` is to be fitted twice\n"
      "  name every parameter once"},

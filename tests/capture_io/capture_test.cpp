@@ -166,6 +166,24 @@ TEST(CaptureTest, LawsByRegionAndNestedNumbers) {
   EXPECT_EQ(c.materials[1].parameters.at("e11.values").numbers, (std::vector<double>{1, 2, 3, 4}));
 }
 
+TEST(CaptureTest, LawsBlendedOverTheBody) {
+  CaptureFixture fixture;
+  fixture.replace(
+      "{law: neo-hookean, mu: 0.05, kappa: 0.5}",
+      "{foot: {law: stvk, mu: 1, lambda: 1, blend: {along: [0, 0, 2], at: [0, 4, 6], weight: [1, "
+      "0.5, 0]}},\n    head: {law: stvk, mu: 2, lambda: 1, blend: {along: [0, 0, 1], at: [0, 6], "
+      "weight: [0, 1]}}}");
+  fixture.replace("fit: [mu, kappa]", "fit: [foot.mu, head.mu]");
+  const Capture c = read_fixture(fixture);
+  ASSERT_EQ(c.materials.size(), 2u);
+  const auto& blend = *c.materials[0].blend;
+  EXPECT_EQ(blend.of({7, 8, -1}), 1.0);
+  EXPECT_EQ(blend.of({7, 8, 2}), 0.75);
+  EXPECT_EQ(blend.of({0, 0, 5}), 0.25);
+  EXPECT_EQ(blend.of({0, 0, 6}), 0.0);
+  EXPECT_EQ(c.materials[1].region, "head");
+}
+
 TEST(CaptureTest, SimulationNeedsNoPictures) {
   CaptureFixture fixture;
   fixture.yaml =
