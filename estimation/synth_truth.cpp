@@ -53,17 +53,21 @@ std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::sol
 
 namespace {
 
-/// The variant that the recipe names; the only one; or, where values are drawn too, a drawn one.
-std::shared_ptr<const Ingredient> choose(const HiddenRecipe& hidden, const Effect& effect,
-                                         const Model& model, std::mt19937_64& random) {
-  if (auto found = effect.candidate(model, hidden.variant)) return found;
+/// What may be put in: the variant that the recipe names; the only one; or, where values are drawn
+/// too, all of them in drawn order.
+std::vector<std::shared_ptr<const Ingredient>> choices(const HiddenRecipe& hidden,
+                                                       const Effect& effect, const Model& model,
+                                                       std::mt19937_64& random) {
+  if (auto found = effect.candidate(model, hidden.variant)) return {found};
   std::string why;
-  const auto all = effect.candidates(model, &why);
+  auto all = effect.candidates(model, &why);
   if (all.empty())
     throw InputError(hidden.place,
                      fmt::format("`{}` cannot be hidden in this capture", hidden.effect), why);
-  if (hidden.variant.empty() && all.size() == 1) return all.front();
-  if (hidden.variant.empty() && hidden.drawn) return all[random() % all.size()];
+  if (hidden.variant.empty() && (all.size() == 1 || hidden.drawn)) {
+    std::shuffle(all.begin(), all.end(), random);
+    return all;
+  }
   std::vector<std::string> known;
   for (const auto& one : all)
     if (known.size() < 8) known.push_back(fmt::format("\"{}\"", one->variant()));
@@ -150,55 +154,92 @@ double rms_px(const Scene& scene, const Model& a, const std::vector<TruthSolver:
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-/// Adds one hidden effect to the truth found so far.
-std::optional<NumericalFailure> put_in(const HiddenRecipe& hidden, unsigned seed,
-                                       TruthSolver& solver, Truth& truth) {
-  auto random = random_of(seed, "hidden " + hidden.effect);
-  PutIn put;
-  put.effect = find_effect(hidden.effect);
-  put.ingredient = choose(hidden, *put.effect, truth.model, random);
-  const auto parameters = put.ingredient->parameters();
+/// The truth found so far with one ingredient more.
+struct Addition {
+  ModelForm form;
+  VectorXd p;
+  Model model;
+  std::vector<TruthSolver::State> states;
+  double rms_px = 0.0;  ///< by which it moves the pictures
+};
+std::variant<Addition, NumericalFailure> add_to(const Truth& truth, TruthSolver& solver,
+                                                const std::shared_ptr<const Ingredient>& ingredient,
+                                                const VectorXd& values) {
+  Addition out{truth.form, VectorXd(truth.p.size() + values.size()), {}, {}, 0.0};
+  out.form.ingredients.push_back(ingredient);
+  out.p << truth.p, values;
+  out.model = out.form.realise(out.p);
+  auto solved = solver.solve(out.model);
+  if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
+  out.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
+  out.rms_px = rms_px(*out.model.scene, truth.model, truth.states, out.model, out.states);
+  return out;
+}
+
+/// Nothing moves below this.
+constexpr double kStill = 1e-9;  // px
+
+/// Scales the drawn or told values until the pictures move by what the recipe asks for, and adds
+/// them to the truth. False: drawn values of an effect on forces or material that move nothing (a
+/// plane that no fitted example reaches).
+std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
+                                            const std::shared_ptr<const Ingredient>& ingredient,
+                                            std::mt19937_64& random, TruthSolver& solver,
+                                            Truth& truth) {
+  const auto parameters = ingredient->parameters();
   const VectorXd told =
       hidden.drawn ? drawn_values(parameters, random) : told_values(hidden, parameters);
   VectorXd null(parameters.size());
   for (size_t i = 0; i < parameters.size(); ++i) null[i] = parameters[i].value;
-  ModelForm form = truth.form;
-  form.ingredients.push_back(put.ingredient);
-  const Scene& scene = *truth.model.scene;
-  const double largest = hidden.drawn ? largest_factor(parameters, null, told) : 1e300;
+  double largest = hidden.drawn ? largest_factor(parameters, null, told) : 1e300;
   double factor = std::min(1.0, largest);
-  const int most = hidden.rms_px ? 6 : 1;
+  const Touches touches = ingredient->touches();
+  const int most = hidden.rms_px ? 8 : 1;
   for (int i = 0; i < most; ++i) {
-    put.values = null + factor * (told - null);
+    const VectorXd values = null + factor * (told - null);
     for (size_t k = 0; k < parameters.size(); ++k)
-      check_range(parameters[k], put.values[k], hidden.values_place,
+      check_range(parameters[k], values[k], hidden.values_place,
                   fmt::format("{} px cannot be reached", hidden.rms_px.value_or(0.0)));
-    VectorXd p(form.size());
-    p << truth.p, put.values;
-    Model model = form.realise(p);
-    auto solved = solver.solve(model);
-    if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
-    auto& states = std::get<std::vector<TruthSolver::State>>(solved);
-    put.rms_px = rms_px(scene, truth.model, truth.states, model, states);
-    const bool still = !(put.rms_px > 1e-9);  // light, exposure: there is nothing to scale
-    const bool reached = hidden.rms_px && std::abs(put.rms_px / *hidden.rms_px - 1.0) < 0.03;
-    const bool at_bound = factor == largest && put.rms_px < hidden.rms_px.value_or(0.0);
-    if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {
-      put.sentence = put.effect->sentence(truth.model, *put.ingredient, put.values);
-      truth.form = std::move(form);
-      truth.p = std::move(p);
-      truth.model = std::move(model);
-      truth.states = std::move(states);
-      truth.hidden.push_back(std::move(put));
-      return {};
+    auto added = add_to(truth, solver, ingredient, values);
+    if (auto* failure = std::get_if<NumericalFailure>(&added)) {
+      if (!hidden.drawn || i + 1 == most) return std::move(*failure);
+      largest = 0.7 * factor;  // drawn too large for an equilibrium
+      factor *= 0.5;
+      continue;
     }
-    if (still)
-      throw InputError(hidden.place,
-                       fmt::format("`{}` moves nothing in these pictures", hidden.effect),
-                       "leave rms_px out and give the values as they are");
-    factor = std::min(factor * *hidden.rms_px / put.rms_px, largest);
+    Addition& addition = std::get<Addition>(added);
+    const double wanted = hidden.rms_px.value_or(0.0);
+    const bool still = !(addition.rms_px > kStill);  // light, exposure: there is nothing to scale
+    if (still && hidden.drawn && (touches.loading || touches.energy)) return false;
+    const bool reached = hidden.rms_px && std::abs(addition.rms_px / wanted - 1.0) < 0.03;
+    const bool at_bound = factor == largest && addition.rms_px < wanted;
+    if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {
+      PutIn put{find_effect(hidden.effect), ingredient, values, addition.rms_px, ""};
+      put.sentence = put.effect->sentence(truth.model, *ingredient, values);
+      truth.form = std::move(addition.form);
+      truth.p = std::move(addition.p);
+      truth.model = std::move(addition.model);
+      truth.states = std::move(addition.states);
+      truth.hidden.push_back(std::move(put));
+      return true;
+    }
+    if (still) return false;
+    factor = std::min(factor * wanted / addition.rms_px, largest);
   }
-  return {};
+  return false;
+}
+
+/// Adds one hidden effect to the truth found so far.
+std::optional<NumericalFailure> hide(const HiddenRecipe& hidden, unsigned seed, TruthSolver& solver,
+                                     Truth& truth) {
+  auto random = random_of(seed, "hidden " + hidden.effect);
+  for (const auto& ingredient : choices(hidden, *find_effect(hidden.effect), truth.model, random)) {
+    auto put = put_in(hidden, ingredient, random, solver, truth);
+    if (auto* failure = std::get_if<NumericalFailure>(&put)) return std::move(*failure);
+    if (std::get<bool>(put)) return {};
+  }
+  throw InputError(hidden.place, fmt::format("`{}` moves nothing in these pictures", hidden.effect),
+                   "leave rms_px out and give the values as they are");
 }
 
 }  // namespace
@@ -215,7 +256,7 @@ std::variant<Truth, NumericalFailure> find_truth(const Recipe& recipe,
   if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
   truth.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
   for (const HiddenRecipe& hidden : recipe.hidden)
-    if (auto failure = put_in(hidden, recipe.seed, solver, truth)) return std::move(*failure);
+    if (auto failure = hide(hidden, recipe.seed, solver, truth)) return std::move(*failure);
   return truth;
 }
 

@@ -208,6 +208,14 @@ std::string grey_photographer(const fs::path& folder, const std::string& size) {
   return script;
 }
 
+/// Planes that no fitted example reaches are drawn past; a law drawn too soft to stand is scaled
+/// back.
+TEST_F(SynthTest, WhatIsDrawnShowsInThePhotos) {
+  const auto plane =
+      make(recipe_text("hidden:\n  - {effect: floor_contact, rms_px: 0.2}\n", kFast), "plane");
+  EXPECT_NEAR(plane.hidden.at(0).rms_px, 0.2, 0.01);
+}
+
 TEST_F(SynthTest, AnotherPhotographerTakesThePictures) {
   const Recipe recipe = parse_recipe(recipe_text("", kFast), "recipe.yaml");
   SynthOptions options;
