@@ -203,6 +203,25 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   return score;
 }
 
+/// Of all forms of an effect the one that explains most of the held-out photos, where that is more
+/// than the best of the fitted ones does there by a twentieth of their misfit.
+std::shared_ptr<const EffectScore> other_form(const Context& context,
+                                              const std::vector<Candidate>& candidates,
+                                              const std::vector<ProjectedHypothesis>& projected,
+                                              const EffectScore& best) {
+  constexpr double kMore = 0.05;
+  std::shared_ptr<const EffectScore> out;
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].effect->name() != best.effect || candidates[i].ingredient == best.best)
+      continue;
+    EffectScore score = describe(context, candidates[i], projected[i]);
+    if (score.explains_held_out > (out ? *out : best).explains_held_out + (out ? 0.0 : kMore) &&
+        score.explains > 0.0)
+      out = std::make_shared<EffectScore>(std::move(score));
+  }
+  return out;
+}
+
 /// mesh_shift and mesh_note: what the fitted parameters do once the change `mesh` is there in full.
 void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagnosis& out) {
   if (base == 0) return;
@@ -333,6 +352,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     if (candidates[best[name]].effect->group() == EffectGroup::numerical)
       tell_of_mesh(context, candidates[best[name]], base, out);
     score.evidence = value;
+    if (value >= kNameable) score.other_form = other_form(context, candidates, projected, score);
     const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
     score.p_value = (1.0 + above) / (1.0 + null.size());
     // What the photos show they can test, however little a typical change would show of it.

@@ -37,6 +37,9 @@ struct EffectScore {
   /// Where the linear step takes the examples (3n each), for the kPictured leading effects.
   std::map<int, VectorXd> displaced;
   std::string why;  ///< one plain sentence
+  /// Another form of the effect that explains more of the held-out photos, though the fitted ones
+  /// speak for `best` (one load turned instead of all): a trial decides. Null: there is none.
+  std::shared_ptr<const EffectScore> other_form;
 };
 
 struct Diagnosis {

@@ -35,6 +35,7 @@ json effect_json(const EffectScore& score) {
   const VectorXd low = score.values - kNormal95 * score.standard_error;
   const VectorXd high = score.values + kNormal95 * score.standard_error;
   out["predicted"] = parameters_json(score.best->parameters(), score.values, &low, &high);
+  if (score.other_form) out["other_form"] = effect_json(*score.other_form);
   return out;
 }
 
@@ -80,6 +81,8 @@ EffectScore score_from_json(const json& one, const Model& model) {
   for (const auto& other : one.at("confusion"))
     score.confused_with.push_back({other.at("effect"), other.at("cosine")});
   score.why = one.at("why");
+  if (one.contains("other_form"))
+    score.other_form = std::make_shared<EffectScore>(score_from_json(one.at("other_form"), model));
   return score;
 }
 

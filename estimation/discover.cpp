@@ -130,12 +130,25 @@ bool cancelled(const NumericalFailure& failure) { return failure.reason == "canc
 /// none.
 bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
 
+/// Left with three times the misfit of the first after as many steps: nobody came from there to
+/// win, and the refit of a field costs as much as all others. Not asked of the effect of the
+/// largest evidence.
+bool out_of_reach(const Racer& rival, const Racer& winner) {
+  return rival.chi() > 3.0 * winner.chi();
+}
+
 /// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
 /// two steps may still be right. A numerical error that comes near the first is refitted too,
 /// whatever its rank: nothing is named before the mesh is settled.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
-  if (static_cast<int>(racers.size()) <= most) return;
+  if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
+  racers.erase(std::remove_if(racers.begin() + 1, racers.end(),
+                              [&](const Racer& racer) {
+                                return racer.effect != first && out_of_reach(racer, racers.front());
+                              }),
+               racers.end());
+  if (static_cast<int>(racers.size()) <= most) return;
   const auto at = std::find_if(racers.begin(), racers.end(),
                                [&](const Racer& racer) { return racer.effect == first; });
   if (at != racers.end() && at - racers.begin() >= most)
