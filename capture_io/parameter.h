@@ -15,6 +15,9 @@ struct Parameter {
   double high = std::numeric_limits<double>::infinity();  ///< bound, not interval
   double typical = 1.0;   ///< > 0: a change of this size matters; scales steps and columns
   bool positive = false;  ///< fitted as its logarithm
+  /// Index of the example that it concerns alone (a jaw's motion there), -1: all. Such a number is
+  /// fitted to its example even where that is held out: it is no part of the model.
+  int example = -1;
 };
 
 }  // namespace hookeye

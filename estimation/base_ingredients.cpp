@@ -76,6 +76,7 @@ class RigidSupports final : public Ingredient {
             fmt::format("{} of '{}' in '{}' {} {}", turn ? "rotation" : "motion", slots_[s].region,
                         names_[s], turn ? "about" : "along", "xyz"[i % 3]);
         parameter.typical = turn ? 0.01 : 0.01 * slots_[s].size;
+        parameter.example = slots_[s].example;
         all.push_back(parameter);
       }
     return all;

@@ -216,7 +216,9 @@ std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
     least = std::min(least, *std::min_element(last.eigenvalues.begin(), last.eigenvalues.end()));
     if (!last.registered) break;
   }
-  auto out = assess(workspace, form, p, options);
+  auto settled = settle_held_out(workspace, form, p, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
+  auto out = assess(workspace, form, std::get<VectorXd>(settled), options);
   if (auto* fitted = std::get_if<Fitted>(&out)) {
     fitted->iterations = iterations;
     fitted->converged = last.converged;

@@ -54,11 +54,10 @@ double Evaluation::rms_px(bool held_out) const {
 double Evaluation::motion_px() const {
   double sum = 0.0, n = 0.0;
   for (const auto& example : examples)
-    if (!example.held_out)
-      for (const auto& photo : example.photos) {
-        sum += photo.count * photo.motion_px * photo.motion_px;
-        n += photo.count;
-      }
+    for (const auto& photo : example.photos) {
+      sum += photo.count * photo.motion_px * photo.motion_px;
+      n += photo.count;
+    }
   return n > 0.0 ? std::sqrt(sum / n) : 0.0;
 }
 

@@ -74,7 +74,7 @@ struct Evaluation {
   double chi(bool held_out) const;         ///< root mean square of photo residuals over noise
   double linear_chi(bool held_out) const;  ///< the same from linear_r2 (needs pictures)
   double rms_px(bool held_out) const;      ///< of the residual displacement (needs pictures)
-  double motion_px() const;  ///< the same, cruder, of fitted photos (needs registered)
+  double motion_px() const;  ///< the same, cruder, of all photos here (needs registered)
 };
 
 /// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.

@@ -14,11 +14,33 @@ namespace hookeye {
 
 namespace {
 
+/// Which examples move which parameters.
+struct Scope {
+  bool held_out = false;     ///< the held-out examples, not the fitted ones
+  std::vector<bool> moving;  ///< by parameter
+  void choose(EvaluationOptions& options) const {
+    options.fitted = !held_out;
+    options.held_out = held_out;
+  }
+  /// A parameter that stands still has no column: condense() leaves such where they are.
+  NormalEquations of(const Evaluation& evaluation) const {
+    NormalEquations sums = normal_equations(evaluation, held_out);
+    sums.JtJ = part_of(sums.JtJ, moving);
+    for (Eigen::Index i = 0; i < sums.Jtr.size(); ++i)
+      if (!moving[i]) sums.Jtr[i] = 0.0;
+    return sums;
+  }
+};
+
 class ReducedCost final : public ceres::CostFunction {
  public:
-  ReducedCost(Workspace& workspace, const ModelForm& form, const Scaling& scaling,
-              EvaluationOptions options)
-      : workspace_(workspace), form_(form), scaling_(scaling), options_(std::move(options)) {
+  ReducedCost(Workspace& workspace, const ModelForm& form, const Scope& scope,
+              const Scaling& scaling, EvaluationOptions options)
+      : workspace_(workspace),
+        form_(form),
+        scope_(scope),
+        scaling_(scaling),
+        options_(std::move(options)) {
     set_num_residuals(form.size() + 1);
     mutable_parameter_block_sizes()->push_back(form.size());
   }
@@ -33,7 +55,7 @@ class ReducedCost final : public ceres::CostFunction {
         failure_ = *failure;
         return false;
       }
-      cached_ = condense(normal_equations(std::get<Evaluation>(result)), scaling_.dp_dx(p));
+      cached_ = condense(scope_.of(std::get<Evaluation>(result)), scaling_.dp_dx(p));
       cached_x_ = x;
     }
     Eigen::Map<VectorXd>(r, x.size()) = cached_.z;
@@ -54,6 +76,7 @@ class ReducedCost final : public ceres::CostFunction {
  private:
   Workspace& workspace_;
   const ModelForm& form_;
+  const Scope& scope_;
   const Scaling& scaling_;
   EvaluationOptions options_;
   mutable VectorXd cached_x_;
@@ -65,13 +88,16 @@ class ReducedCost final : public ceres::CostFunction {
 struct Stage {
   int level = 0;
   bool registered = false;
+  bool always = false;
   std::string name() const {
     if (level > 0) return fmt::format("1/{} size", 1 << level);
     return registered ? "motion" : "full size";
   }
   /// Beyond kLinearPx Gauss-Newton on pixels creeps, and on the motion between the pictures it does
   /// not.
-  bool serves(double motion_px) const { return level > 0 || registered == (motion_px > kLinearPx); }
+  bool serves(double motion_px) const {
+    return always || level > 0 || registered == (motion_px > kLinearPx);
+  }
 };
 
 class Reporter final : public ceres::IterationCallback {
@@ -158,8 +184,11 @@ struct Look {
 };
 
 std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
-                                          const VectorXd& p, const FitOptions& options, int level) {
-  auto seen = workspace.evaluate(form, p, only_pictures(level, options));
+                                          const VectorXd& p, const FitOptions& options,
+                                          const Scope& scope, int level) {
+  EvaluationOptions pictures_alone = only_pictures(level, options);
+  scope.choose(pictures_alone);
+  auto seen = workspace.evaluate(form, p, pictures_alone);
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
   const Evaluation& pictures = std::get<Evaluation>(seen);
   return Look{misfit_scale(pictures), photo_count(pictures), pictures.motion_px()};
@@ -167,10 +196,11 @@ std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm&
 
 std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
                                                       const VectorXd& start,
-                                                      const FitOptions& options, Stage stage,
-                                                      const Look& seen) {
+                                                      const FitOptions& options, const Scope& scope,
+                                                      Stage stage, const Look& seen) {
   const int level = stage.level;
   EvaluationOptions evaluation;
+  scope.choose(evaluation);
   evaluation.level = level;
   evaluation.registered = stage.registered;
   evaluation.cancel = options.cancel;
@@ -178,7 +208,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
 
   const Scaling scaling{form.parameters()};
   VectorXd x = scaling.to_x(start);
-  ReducedCost cost(workspace, form, scaling, evaluation);
+  ReducedCost cost(workspace, form, scope, scaling, evaluation);
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(problem_options);
@@ -198,6 +228,11 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   // of a parameter's standard error.
   solver.function_tolerance = level > 0 ? 1e-4 : stage.registered ? 1e-3 : 1e-6;
   solver.parameter_tolerance = 1e-7;
+  // Levenberg's damping in units of what matters: the first step moves what the photos hardly fix
+  // (the tilt of a flat body under one camera) by little, and each success by three times more.
+  // Freed at once, such a direction would take up the others' misfit and turn the body over.
+  solver.jacobi_scaling = false;
+  solver.min_lm_diagonal = solver.initial_trust_region_radius;
   solver.logging_type = ceres::SILENT;
   solver.max_num_consecutive_invalid_steps = 8;
   Reporter reporter(options, cost, stage, seen.count, std::min(seen.misfit, 30.0),
@@ -254,42 +289,71 @@ std::vector<Stage> stages(const Scene& scene, bool coarse_to_fine) {
   for (int level : {5, 3})
     if (coarse_to_fine && (smallest >> level) >= 12) all.push_back({level, false});
   all.push_back({0, true});
-  all.push_back({0, false});
+  // Contours lead silhouettes home; the areas, which bound what a stray contour may do, decide.
+  bool images = false;
+  for (const auto& example : scene.capture.examples)
+    for (const auto& photo : example.photos) images |= photo.kind == PhotoSpec::Kind::image;
+  all.push_back({0, false, !images});
   return all;
 }
 
-}  // namespace
-
-std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
-                                           const VectorXd& start, const FitOptions& options) {
-  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
-  if (find_additive(form, start).ingredient >= 0)
-    return fit_convex_to_end(workspace, form, start, options);
-  VectorXd p = start;
-  int iterations = 0;
-  bool converged = true;
+/// From coarse to full size within a scope.
+std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& start,
+                                                       const FitOptions& options,
+                                                       const Scope& scope) {
+  StageResult out{start, true, 0};
   std::optional<Look> full_size;  // of p
   for (const Stage& stage : stages(workspace.scene(), options.coarse_to_fine)) {
-    if (form.size() == 0) break;
     if (stage.level > 0 || !full_size) {
-      auto first = look(workspace, form, p, options, stage.level);
+      auto first = look(workspace, form, out.p, options, scope, stage.level);
       if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
       full_size = std::get<Look>(first);
     }
     const Look seen = *full_size;
     if (!stage.serves(seen.motion_px)) continue;
     full_size.reset();
-    auto ran = run_stage(workspace, form, p, options, stage, seen);
+    auto ran = run_stage(workspace, form, out.p, options, scope, stage, seen);
     if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
     const auto& result = std::get<StageResult>(ran);
-    p = result.p;
-    iterations += result.iterations;
-    if (stage.level == 0) converged = result.converged;
+    out.p = result.p;
+    out.iterations += result.iterations;
+    if (stage.level == 0) out.converged = result.converged;
   }
-  auto fitted = assess(workspace, form, p, options);
+  return out;
+}
+
+}  // namespace
+
+std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
+                                                         const ModelForm& form, const VectorXd& p,
+                                                         const FitOptions& options) {
+  const Scope scope{true, of_held_out(form.scene->capture, form.parameters())};
+  if (std::none_of(scope.moving.begin(), scope.moving.end(), [](bool own) { return own; }))
+    return p;
+  auto settled = run_stages(workspace, form, p, options, scope);
+  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
+  return std::get<StageResult>(settled).p;
+}
+
+std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
+                                           const VectorXd& start, const FitOptions& options) {
+  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+  if (find_additive(form, start).ingredient >= 0)
+    return fit_convex_to_end(workspace, form, start, options);
+  StageResult result{start, true, 0};
+  if (form.size() > 0) {
+    const Scope scope{false, std::vector<bool>(form.size(), true)};
+    auto ran = run_stages(workspace, form, start, options, scope);
+    if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
+    result = std::get<StageResult>(std::move(ran));
+  }
+  auto settled = settle_held_out(workspace, form, result.p, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
+  auto fitted = assess(workspace, form, std::get<VectorXd>(settled), options);
   if (auto* out = std::get_if<Fitted>(&fitted)) {
-    out->iterations = iterations;
-    out->converged = converged;
+    out->iterations = result.iterations;
+    out->converged = result.converged;
   }
   return fitted;
 }

@@ -58,6 +58,12 @@ struct Fitted {
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options = {});
 
+/// p with the numbers that concern held-out examples alone (Parameter::example) fitted to those,
+/// all others as they are. fit() ends with it.
+std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
+                                                         const ModelForm& form, const VectorXd& p,
+                                                         const FitOptions& options = {});
+
 /// The starting point again without moving anything: pictures, intervals, what is undetermined.
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options = {});

@@ -81,7 +81,8 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
       const SmoothPart aligned = smooth_part(photo.aligned, degree);
       cells -= aligned.explained;
       cell_count -= aligned.numbers;
-      for (const auto& cell : photo.aligned.cells) cells += cell.z.squaredNorm(), cell_count += 3.0;
+      for (const auto& cell : photo.aligned.cells)
+        cells += cell.z.squaredNorm(), cell_count += cell.known;
       inflation += flow_statistics(photo.aligned).inflation;
       photos += 1.0;
     }

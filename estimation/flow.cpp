@@ -1,6 +1,7 @@
 #include "estimation/flow.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -38,6 +39,11 @@ FlowCell solve_cell(const CellSums& sums, int column, int row) {
   cell.information = sums.A;
   cell.r2 = sums.r2;
   // A weak direction has no estimate, but A + tiny keeps z defined.
+  constexpr double kKnown =
+      1e-6;  // of all information: a contour tells nothing of motions along it
+  const Eigen::Vector3d information =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sums.A, Eigen::EigenvaluesOnly).eigenvalues();
+  cell.known = static_cast<int>((information.array() > kKnown * sums.A.trace()).count());
   const Eigen::Matrix3d A = sums.A + 1e-9 * sums.A.trace() * Eigen::Matrix3d::Identity();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(A);
   cell.z = eigen.operatorInverseSqrt() * sums.b;
@@ -50,7 +56,7 @@ FlowCell solve_cell(const CellSums& sums, int column, int row) {
 
 }  // namespace
 
-FlowField residual_flow(const Image& model, const Image& residual, const Image& sigma,
+FlowField residual_flow(const Image& model, const Image& residual, const Image& sigma, bool gain,
                         int cell_px) {
   FlowField field;
   field.cell_px = cell_px;
@@ -61,7 +67,7 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
       const Eigen::Vector2d g = gradient(model, residual, x, y);
       if (!g.allFinite()) continue;
       const double s = sigma.at(x, y);
-      const Eigen::Vector3d d(g.x() / s, g.y() / s, model.at(x, y) / s);
+      const Eigen::Vector3d d(g.x() / s, g.y() / s, gain ? model.at(x, y) / s : 0.0);
       CellSums& sums = cells[{y / cell_px, x / cell_px}];
       const double r = residual.at(x, y);
       sums.A += d * d.transpose();
@@ -70,8 +76,10 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
       sums.position += Eigen::Vector2d(x, y);
       ++sums.pixels;
     }
+  // A quarter of the cell at least, of a band along a contour an eighth.
+  const int least = cell_px * cell_px / (gain ? 4 : 8);
   for (const auto& [index, sums] : cells)
-    if (sums.pixels >= cell_px * cell_px / 4 && sums.A.trace() > 0.0)
+    if (sums.pixels >= least && sums.A.trace() > 0.0)
       field.cells.push_back(solve_cell(sums, index.second, index.first));
   return field;
 }
@@ -94,7 +102,7 @@ FlowStatistics flow_statistics(const FlowField& flow) {
   for (const auto& cell : flow.cells) {
     at[{cell.row, cell.column}] = &cell;
     out.variance += cell.z.squaredNorm();
-    out.count += 3.0;
+    out.count += cell.known;
   }
   if (out.count == 0.0) return out;
   out.variance /= out.count;
@@ -109,7 +117,7 @@ FlowStatistics flow_statistics(const FlowField& flow) {
           const auto other = at.find({cell.row + dy, cell.column + dx});
           if (other == at.end()) continue;
           ring_product += cell.z.dot(other->second->z);
-          pairs += 3.0;
+          pairs += std::min(cell.known, other->second->known);
         }
       }
     if (pairs == 0.0) break;

@@ -21,6 +21,7 @@ struct FlowCell {
   double explained;             ///< fall of sum r^2 in this cell by the estimate
   double r2;                    ///< sum r^2 in this cell
   bool reliable;                ///< both directions of u known to better than 1 px
+  int known;                    ///< directions of estimate that its pixels tell of, at most 3
 };
 
 struct FlowField {
@@ -30,13 +31,14 @@ struct FlowField {
   double rms_px() const;
 };
 
-/// `residual` = (model - photo)/sigma, NaN where a pixel does not count.
+/// `residual` = (model - photo)/sigma, NaN where a pixel does not count. Without `gain` a is not
+/// sought: a silhouette has no brightness.
 FlowField residual_flow(const Image& model, const Image& residual, const Image& sigma,
-                        int cell_px = 16);
+                        bool gain = true, int cell_px = 16);
 
 /// Correlation of z over the cells of one photo.
 struct FlowStatistics {
-  double count = 0;     ///< components of z
+  double count = 0;     ///< components of z (FlowCell::known)
   double variance = 0;  ///< mean z^2: 1 when only noise is left
   double inflation =
       1;  ///< sum over lags of cov(z): variance of smooth signatures over white noise

@@ -28,6 +28,19 @@ NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
   return sums;
 }
 
+std::vector<bool> of_held_out(const Capture& capture, const std::vector<Parameter>& parameters) {
+  std::vector<bool> own;
+  for (const auto& parameter : parameters)
+    own.push_back(parameter.example >= 0 && capture.examples[parameter.example].validate);
+  return own;
+}
+
+Eigen::MatrixXd part_of(const Eigen::MatrixXd& H, const std::vector<bool>& keep) {
+  VectorXd kept(keep.size());
+  for (size_t i = 0; i < keep.size(); ++i) kept[i] = keep[i] ? 1.0 : 0.0;
+  return kept.asDiagonal() * H * kept.asDiagonal();
+}
+
 CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
   const Eigen::MatrixXd H = scale.asDiagonal() * sums.JtJ * scale.asDiagonal();
   const VectorXd g = scale.cwiseProduct(sums.Jtr);
@@ -74,16 +87,19 @@ Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
   if (n == 0) return H;  // nothing may move: a model that is only looked at
   for (const auto& example : evaluation.examples) {
-    if (example.held_out) continue;
-    for (const auto& photo : example.photos) {
-      const Eigen::MatrixXd Hk = photo.sums.JtJ.topLeftCorner(n, n);
-      H += Hk;
-      V += flow_statistics(photo.flow).inflation * Hk;
-    }
+    std::vector<bool> counts(n, !example.held_out);
+    for (int i = 0; i < n; ++i)
+      if (parameters[i].example == example.example) counts[i] = true;
+    auto add = [&](const Eigen::MatrixXd& Hk, double inflation) {
+      const Eigen::MatrixXd counted = part_of(Hk, counts);
+      H += counted;
+      V += inflation * counted;
+    };
+    for (const auto& photo : example.photos)
+      add(photo.sums.JtJ.topLeftCorner(n, n), flow_statistics(photo.flow).inflation);
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd J = measured.J.leftCols(n);
-      H += J.transpose() * J;
-      V += std::max(1.0, measured.r.squaredNorm() / 3.0) * J.transpose() * J;
+      add(J.transpose() * J, std::max(1.0, measured.r.squaredNorm() / 3.0));
     }
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();

@@ -41,6 +41,11 @@ struct NormalEquations {
 };
 NormalEquations normal_equations(const Evaluation& evaluation, bool held_out = false);
 
+/// For every parameter, whether it concerns a held-out example alone: nothing but that fixes it.
+std::vector<bool> of_held_out(const Capture& capture, const std::vector<Parameter>& parameters);
+/// The rows and columns of H where `keep` is set; zero elsewhere.
+Eigen::MatrixXd part_of(const Eigen::MatrixXd& H, const std::vector<bool>& keep);
+
 /// (z, rho) with Jacobian (R, 0): R^T R = J^T J, R^T z = J^T r, rho^2 = |r|^2 - |z|^2. R from the
 /// eigenvectors, so that singular directions cost nothing and stay put.
 struct CondensedResidual {
@@ -54,8 +59,9 @@ CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale);
 
 /// Covariance H^-1 (sum_k lambda_k H_k) H^-1 of the first `size` parameters: lambda_k is how much
 /// the variance of a smooth signature in photo k exceeds that under white noise (flow.h).
-/// Directions without information are left out (pseudo-inverse).
-/// With `keep_undetermined` they stay in, with a standard deviation of 30 times what matters.
+/// Directions without information are left out (pseudo-inverse). Numbers of a held-out example
+/// alone have what its photos say of them with the model as it is. With `keep_undetermined` they
+/// stay in, with a standard deviation of 30 times what matters.
 Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
                                      const std::vector<Parameter>& parameters, const VectorXd& p,
                                      std::vector<std::string>* undetermined,

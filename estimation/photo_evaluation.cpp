@@ -164,10 +164,8 @@ void add_reference_photo(const Camera& camera, const Matrix3Xd& x_reference,
 }
 
 /// Where the photo shows something that is not the told background although the model has none
-/// there: such pixels count, else a body that left the model's silhouette would cost nothing. A
-/// binary silhouette's noise is that of rounding, a third of its contrast: the half decides there.
-bool shows_body(const PhotoPlane& photo, size_t i, double background, bool mask) {
-  if (mask) return photo.I.values[i] > 0.5f;
+/// there: such pixels count, else a body that left the model's silhouette would cost nothing.
+bool shows_body(const PhotoPlane& photo, size_t i, double background) {
   return std::abs(photo.I.values[i] - background) > 6.0 * photo.sigma.values[i];
 }
 
@@ -200,11 +198,13 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
   Comparison out;
   out.residual = Image{photo.I.width, photo.I.height, 1, {}};
   out.residual.values.assign(photo.I.pixels(), std::numeric_limits<float>::quiet_NaN());
+  const auto telling = mask ? telling_pixels(rendering.I, photo.I) : std::vector<unsigned char>();
   for (size_t i = 0; i < photo.I.pixels(); ++i) {
     if (!photo.valid.empty() && !photo.valid[i]) continue;
     const double coverage = rendering.coverage.values[i];
-    const bool counts = silhouette ? coverage > 0.0 || shows_body(photo, i, background, mask)
-                                   : coverage > 1.0 - 1e-6;
+    const bool counts = mask         ? telling[i] != 0
+                        : silhouette ? coverage > 0.0 || shows_body(photo, i, background)
+                                     : coverage > 1.0 - 1e-6;
     if (!counts) continue;
     const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
     out.residual.values[i] = static_cast<float>(r);
@@ -318,8 +318,11 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       one.r2 = comparison.r2;
       one.count = comparison.count;
       std::optional<Registration> registered;
-      if ((options.pictures || options.registered) && !mask_photo)
-        registered = register_pictures(rendering.I, photo.I, comparison.residual, sigma);
+      if (options.pictures || options.registered)
+        registered = mask_photo
+                         ? register_silhouettes(rendering.I, photo.I, photo.valid,
+                                                comparison.residual, sigma)
+                         : register_pictures(rendering.I, photo.I, comparison.residual, sigma);
       if (registered) one.motion_px = registered->rms_px;
       const Image& residual = registered ? registered->linear : comparison.residual;
       if (columns) {
@@ -339,9 +342,9 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       }
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);
       if (options.pictures) {
-        one.flow = residual_flow(rendering.I, residual, sigma);
-        one.aligned =
-            residual_flow(rendering.I, registered ? registered->residual : residual, sigma);
+        one.flow = residual_flow(rendering.I, residual, sigma, !mask_photo);
+        one.aligned = residual_flow(rendering.I, registered ? registered->residual : residual,
+                                    sigma, !mask_photo);
         one.linear_r2 = loss(residual, 0.0);
         one.triangle = std::move(rendering.triangle);
       }

@@ -31,8 +31,6 @@ float white_level(const Image& photo) {
   return std::max(sorted[high], 1e-4f);
 }
 
-/// Fourth-order central difference, as flow.cpp takes it: what is added to the residual here as
-/// gradient times motion is divided by the gradient there.
 float slope(const Image& model, int x, int y, int dx, int dy) {
   return (8.0f * (model.at(x + dx, y + dy) - model.at(x - dx, y - dy)) -
           (model.at(x + 2 * dx, y + 2 * dy) - model.at(x - 2 * dx, y - 2 * dy))) /
@@ -40,14 +38,13 @@ float slope(const Image& model, int x, int y, int dx, int dy) {
 }
 
 /// The search goes astray where the pictures differ in more than motion (rims, occlusions): a
-/// motion that does not lower the misfit of its cell is none. Nor is one below kLinear: pictures
-/// are linear in it already (a pattern of 6 px period to 0.2 %), and the interpolation that would
-/// take it out and put it back errs alike in all pixels of a kind, which a small signature adds up.
+/// motion that does not lower the misfit of its cell is none. Nor is one below kStillPx: the
+/// interpolation that would take it out and put it back errs alike in all pixels of a kind, which a
+/// small signature adds up.
 /// Returns the rms motion that is left.
 double drop_stray_motion(const Image& plain, const cv::Rect& box, const cv::Mat& flow,
                          Registration* out) {
   constexpr int kCell = 16;
-  constexpr double kLinear = 0.1;  // px
   double motion = 0.0, count = 0.0;
   for (int y0 = box.y; y0 < box.br().y; y0 += kCell)
     for (int x0 = box.x; x0 < box.br().x; x0 += kCell) {
@@ -63,7 +60,7 @@ double drop_stray_motion(const Image& plain, const cv::Rect& box, const cv::Mat&
           pixels += 1.0;
         }
       count += pixels;
-      if (after < before && moved > kLinear * kLinear * pixels) {
+      if (after < before && moved > kStillPx * kStillPx * pixels) {
         motion += moved;
         continue;
       }
@@ -102,6 +99,10 @@ cv::Mat find_flow(const Image& model, const Image& photo, const cv::Rect& box) {
 
 }  // namespace
 
+Eigen::Vector2d picture_slope(const Image& picture, int x, int y) {
+  return {slope(picture, x, y, 1, 0), slope(picture, x, y, 0, 1)};
+}
+
 Registration register_pictures(const Image& model, const Image& photo, const Image& residual,
                                const Image& sigma) {
   Registration out;
@@ -120,10 +121,10 @@ Registration register_pictures(const Image& model, const Image& photo, const Ima
       if (std::isnan(residual.at(x, y))) continue;
       // the model must move by -flow
       const cv::Vec2f& f = flow.at<cv::Vec2f>(y - box.y, x - box.x);
-      const float gx = slope(model, x, y, 1, 0), gy = slope(model, x, y, 0, 1);
+      const Eigen::Vector2d g = picture_slope(model, x, y);
       const float r = (moved.at<float>(y - box.y, x - box.x) - photo.at(x, y)) / sigma.at(x, y);
       out.residual.at(x, y) = r;
-      out.linear.at(x, y) = r - (gx * f[0] + gy * f[1]) / sigma.at(x, y);
+      out.linear.at(x, y) = r - static_cast<float>(g.x() * f[0] + g.y() * f[1]) / sigma.at(x, y);
     }
   out.rms_px = drop_stray_motion(residual, box, flow, &out);
   return out;

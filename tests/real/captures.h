@@ -37,15 +37,21 @@ void write_diffcal(const fs::path& data, const fs::path& capture, const Silicone
 /// Printed elastomer sheets pulled between jaws; silhouettes cut out of grey photos by brightness.
 struct TangoFrame {
   int frame = 0;
-  double left_px = 0;                 ///< where the stiff end meets the sheet
+  double left_px = 0, right_px = 0;   ///< where the stiff ends meet the sheet
   double stroke_mm = 0, force_N = 0;  ///< force as the load cell showed it
 };
 std::vector<TangoFrame> tango_frames(const fs::path& data, bool notched_sheet);
-/// Two holes: the left jaw's motion is fitted, the force told with `load_cell_zero_N` taken off.
-void write_tango_holes(const fs::path& data, const fs::path& capture,
-                       const std::vector<int>& frames, double load_cell_zero_N);
-/// Two notches: nothing is fitted; the left jaw moves as the photos' edges do.
-void write_tango_notched(const fs::path& data, const fs::path& capture,
-                         const std::vector<int>& frames, double mu_MPa);
+/// A sheet in tension: which frames, and what the capture tells of them.
+struct Tension {
+  std::vector<int> frames;
+  std::vector<int> held_out;       ///< of those: `use: validate`
+  double load_cell_zero_N = 0.17;  ///< taken off the told force (what it shows without load)
+  bool fit_jaw = true;             ///< false: moved as the photos' edges tell
+  std::string material = "{law: neo-hookean, mu: 0.3, kappa_over_mu: 100}";
+  std::string fit = "mu";  ///< names, comma-separated
+};
+void write_tango_holes(const fs::path& data, const fs::path& capture, const Tension& tension);
+/// The sheet with two notches; no force is told.
+void write_tango_notched(const fs::path& data, const fs::path& capture, const Tension& tension);
 
 }  // namespace hookeye::real

@@ -112,6 +112,12 @@ DicDifference compare_with_dic(const Case& openhole, const fs::path& data, int s
   return out;
 }
 
+double pull_N(const Case& sheet, int example) {
+  return -support_force(*sheet.fitted.evaluation.find(example)->equilibrium,
+                        sheet.scene->body->regions.at("left"))
+              .x();
+}
+
 double overlap(const Case& fitted, int example) {
   const Image& model = fitted.fitted.evaluation.find(example)->photos.at(0).model;
   const Photo& photo = fitted.scene->photos[example][0];

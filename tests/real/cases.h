@@ -34,6 +34,9 @@ struct DicDifference {
 };
 DicDifference compare_with_dic(const Case& openhole, const fs::path& data, int step);
 
+/// Force [N] that pulls the left end of a sheet in tension outwards.
+double pull_N(const Case& sheet, int example);
+
 /// Intersection over union of a silhouette with the model's, over the pixels that count.
 double overlap(const Case& fitted, int example);
 

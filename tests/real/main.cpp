@@ -66,8 +66,14 @@ void silicone(const fs::path& data, const fs::path& out, real::Silicone told) {
 
 void tango(const fs::path& data, const fs::path& out) {
   // No picture of these: the data has no licence.
-  real::write_tango_holes(data, out / "capture" / "tango", {20, 60}, 0.17);
-  print_parameters(real::fit_capture(out / "capture" / "tango"));
+  for (bool fit_jaw : {true, false}) {
+    const fs::path folder = out / "capture" / (fit_jaw ? "holes-jaw-fitted" : "holes-jaw-told");
+    real::Tension tension;
+    tension.frames = {10, 20, 40, 60};
+    tension.fit_jaw = fit_jaw;
+    real::write_tango_holes(data, folder, tension);
+    print_parameters(real::fit_capture(folder));
+  }
 }
 
 void run(const fs::path& data, const fs::path& out, const std::string& only) {

@@ -41,7 +41,7 @@ Hanging hang(const real::Silicone& silicone, const std::filesystem::path& folder
 TEST(Silicone, EcoflexBarFromOneSilhouette) {
   HOOKEYE_NEEDS_DATA(kData);
   const test::TemporaryFolder folder;
-  // The overlap reached is 0.9499: docs/real-data.md, "What is open".
+  // The overlap reached is 0.948: docs/real-data.md, "What is open".
   const Hanging bar = hang({}, folder.path());
   EXPECT_GT(bar.stiffness.value, 99.0);
   EXPECT_LT(bar.stiffness.value, 115.0);

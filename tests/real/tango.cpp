@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -66,31 +67,31 @@ std::string end(const char* name, double x) {
   return fmt::format("  {}: {{box: [[{}, -13, -3], [{}, 13, 1]]}}\n", name, x - 0.01, x + 0.01);
 }
 
-std::string heading(const Sheet& sheet, const std::string& title, const std::string& fit,
-                    double mu) {
+std::string heading(const Sheet& sheet, const std::string& title, const Tension& tension) {
   const double a = half_length(sheet);
   std::string text = fmt::format(
       "hookeye: 1\ntitle: {}\nunits: {{length: mm, force: N}}\n"
       "body:\n  volume: sheet.msh\n"
-      "model:\n  material: {{law: neo-hookean, mu: {:.8g}, kappa_over_mu: 100}}\n  fit: [{}]\n"
+      "model:\n  material: {}\n  fit: [{}]\n"
       "cameras:\n  front:\n    size: [484, 304]\n    projection: orthographic\n"
       "    intrinsics: {{scale: {}, cx: {:.4f}, cy: {:.4f}}}\n"
       "    pose: {{rotation: [[1, 0, 0], [0, -1, 0], [0, 0, -1]], translation: [0, 0, 300]}}\n"
       "regions:\n",
-      title, mu, fit, kScale / kQuarter,
+      title, tension.material, tension.fit, kScale / kQuarter,
       (0.5 * (sheet.left_px + sheet.right_px) + 0.5) / kQuarter - 0.5,
       (sheet.middle_px + 0.5) / kQuarter - 0.5);
   return text + end("left", -a) + end("right", a) + "examples:\n";
 }
 
 /// The dark sheet, at a quarter of the size, where rims are grey by coverage. Its right end stands
-/// still, so that the seed lies in it in every frame; left of `left_px` the stiff end is shaded as
-/// darkly as the rim and leads on to the jaw.
-void write_silhouette(const fs::path& photo, const fs::path& file, double left_px) {
+/// still, so that the seed lies in it in every frame; beyond its edges the stiff ends are shaded as
+/// darkly as the rim and lead on to the jaws.
+void write_silhouette(const fs::path& photo, const fs::path& file, const TangoFrame& at) {
   Image stored = stored_values(photo);
   for (int y = 0; y < stored.height; ++y)
-    for (int x = 0; x < left_px; ++x)
-      for (int c = 0; c < stored.channels; ++c) stored.at(x, y, c) = 1.0f;
+    for (int x = 0; x < stored.width; ++x)
+      if (x < at.left_px || x > at.right_px)
+        for (int c = 0; c < stored.channels; ++c) stored.at(x, y, c) = 1.0f;
   const Image full = silhouette(stored, 1750, 525, [](const float* p) { return p[0] < 0.57f; });
   write_image(file, halved(halved(full)));
 }
@@ -115,47 +116,56 @@ std::vector<TangoFrame> tango_frames(const fs::path& data, bool notched_sheet) {
     numbers >> frame >> left >> right >> gap >> one.stroke_mm >> one.force_N;
     one.frame = static_cast<int>(frame);
     one.left_px = left;
+    one.right_px = right;
     if (numbers) frames.push_back(one);
   }
   return frames;
 }
 
-void write_tango_holes(const fs::path& data, const fs::path& capture,
-                       const std::vector<int>& frames, double load_cell_zero_N) {
+namespace {
+
+std::string example(const Sheet& sheet, const fs::path& data, const fs::path& capture,
+                    const Tension& tension, const TangoFrame& at, bool force) {
+  const std::string photo = fmt::format("f{:03d}.png", at.frame);
+  write_silhouette(data / sheet.folder / photo, capture / "photos" / photo, at);
+  std::string text = fmt::format("  f{:03d}:\n", at.frame);
+  if (std::count(tension.held_out.begin(), tension.held_out.end(), at.frame))
+    text += "    use: validate\n";
+  const std::string jaw = tension.fit_jaw
+                              ? "rigid: fit"
+                              : fmt::format("move: {{x: {:.4f}, y: 0, z: 0}}", -at.stroke_mm);
+  text += fmt::format(
+      "    supports: [{{region: right, fix: [x, y, z]}}, {{region: left, {}}}]\n"
+      "    photos: {{front: {{file: photos/{}, kind: silhouette}}}}\n",
+      jaw, photo);
+  if (force)
+    text += fmt::format("    measured: [{{force_on: left, value: [{:.4f}, 0, 0], sigma: 0.03}}]\n",
+                        -(at.force_N - tension.load_cell_zero_N));
+  return text;
+}
+
+void write_sheet(const Sheet& sheet, const Plate& plate, const std::string& title,
+                 const fs::path& data, const fs::path& capture, const Tension& tension,
+                 bool force) {
   fs::create_directories(capture / "photos");
-  write_plate(capture / "sheet.msh", two_holes());
-  std::string text = heading(kTwoHoles, "elastomer sheet with two holes", "mu", 0.3);
-  const auto measured = tango_frames(data, false);
-  for (int frame : frames) {
-    const std::string photo = fmt::format("f{:03d}.png", frame);
-    const TangoFrame& at = frame_of(measured, frame);
-    write_silhouette(data / kTwoHoles.folder / photo, capture / "photos" / photo, at.left_px);
-    text += fmt::format(
-        "  f{:03d}:\n    supports: [{{region: right, fix: [x, y, z]}}, {{region: left, rigid: "
-        "fit}}]\n    photos: {{front: {{file: photos/{}, kind: silhouette}}}}\n"
-        "    measured: [{{force_on: left, value: [{:.4f}, 0, 0], sigma: 0.03}}]\n",
-        frame, photo, -(at.force_N - load_cell_zero_N));
-  }
+  write_plate(capture / "sheet.msh", plate);
+  std::string text = heading(sheet, title, tension);
+  const auto measured = tango_frames(data, &sheet == &kNotched);
+  for (int frame : tension.frames)
+    text += example(sheet, data, capture, tension, frame_of(measured, frame), force);
   std::ofstream(capture / "capture.yaml") << text;
 }
 
-void write_tango_notched(const fs::path& data, const fs::path& capture,
-                         const std::vector<int>& frames, double mu_MPa) {
-  fs::create_directories(capture / "photos");
-  write_plate(capture / "sheet.msh", notched());
-  std::string text = heading(kNotched, "elastomer sheet with two notches", "", mu_MPa);
-  const auto measured = tango_frames(data, true);
-  for (int frame : frames) {
-    const std::string photo = fmt::format("f{:03d}.png", frame);
-    const TangoFrame& at = frame_of(measured, frame);
-    write_silhouette(data / kNotched.folder / photo, capture / "photos" / photo, at.left_px);
-    text += fmt::format(
-        "  f{:03d}:\n    supports: [{{region: right, fix: [x, y, z]}}, {{region: left, move: "
-        "{{x: {:.4f}, y: 0, z: 0}}}}]\n"
-        "    photos: {{front: {{file: photos/{}, kind: silhouette}}}}\n",
-        frame, -at.stroke_mm, photo);
-  }
-  std::ofstream(capture / "capture.yaml") << text;
+}  // namespace
+
+void write_tango_holes(const fs::path& data, const fs::path& capture, const Tension& tension) {
+  write_sheet(kTwoHoles, two_holes(), "elastomer sheet with two holes", data, capture, tension,
+              true);
+}
+
+void write_tango_notched(const fs::path& data, const fs::path& capture, const Tension& tension) {
+  write_sheet(kNotched, notched(), "elastomer sheet with two notches", data, capture, tension,
+              false);
 }
 
 }  // namespace hookeye::real

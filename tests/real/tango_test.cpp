@@ -1,0 +1,69 @@
+// Printed elastomer sheets in tension: silhouettes and grip forces, a modulus from one sheet,
+// another sheet predicted with it.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "real/cases.h"
+#include "support/shared_data.h"
+#include "support/temporary_folder.h"
+
+namespace hookeye {
+namespace {
+
+const char* const kData = "real/tango_elastomer_sheet";
+constexpr double kExpectedMu = 0.2065;  // MPa, the data's README
+
+real::Case two_holes(const real::Tension& tension, const std::filesystem::path& folder) {
+  real::write_tango_holes(test::shared_data() / kData, folder, tension);
+  return real::fit_capture(folder);
+}
+
+TEST(ElastomerSheet, ShearModulusFromTwoHoles) {
+  HOOKEYE_NEEDS_DATA(kData);
+  for (bool fit_jaw : {false, true}) {
+    const test::TemporaryFolder folder;
+    real::Tension tension;
+    tension.frames = {10, 20, 40, 60};
+    tension.fit_jaw = fit_jaw;
+    const auto mu = two_holes(tension, folder.path()).parameter("mu");
+    fmt::print("jaw {}: mu {:.5f} ({:.5f} .. {:.5f}) MPa\n", fit_jaw ? "fitted" : "told", mu.value,
+               mu.low, mu.high);
+    EXPECT_NEAR(mu.value, kExpectedMu, 0.03 * kExpectedMu);
+  }
+}
+
+/// The other sheet, with the modulus of the first and nothing fitted.
+TEST(ElastomerSheet, NotchedSheetIsPredicted) {
+  HOOKEYE_NEEDS_DATA(kData);
+  const auto data = test::shared_data() / kData;
+  const test::TemporaryFolder holes, notches;
+  real::Tension tension;
+  tension.frames = {10, 20, 40, 60};
+  tension.fit_jaw = false;
+  const double mu = two_holes(tension, holes.path()).parameter("mu").value;
+  tension.frames = {20, 40, 60};
+  tension.material = fmt::format("{{law: neo-hookean, mu: {}, kappa_over_mu: 100}}", mu);
+  tension.fit = "";
+  real::write_tango_notched(data, notches.path(), tension);
+  const real::Case sheet = real::fit_capture(notches.path());
+  for (const auto& frame : real::tango_frames(data, true)) {
+    const int e = sheet.scene->example_index(fmt::format("f{:03d}", frame.frame));
+    if (e < 0) continue;
+    const double predicted = real::pull_N(sheet, e);
+    const double measured = frame.force_N - tension.load_cell_zero_N;
+    const Image& model = sheet.fitted.evaluation.find(e)->photos.at(0).model;
+    const double mouth = real::mouth_px(model, 2),
+                 seen = real::mouth_px(sheet.scene->photos[e][0].planes[0], 2);
+    fmt::print(
+        "frame {}: {:.3f} N where {:.3f} N were measured; mouth {:.1f} px, photo {:.1f} px\n",
+        frame.frame, predicted, measured, mouth, seen);
+    EXPECT_NEAR(predicted, measured, 0.05 * measured);
+    // A pixel here is 0.16 mm; the notch is 3 px wide at rest.
+    EXPECT_NEAR(mouth, seen, 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace hookeye
