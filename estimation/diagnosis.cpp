@@ -67,6 +67,11 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
   return all;
 }
 
+bool sensors_alone(const Ingredient& ingredient) {
+  const Touches touches = ingredient.touches();
+  return touches.measured && !touches.energy && !touches.loading && !touches.photos;
+}
+
 /// Evidence of every effect from its candidates' evidence.
 std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
                                         const VectorXd& evidence) {
@@ -340,6 +345,14 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   }
   const std::vector<double> null = simulate_null(candidates, projected, sums, options);
   if (!null.empty()) out.gate = null[static_cast<size_t>(0.95 * (null.size() - 1))];
+
+  // The null is at the floor, where one noise holds for all; a misfit of the photos is none of the
+  // sensors'.
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (sensors_alone(*candidates[i].ingredient) && sums.measured.count > 0.0)
+      evidence[i] = log_evidence(project(sums.measured.H, base, candidates[i].hypothesis),
+                                 sums.measured.s, without_base(sums.measured, base),
+                                 sums.measured.count, sums.measured.floor2);
 
   const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
   std::map<std::string, size_t> best;

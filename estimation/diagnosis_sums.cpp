@@ -32,14 +32,20 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
       out.null_noise += w * w * floor.cell_inflation * photo.sums.JtJ;
     }
   out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
+  const double photo_noise =
+      std::max(out.effective.floor2, out.effective.r2 / std::max(out.effective.count, 1.0));
+  out.measured.H = out.effective.H / photo_noise;
+  out.measured.s = out.effective.s / photo_noise;
   for (const auto& example : evaluation.examples) {
     if (example.held_out) continue;
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd JtJ = measured.J.transpose() * measured.J;
-      out.effective.H += JtJ;
-      out.effective.s += measured.J.transpose() * measured.r;
-      out.effective.r2 += measured.r.squaredNorm();
-      out.effective.count += 3.0;
+      for (EffectiveSums* sums : {&out.effective, &out.measured}) {
+        sums->H += JtJ;
+        sums->s += measured.J.transpose() * measured.r;
+        sums->r2 += measured.r.squaredNorm();
+        sums->count += 3.0;
+      }
       out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
       out.null_noise += JtJ;
     }

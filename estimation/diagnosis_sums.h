@@ -11,6 +11,9 @@ namespace hookeye {
 /// covariance of the score under noise correlated as the residual is.
 struct DiagnosisSums {
   EffectiveSums effective;
+  /// For what changes sensors alone: the residuals are those of forces, moments and positions, in
+  /// their told noise; photos, in the noise that their misfit shows, only hold the model in place.
+  EffectiveSums measured;
   Eigen::MatrixXd noise;             ///< covariance of effective.s, correlated as this residual is
   Eigen::MatrixXd null_noise;        ///< the same when only the floor is left
   NormalEquations fitted, held_out;  ///< plain pixel sums

@@ -37,6 +37,10 @@ DicDifference compare_with_dic(const Case& openhole, const fs::path& data, int s
 /// Force [N] that pulls the left end of a sheet in tension outwards.
 double pull_N(const Case& sheet, int example);
 
+/// Prints how neo-Hooke, Yeoh, Ogden and the additive model fit the sheet with two holes and
+/// predict the one with two notches; captures go to `out`.
+void compare_laws(const fs::path& data, const fs::path& out);
+
 /// Intersection over union of a silhouette with the model's, over the pixels that count.
 double overlap(const Case& fitted, int example);
 

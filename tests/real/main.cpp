@@ -85,13 +85,15 @@ void run(const fs::path& data, const fs::path& out, const std::string& only) {
   if (wanted("red")) silicone(data / "diffcal_silicone", out, red);
   if (wanted("blue")) silicone(data / "diffcal_silicone", out, blue);
   if (wanted("tango")) tango(data / "tango_elastomer_sheet", out);
+  if (wanted("laws")) real::compare_laws(data / "tango_elastomer_sheet", out / "capture" / "laws");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 3 && argc != 4) {
-    fmt::print(stderr, "usage: real_data_figures SHARED_DATA/real OUT [openhole|red|blue|tango]\n");
+    fmt::print(stderr,
+               "usage: real_data_figures SHARED_DATA/real OUT [openhole|red|blue|tango|laws]\n");
     return 2;
   }
   try {

@@ -65,5 +65,25 @@ TEST(ElastomerSheet, NotchedSheetIsPredicted) {
   }
 }
 
+/// The load cell's zero is not told: forces do not rise from nought, and that is named although the
+/// photos have misfits of their own.
+TEST(ElastomerSheet, ForceZeroIsFound) {
+  HOOKEYE_NEEDS_DATA(kData);
+  const test::TemporaryFolder folder;
+  real::Tension tension;
+  tension.frames = {0, 10, 20, 40, 60};
+  tension.fit_jaw = false;
+  tension.load_cell_zero_N = 0.0;
+  real::Case sheet = two_holes(tension, folder.path());
+  const Diagnosis diagnosis = real::diagnose_case(sheet);
+  fmt::print("{}", real::table(diagnosis));
+  const auto zero = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                 [](const auto& one) { return one.effect == "force_zero"; });
+  ASSERT_NE(zero, diagnosis.effects.end());
+  EXPECT_TRUE(nameable(*zero, diagnosis));
+  // 0.15 N before the pull and 0.18 N after rupture, along the pull.
+  EXPECT_NEAR(zero->values[0], -0.165, 0.04);
+}
+
 }  // namespace
 }  // namespace hookeye
