@@ -1,0 +1,66 @@
+// An effect in two forms: what the fitted photos show most of, and what the held-out ones ask for.
+#include "estimation/refit.h"
+
+#include <gtest/gtest.h>
+
+#include "estimation/step_json.h"
+#include "tests/estimation/small_capture.h"
+
+namespace hookeye {
+namespace {
+
+/// All loads are turned alike; the scored form turns those of one example only.
+class TwoForms : public testing::Test {
+ protected:
+  void SetUp() override {
+    test::SmallCapture capture;
+    capture.same_renderer = true;
+    capture.hidden =
+        "hidden:\n  - {effect: load_direction, variant: \"in all\", values: "
+        "{load_direction.all.angle1: 0.08, load_direction.all.angle2: -0.06}}\n";
+    small_ = std::make_unique<test::SmallScene>(capture);
+    workspace_ = std::make_unique<Workspace>(small_->scene);
+    const ModelForm form = base_form(small_->scene);
+    base_ = std::get<Fitted>(fit(*workspace_, form, form.initial()));
+    score_ = form_of("in pull");
+    score_.other_form = std::make_shared<EffectScore>(form_of("in all"));
+  }
+  EffectScore form_of(const std::string& variant) const {
+    EffectScore score;
+    score.effect = "load_direction";
+    score.best = find_effect(score.effect)->candidate(base_.form.realise(base_.p), variant);
+    score.dof = static_cast<int>(score.best->parameters().size());
+    score.values = VectorXd::Constant(score.dof, 0.01);
+    score.base_step = VectorXd::Zero(base_.p.size());
+    score.standard_error = VectorXd::Constant(score.dof, 0.01);
+    return score;
+  }
+  std::unique_ptr<test::SmallScene> small_;
+  std::unique_ptr<Workspace> workspace_;
+  Fitted base_;
+  EffectScore score_;
+};
+
+TEST_F(TwoForms, TheOneThatGetsFartherIsRefitted) {
+  const auto result = add_effect(*workspace_, base_, score_, {});
+  ASSERT_TRUE(std::holds_alternative<Fitted>(result));
+  const Fitted& fitted = std::get<Fitted>(result);
+  ASSERT_EQ(fitted.form.ingredients.back()->variant(), "in all");
+  EXPECT_LT(fitted.evaluation.chi(false), 1.1);
+  EXPECT_LT(fitted.evaluation.chi(true), 1.1);
+  EXPECT_NEAR(fitted.p[fitted.p.size() - 3], 0.08, 0.005);
+  EXPECT_NEAR(fitted.p[fitted.p.size() - 2], -0.06, 0.005);
+}
+
+TEST_F(TwoForms, BothAreWrittenAndReadBack) {
+  Diagnosis diagnosis;
+  diagnosis.effects = {score_};
+  const Diagnosis again =
+      diagnosis_from_json(to_json(diagnosis), base_.form.realise(base_.p), "diagnosis.json");
+  ASSERT_TRUE(again.effects.at(0).other_form);
+  EXPECT_EQ(again.effects[0].other_form->best->variant(), "in all");
+  EXPECT_EQ(again.effects[0].other_form->values, score_.other_form->values);
+}
+
+}  // namespace
+}  // namespace hookeye
