@@ -85,8 +85,12 @@ class Interior : public testing::TestWithParam<Setting> {
   std::vector<int> pixels;
 };
 
-TEST_P(Interior, positions) {
-  if (!GetParam().smooth) GTEST_SKIP() << "below: intensities jump between facets";
+/// Settings without jumps of intensity from facet to facet.
+class SmoothInterior : public Interior {};
+/// Settings whose texture is a photo of the body in a reference state.
+class PhotoInterior : public Interior {};
+
+TEST_P(SmoothInterior, positions) {
   const Rendering r = render(x, x_reference, state, true);
   choose_pixels(r);
   for (double phase : {0.0, 1.3}) {
@@ -118,8 +122,7 @@ TEST_P(Interior, positions_where_facets_matter) {
   EXPECT_LT(error[error.size() / 2], 2e-3 * numeric.cwiseAbs().mean());
 }
 
-TEST_P(Interior, reference) {
-  if (GetParam().source != Source::photo) GTEST_SKIP() << "no reference without a photo";
+TEST_P(PhotoInterior, reference) {
   const Rendering r = render(x, x_reference, state, true);
   choose_pixels(r);
   const Matrix3Xd u = test::field(surface.X, 0.4);
@@ -129,8 +132,7 @@ TEST_P(Interior, reference) {
                     analytic, 0.01, 1e-3, "reference");
 }
 
-TEST_P(Interior, photo_columns) {
-  if (!GetParam().smooth) GTEST_SKIP() << "as with smooth normals";
+TEST_P(SmoothInterior, photo_columns) {
   const Rendering r = render(x, x_reference, state, true);
   choose_pixels(r);
   for (int column = 0; column < kBlur; ++column) {
@@ -167,17 +169,22 @@ TEST_P(Interior, photo_columns) {
 
 constexpr auto kPerspective = Camera::Projection::perspective;
 constexpr auto kOrthographic = Camera::Projection::orthographic;
-INSTANTIATE_TEST_SUITE_P(all, Interior,
-                         testing::Values(Setting{Source::image, kPerspective, false, true},
-                                         Setting{Source::image, kPerspective, true, true},
-                                         Setting{Source::image, kOrthographic, false, true},
-                                         Setting{Source::photo, kPerspective, false, true},
-                                         Setting{Source::photo, kPerspective, true, true},
-                                         Setting{Source::photo, kOrthographic, false, true},
-                                         Setting{Source::uniform, kPerspective, false, true},
-                                         Setting{Source::uniform, kOrthographic, false, true},
-                                         Setting{Source::uniform, kPerspective, true, true},
-                                         Setting{Source::image, kPerspective, false, false}),
+const auto kPhotos = testing::Values(Setting{Source::photo, kPerspective, false, true},
+                                     Setting{Source::photo, kPerspective, true, true},
+                                     Setting{Source::photo, kOrthographic, false, true});
+const auto kShaded = testing::Values(Setting{Source::image, kPerspective, false, true},
+                                     Setting{Source::image, kPerspective, true, true},
+                                     Setting{Source::image, kOrthographic, false, true},
+                                     Setting{Source::uniform, kPerspective, false, true},
+                                     Setting{Source::uniform, kOrthographic, false, true},
+                                     Setting{Source::uniform, kPerspective, true, true});
+INSTANTIATE_TEST_SUITE_P(photo, PhotoInterior, kPhotos, name_of);
+INSTANTIATE_TEST_SUITE_P(photo, SmoothInterior, kPhotos, name_of);
+INSTANTIATE_TEST_SUITE_P(shaded, SmoothInterior, kShaded, name_of);
+INSTANTIATE_TEST_SUITE_P(photo, Interior, kPhotos, name_of);
+INSTANTIATE_TEST_SUITE_P(shaded, Interior, kShaded, name_of);
+INSTANTIATE_TEST_SUITE_P(flat, Interior,
+                         testing::Values(Setting{Source::image, kPerspective, false, false}),
                          name_of);
 
 TEST(normals, derivative) {
