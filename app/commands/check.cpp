@@ -139,11 +139,7 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
               scene.body->surface.mesh.triangles.size());
   std::vector<std::vector<std::string>> rows{{"law", "region", "parameters"}};
   for (const auto& material : d["materials"])
-    rows.push_back({material["law"],
-                    material["region"].get<std::string>().empty()
-                        ? std::string("whole body")
-                        : material["region"].get<std::string>(),
-                    material["text"]});
+    rows.push_back({material["law"], material["where"], material["text"]});
   session.say("\nmaterial\n{}", table(rows));
   rows = {{"fitted", "unit", "start", "meaning"}};
   for (const auto& p : d["parameters"])
@@ -197,8 +193,20 @@ Json describe_materials(const Capture& capture) {
       values[p.name] = p.value;
       text += fmt::format("{}{} {:.6g} {}", text.empty() ? "" : ", ", p.name, p.value, p.unit);
     }
-    materials.push_back(
-        {{"law", spec.law}, {"region", spec.region}, {"values", values}, {"text", text}});
+    materials.push_back({{"law", spec.law},
+                         {"region", spec.region},
+                         {"where", spec.region.empty() ? "whole body" : spec.region},
+                         {"values", values},
+                         {"text", text}});
+    if (!spec.blend) continue;
+    const auto& along = spec.blend->along;
+    materials.back()["blend"] = {{"along", {along.x(), along.y(), along.z()}},
+                                 {"at", spec.blend->at},
+                                 {"weight", spec.blend->weight}};
+    materials.back()["where"] =
+        fmt::format("{}: weight {:.4g} at {:.4g} along ({:.2f}, {:.2f}, {:.2f})", spec.region,
+                    fmt::join(spec.blend->weight, ", "), fmt::join(spec.blend->at, ", "), along.x(),
+                    along.y(), along.z());
   }
   return materials;
 }
