@@ -67,11 +67,6 @@ std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& opt
   return all;
 }
 
-bool sensors_alone(const Ingredient& ingredient) {
-  const Touches touches = ingredient.touches();
-  return touches.measured && !touches.energy && !touches.loading && !touches.photos;
-}
-
 /// Evidence of every effect from its candidates' evidence.
 std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
                                         const VectorXd& evidence) {
@@ -309,9 +304,14 @@ void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
   }
 }
 
+bool sensors_alone(const Ingredient& ingredient) {
+  const Touches touches = ingredient.touches();
+  return touches.measured && !touches.energy && !touches.loading && !touches.photos;
+}
+
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
-         score.fall >= least_fall(diagnosis.floor);
+         ((score.best && sensors_alone(*score.best)) || score.fall >= least_fall(diagnosis.floor));
 }
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,

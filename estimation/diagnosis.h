@@ -86,7 +86,10 @@ constexpr int kPictured = 3;
 /// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
 /// correlation trusts its matches no further.
 double least_fall(const Floor& floor);
-/// Testable, above the simulated gate, and above the renderer's own errors.
+/// It changes what sensors show and nothing in the photos.
+bool sensors_alone(const Ingredient& ingredient);
+/// Testable, above the simulated gate, and, where it is seen in photos, above the renderer's own
+/// errors.
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 
 }  // namespace hookeye

@@ -291,7 +291,8 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
                         std::pow(winner.fitted.evaluation.chi(false), 2);
     if (winner.score < before + kNameable ||
         !held_out_allows(winner.fitted, step.fitted, step.diagnosis.floor) ||
-        fell < least_fall(step.diagnosis.floor))
+        (fell < least_fall(step.diagnosis.floor) &&
+         !sensors_alone(*winner.fitted.form.ingredients.back())))
       break;
     Step next;
     next.name = next.added = winner.effect;
