@@ -208,12 +208,16 @@ std::string grey_photographer(const fs::path& folder, const std::string& size) {
   return script;
 }
 
-/// Planes that no fitted example reaches are drawn past; a law drawn too soft to stand is scaled
-/// back.
+/// Planes that no fitted example reaches are drawn past: some of these seeds draw one first.
 TEST_F(SynthTest, WhatIsDrawnShowsInThePhotos) {
-  const auto plane =
-      make(recipe_text("hidden:\n  - {effect: floor_contact, rms_px: 0.2}\n", kFast), "plane");
-  EXPECT_NEAR(plane.hidden.at(0).rms_px, 0.2, 0.01);
+  for (const char* seed : {"1", "2", "3", "4", "5", "6"}) {
+    const std::string text =
+        replaced(recipe_text("hidden:\n  - {effect: floor_contact, rms_px: 0.2}\n", kFast),
+                 "seed: 3", std::string("seed: ") + seed);
+    const double shown = make(text, std::string("plane") + seed).hidden.at(0).rms_px;
+    EXPECT_GT(shown, 0.1) << seed;  // a plane that is touched late may not bring all of it
+    EXPECT_LT(shown, 0.21) << seed;
+  }
 }
 
 TEST_F(SynthTest, AnotherPhotographerTakesThePictures) {
