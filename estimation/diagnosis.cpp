@@ -196,10 +196,13 @@ EffectScore describe(const Context& context, const Candidate& candidate,
       candidate.hypothesis.first, candidate.hypothesis.first, score.dof, score.dof);
   const Eigen::MatrixXd inverse = weighted.M.completeOrthogonalDecomposition().pseudoInverse();
   score.standard_error = (inverse * V * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
-  score.why =
-      fmt::format("{} would remove {:.0f} % of the misfit{}",
-                  candidate.effect->sentence(context.model, *candidate.ingredient, score.values),
-                  100.0 * score.explains, where_seen(context.scene, context.evaluation, step));
+  const std::string sentence =
+      candidate.effect->sentence(context.model, *candidate.ingredient, score.values);
+  score.why = sensors_alone(*candidate.ingredient)
+                  ? sentence + "; seen in the measured forces, not in photos"
+                  : fmt::format("{} would remove {:.0f} % of the misfit{}", sentence,
+                                100.0 * score.explains,
+                                where_seen(context.scene, context.evaluation, step));
   return score;
 }
 
