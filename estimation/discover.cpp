@@ -138,27 +138,23 @@ bool out_of_reach(const Racer& rival, const Racer& winner) {
 }
 
 /// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
-/// two steps may still be right. A numerical error that comes near the first is refitted too,
-/// whatever its rank: nothing is named before the mesh is settled.
+/// two steps may still be right. So is a sensor's error, which moves no photo and so cannot win by
+/// them. A numerical error that comes near the first is refitted too, whatever its rank: nothing is
+/// named before the mesh is settled.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
-  racers.erase(std::remove_if(racers.begin() + 1, racers.end(),
-                              [&](const Racer& racer) {
-                                return racer.effect != first && out_of_reach(racer, racers.front());
-                              }),
-               racers.end());
-  if (static_cast<int>(racers.size()) <= most) return;
-  const auto at = std::find_if(racers.begin(), racers.end(),
-                               [&](const Racer& racer) { return racer.effect == first; });
-  if (at != racers.end() && at - racers.begin() >= most)
-    std::rotate(racers.begin() + most - 1, at, at + 1);
   const Racer winner = racers.front();
-  racers.erase(std::remove_if(racers.begin() + most, racers.end(),
-                              [&](const Racer& racer) {
-                                return !numerical(racer.effect) || !may_tie(racer, winner);
-                              }),
-               racers.end());
+  std::vector<Racer> kept;
+  int places = most;
+  for (const Racer& racer : racers) places -= racer.effect == first;
+  for (Racer& racer : racers) {
+    const bool held = racer.effect == first || sensors_alone(*racer.form.ingredients.back());
+    if (!held && out_of_reach(racer, winner)) continue;
+    if (held || places-- > 0 || (numerical(racer.effect) && may_tie(racer, winner)))
+      kept.push_back(std::move(racer));
+  }
+  racers = std::move(kept);
 }
 
 /// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation

@@ -101,7 +101,8 @@ struct Workspace::Impl {
                                         ExampleColumns& derivative) {
     EquilibriumOptions equilibrium_options;
     equilibrium_options.factored = columns != nullptr;
-    equilibrium_options.smallest_step = options.smallest_load_step;
+    equilibrium_options.tolerance = options.tolerance;
+    equilibrium_options.most_iterations = options.most_iterations;
     if (options.cancel)
       equilibrium_options.cancelled = [cancel = options.cancel] { return cancel->load(); };
     auto solved =

@@ -16,6 +16,10 @@
 
 namespace hookeye {
 
+/// For a step that may be refused, from a state in equilibrium: Newton finds what is there in some
+/// ten iterations, load steps and all in some forty.
+constexpr int kStepIterations = 60;
+
 struct EvaluationOptions {
   bool derivatives = true;
   bool pictures = false;   ///< keep model, residual and flow
@@ -29,8 +33,9 @@ struct EvaluationOptions {
   int level = 0;  ///< pyramid level: 0 = full size, each level halves
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
-  /// Load fraction at which an equilibrium is given up.
-  double smallest_load_step = EquilibriumOptions{}.smallest_step;
+  /// Of the equilibrium (EquilibriumOptions).
+  double tolerance = EquilibriumOptions{}.tolerance;
+  int most_iterations = EquilibriumOptions{}.most_iterations;
   const std::atomic<bool>* cancel = nullptr;
 };
 

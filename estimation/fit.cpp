@@ -203,6 +203,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   scope.choose(evaluation);
   evaluation.level = level;
   evaluation.registered = stage.registered;
+  evaluation.most_iterations = kStepIterations;
   evaluation.cancel = options.cancel;
   evaluation.huber = options.huber > 0.0 ? options.huber * seen.misfit : 0.0;
 

@@ -61,11 +61,14 @@ double feasible(const Assembly& assembly, const VectorXd& q, const VectorXd& d, 
   return 0.0;
 }
 
-NewtonGoal goal_of(const EquilibriumOptions& options, double s) {
+/// `most`: of this load step; what is left of the iterations of all of them may be less.
+NewtonGoal goal_of(const EquilibriumOptions& options, const NewtonState& state, double s,
+                   int most) {
   NewtonGoal goal;
   goal.s = s;
   goal.tolerance = options.tolerance;
-  goal.max_iterations = options.max_iterations;
+  goal.max_iterations =
+      std::min({options.max_iterations, most, options.most_iterations - state.iterations});
   goal.cancelled = options.cancelled;
   return goal;
 }
@@ -99,9 +102,8 @@ bool EquilibriumSolver::Impl::warm(const Problem& problem, const EquilibriumOpti
   VectorXd trial = x;
   if (!jump.isZero(0.0)) trial += predict(problem, state, state.K, x, 1.0, jump);
   if (!(assembly.smallest_J(trial) > 0)) return false;
-  NewtonGoal goal = goal_of(options, 1.0);
+  NewtonGoal goal = goal_of(options, state, 1.0, 25);
   goal.reuse_factor = true;
-  goal.max_iterations = std::min(goal.max_iterations, 25);
   if (!newton(problem, goal, state, trial).converged) return false;
   x = std::move(trial);
   return true;
@@ -116,6 +118,11 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
   NewtonOutcome out;
   double s = 0, step = 1;
   while (s < 1) {
+    if (state.iterations >= options.most_iterations) {
+      out.converged = false;
+      out.reason = fmt::format("no equilibrium within {} Newton iterations", state.iterations);
+      return out;
+    }
     step = std::min(step, 1 - s);
     const double next = step >= 1 - s - 1e-12 ? 1.0 : s + step;
     problem.tangent(x, s, false, state.K);
@@ -135,9 +142,8 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
       step *= t > 0 ? t : 0.25;
     } else {
       VectorXd trial = x + d;
-      NewtonGoal goal = goal_of(options, next);
+      NewtonGoal goal = goal_of(options, state, next, next < 1 ? 15 : options.max_iterations);
       if (next < 1) goal.tolerance = std::max(goal.tolerance, 1e-3);
-      goal.max_iterations = std::min(goal.max_iterations, next < 1 ? 15 : options.max_iterations);
       out = newton(problem, goal, state, trial);
       if (out.reason == "cancelled") return out;
       if (out.converged) {
@@ -221,7 +227,8 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
     if (out.converged) return s.finish(problem, options.factored, std::move(x));
     failure.load_fraction = reached;
     failure.reason = out.reason;
-    if (from_rest || out.reason == "cancelled") break;
+    if (from_rest || out.reason == "cancelled" || s.state.iterations >= options.most_iterations)
+      break;
   }
   return failure;
 }

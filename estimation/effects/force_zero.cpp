@@ -19,21 +19,30 @@ class ForceZero final : public Effect {
 
   Ingredients candidates(const Model& model, std::string* why_not) const override {
     const Capture& capture = model.scene->capture;
-    double sigma = 0.0;
-    for (const auto& example : capture.examples)
+    double sigma = 0.0, largest = 0.0;
+    for (const auto& example : capture.examples) {
+      if (example.validate) continue;
+      for (const auto& load : example.loads)
+        if (load.force) largest = std::max(largest, load.force->norm());
       for (const auto& measured : example.measured)
-        if (measured.kind == MeasuredSpec::Kind::force && !example.validate)
+        if (measured.kind == MeasuredSpec::Kind::force) {
           sigma = std::max(sigma, measured.sigma);
+          largest = std::max(largest, measured.value.norm());
+        }
+    }
     if (sigma == 0.0) {
       if (why_not) *why_not = "no force is measured in a fitted example";
       return {};
     }
+    // What matters to a user: 3 % of the largest force, or what the sensor resolves where that is
+    // more.
+    const double typical = std::max(sigma, 0.03 * largest);
     IngredientSpec spec;
     spec.name = name();
     for (char axis : std::string("xyz"))
       spec.parameters.push_back({fmt::format("force_zero.{}", axis), capture.units.force,
                                  fmt::format("offset of the measured forces along {}", axis), 0.0,
-                                 -1e6 * sigma, 1e6 * sigma, sigma, false});
+                                 -1e6 * sigma, 1e6 * sigma, typical, false});
     spec.touches = {.measured = true};
     spec.apply = [](const VectorXd& values, Model& m) {
       for (auto& example : m.examples) example.force_offset += values;

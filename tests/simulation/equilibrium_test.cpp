@@ -317,6 +317,29 @@ TEST(Solver, FailureSaysWhereAndWhy) {
   EXPECT_EQ(std::get<NumericalFailure>(result).reason, "cancelled");
 }
 
+TEST(Solver, ALimitOnItsIterationsEndsTheSearchForWhatIsNotThere) {
+  Case c;
+  EquilibriumSolver solver(std::make_shared<TetMesh>(c.mesh));
+  EquilibriumOptions options;
+  int asked = 0;  // once an iteration, and once where one ends
+  options.cancelled = [&asked] { return ++asked, false; };
+  ASSERT_TRUE(std::holds_alternative<Equilibrium>(solver.solve(c.energy(), c.loading(), options)));
+  Loading loading;
+  hold(c.mesh, c.base, loading);
+  hold(c.mesh, c.tip, loading);
+  loading.prescribe(c.mesh, c.tip, 0, -4.5);  // through the base
+  asked = 0;
+  solver.solve(c.energy(), loading, options);
+  EXPECT_GT(asked, 40) << "too easy a case: no limit would be needed";
+  asked = 0;
+  options.most_iterations = 20;
+  const auto result = solver.solve(c.energy(), loading, options);
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  EXPECT_LE(asked, 40);
+  // What it had found before still starts the next one.
+  EXPECT_TRUE(std::holds_alternative<Equilibrium>(solver.solve(c.energy(), c.loading(), options)));
+}
+
 TEST(Solver, WithoutItsFactorTheEquilibriumIsTheSame) {
   Case c;
   EquilibriumOptions options;
