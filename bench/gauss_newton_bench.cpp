@@ -1,0 +1,110 @@
+// One Gauss-Newton iteration of a fit, 4 loads x 4 views of 1 Mpx on some 10,000 unknowns
+// (quadratic): equilibria after a step of 1 %, sensitivities, pictures, image derivatives, normal
+// equations. CPU seconds of the process, and its peak memory. Argument: parameters (control values
+// of an additive material). Floors on two cores of 2024 (raw Embree, raw CHOLMOD, node route):
+// 1.3 s for 10 parameters, 2.0 s for 100; the goal is 1.5 times them, and 1.5 GB.
+//   bench_gauss_newton
+#include <benchmark/benchmark.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "estimation/additive_material.h"
+#include "estimation/evaluation.h"
+#include "estimation/normal_equations.h"
+#include "estimation/synth.h"
+
+namespace hookeye {
+namespace {
+
+constexpr const char* kRecipe = R"(hookeye_recipe: 1
+title: one iteration
+body:
+  shape: cylinder
+  size: [30, 28, 60]
+  bumps: 0.03
+  mesh: {edge: 5.6}
+  density: 1.07e-9
+  texture: {texel: 0.15, speckle: 1.6}
+material:
+  law: neo-hookean
+  true: {mu: 0.04, kappa_over_mu: 10}
+  told: {mu: 0.04}
+  fit: [mu]
+cameras: {count: 4, size: [1152, 864], distance: 4.2, focal: 2600, spread: 180}
+examples:
+  pull: {force: [0, 0, 0.3]}
+  side: {force: [0.012, 0.006, 0]}
+  twist: {rotate: 20}
+  press: {move: [0, 0, -0.06]}
+truth: {edge_factor: 1, rays_per_axis: 3, visibility_rays: 64}
+)";
+
+std::shared_ptr<const Scene> scene() {
+  static const std::shared_ptr<const Scene> made = [] {
+    namespace fs = std::filesystem;
+    const fs::path folder =
+        fs::temp_directory_path() / ("hookeye_gauss_newton_" + std::to_string(getpid()));
+    const auto capture = synthesize(parse_recipe(kRecipe, "recipe"), folder);
+    if (!std::holds_alternative<Synthesis>(capture)) throw std::runtime_error("no equilibrium");
+    auto loaded = load_scene(read_capture(std::get<Synthesis>(capture).capture));
+    fs::remove(std::get<Synthesis>(capture).truth);
+    fs::remove_all(folder);
+    return loaded;
+  }();
+  return made;
+}
+
+/// An additive material with `count` control values, near neo-Hooke.
+std::pair<ModelForm, VectorXd> additive_form(int count) {
+  const ModelForm base = base_form(scene());
+  auto [form, p] = to_additive(base, base.initial());
+  AdditiveModel model = find_additive(form, p).model;
+  const char* names[] = {"E11", "E22", "E33", "E12", "E13", "E23"};
+  int left = count - static_cast<int>(p.size());
+  for (int k = 0; k < 6 && left > 0; ++k) {
+    const int points = (left + 5 - k) / (6 - k);
+    std::vector<double> at;
+    for (int i = 0; i < points; ++i) at.push_back(-0.2 + 0.6 * i / std::max(1, points - 1));
+    add_addend(model, names[k], at, {}, VectorXd::Constant(points, 1e-3));
+    left -= points;
+  }
+  return with_structure(form, p, model);
+}
+
+void gauss_newton(benchmark::State& state) {
+  const auto [form, p] = additive_form(static_cast<int>(state.range(0)));
+  Workspace workspace(scene());
+  EvaluationOptions options;
+  bool up = false;
+  double pixels = 0.0;
+  for (auto _ : state) {
+    up = !up;
+    const auto seen = workspace.evaluate(form, up ? VectorXd(1.01 * p) : p, options);
+    const auto& evaluation = std::get<Evaluation>(seen);
+    const NormalEquations sums = normal_equations(evaluation);
+    benchmark::DoNotOptimize(sums.JtJ.data());
+    pixels = 0.0;
+    for (const auto& example : evaluation.examples)
+      for (const auto& photo : example.photos) pixels += photo.count;
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  state.counters["parameters"] = static_cast<double>(p.size());
+  state.counters["unknowns"] = 3.0 * scene()->body->mesh.nodes();
+  state.counters["pixels_on_body"] = pixels;
+  state.counters["peak_GB"] = static_cast<double>(usage.ru_maxrss) / (1 << 20);
+}
+BENCHMARK(gauss_newton)
+    ->Arg(10)
+    ->Arg(100)
+    ->Iterations(6)
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace hookeye
+
+BENCHMARK_MAIN();
