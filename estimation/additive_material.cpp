@@ -80,6 +80,7 @@ AdditiveModel from_text(const std::string& text) {
       model.barrier_below = in["barrier"].at(1).get<double>();
     }
     for (const json& one : in.at("addends")) read_addend(one, model);
+    if (const auto wrong = structure_fault(model)) throw std::invalid_argument(wrong->wrong);
     return model;
   } catch (const json::exception& error) {
     throw std::invalid_argument(error.what());
@@ -179,6 +180,7 @@ AdditiveModel start_of(const EnergyTerm& law) {
   const double mu = 0.5 * (D(1, 1) + D(1, 3)), kappa = D(0, 4) + 2.0 / 3.0 * mu;
   auto exact = as_additive(law);
   AdditiveModel model = exact ? *exact : additive_neo_hookean(mu, kappa);
+  if (const CylinderFrame* cylinder = law.cylinder()) model.cylinder = *cylinder;
   if (model.barrier_modulus == 0) {
     model.barrier_modulus = std::max(kappa, mu);
     model.barrier_below = 0.3;
@@ -225,6 +227,17 @@ std::pair<ModelForm, VectorXd> with_structure(const ModelForm& form, const Vecto
   VectorXd values(before + model.size() + after);
   values << p.head(before), model.values(), p.tail(after);
   return {out, values};
+}
+
+std::optional<NumericalFailure> not_convex(const Model& model) {
+  for (const EnergyModel::Part& part : model.energy.parts) {
+    const AdditiveModel* additive = additive_model(*part.term);
+    if (!additive) continue;
+    const ConvexityTest test = smallest_eigenvalue(*additive);
+    if (test.smallest < -1e-12 * additive->values().cwiseAbs().maxCoeff())
+      return NumericalFailure{"", 0.0, fmt::format("the energy is not convex at {}", test.where)};
+  }
+  return {};
 }
 
 void set_frames(EnergyModel::Part& part, const TetMesh& mesh) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "capture_io/numerical_failure.h"
 #include "estimation/model.h"
 #include "simulation/additive.h"
 
@@ -36,6 +38,10 @@ std::pair<ModelForm, VectorXd> to_additive(const ModelForm& form, const VectorXd
 /// The same form and values with another structure of the additive material.
 std::pair<ModelForm, VectorXd> with_structure(const ModelForm& form, const VectorXd& p,
                                               const AdditiveModel& model);
+
+/// Where an additive part of the energy is not convex (fit: [E11.1] moves named values freely; the
+/// additive ingredient stays convex by itself). Empty: nowhere.
+std::optional<NumericalFailure> not_convex(const Model& model);
 
 /// Adds frames that vary over the body to a part, where the law asks for them.
 void set_frames(EnergyModel::Part& part, const TetMesh& mesh);

@@ -43,7 +43,10 @@ json effect_json(const EffectScore& score) {
 
 json to_json(const Diagnosis& diagnosis) {
   json effects = json::array();
-  for (const auto& score : diagnosis.effects) effects.push_back(effect_json(score));
+  for (const auto& score : diagnosis.effects) {
+    effects.push_back(effect_json(score));
+    effects.back()["named"] = nameable(score, diagnosis);
+  }
   return {{"floor", to_json(diagnosis.floor)},
           {"gate", diagnosis.gate},
           {"effective_count", diagnosis.effective_count},

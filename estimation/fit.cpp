@@ -41,6 +41,8 @@ class ReducedCost final : public ceres::CostFunction {
         scope_(scope),
         scaling_(scaling),
         options_(std::move(options)) {
+    for (const EnergyModel::Part& part : form.start.energy.parts)
+      named_addends_ |= additive_model(*part.term) != nullptr;
     set_num_residuals(form.size() + 1);
     mutable_parameter_block_sizes()->push_back(form.size());
   }
@@ -50,6 +52,7 @@ class ReducedCost final : public ceres::CostFunction {
     // An accepted step is asked again for its Jacobian; both come from one evaluation.
     if (x.size() != cached_x_.size() || x != cached_x_) {
       const VectorXd p = scaling_.to_p(x);
+      if (named_addends_ && (failure_ = not_convex(form_.realise(p)))) return false;
       auto result = workspace_.evaluate(form_, p, options_);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         failure_ = *failure;
@@ -69,6 +72,7 @@ class ReducedCost final : public ceres::CostFunction {
     return true;
   }
   const std::optional<NumericalFailure>& failure() const { return failure_; }
+  bool named_addends() const { return named_addends_; }
   /// Fall of |r|^2 that the next Gauss-Newton step promises, and |r|^2 itself.
   double promised() const { return cached_.z.squaredNorm(); }
   double r2() const { return cached_.z.squaredNorm() + cached_.rho * cached_.rho; }
@@ -79,6 +83,7 @@ class ReducedCost final : public ceres::CostFunction {
   const Scope& scope_;
   const Scaling& scaling_;
   EvaluationOptions options_;
+  bool named_addends_ = false;  ///< values of an additive law: steps must stay convex
   mutable VectorXd cached_x_;
   mutable CondensedResidual cached_;
   mutable std::optional<NumericalFailure> failure_;
@@ -235,7 +240,8 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.jacobi_scaling = false;
   solver.min_lm_diagonal = solver.initial_trust_region_radius;
   solver.logging_type = ceres::SILENT;
-  solver.max_num_consecutive_invalid_steps = 8;
+  // Where convexity bounds the values, steps shrink until they are nothing: that is an end.
+  solver.max_num_consecutive_invalid_steps = cost.named_addends() ? 20 : 8;
   Reporter reporter(options, cost, stage, seen.count, std::min(seen.misfit, 30.0),
                     solver.max_num_iterations);
   solver.callbacks.push_back(&reporter);

@@ -68,7 +68,9 @@ const AdditiveModel* additive_model(const EnergyTerm& law);
 struct AdditiveFault {
   std::string key, wrong, right;
 };
-/// Structure, finite numbers, orthonormal frame, convexity, stiffness against every strain at rest.
+/// Structure, finite numbers, a right-handed orthonormal frame.
+std::optional<AdditiveFault> structure_fault(const AdditiveModel& model);
+/// The same, and convexity, and stiffness against every strain at rest.
 std::optional<AdditiveFault> fault(const AdditiveModel& model);
 /// Reads `material: {law: additive, ...}`. Throws InputError with the place.
 AdditiveModel read_additive(const MaterialSpec& spec);

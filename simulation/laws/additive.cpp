@@ -38,6 +38,9 @@ class Additive final : public EnergyTerm {
   const AdditiveModel& model() const { return model_; }
 
   std::string name() const override { return "additive"; }
+  const CylinderFrame* cylinder() const override {
+    return model_.cylinder ? &*model_.cylinder : nullptr;
+  }
   int size() const override { return size_; }
   std::vector<Parameter> parameters(const Units& units) const override;
   std::shared_ptr<const EnergyTerm> with(const Eigen::VectorXd& values) const override {

@@ -73,6 +73,13 @@ std::optional<AdditiveFault> addend_fault(const AdditiveModel& model, const Adde
       return AdditiveFault{a.name, fmt::format("`{}`: I1bar stands alone", a.name),
                            "its stress would jump at rest; tie other components"};
     if (auto wrong = points_fault(a.name + ".at_2", a.at_second, second)) return wrong;
+    // d2W/db2 would grow with a, and no control point along a says how far.
+    if ((a.at.size() == 1) != (a.at_second.size() == 1))
+      return AdditiveFault{
+          a.name + ".at",
+          fmt::format("`{}` has {} control points along {} and {} along {}", a.name, a.at.size(),
+                      first.name, a.at_second.size(), second.name),
+          "one along both (a constant coupling), or two and more along both"};
     count *= a.at_second.size();
   }
   const std::string key = a.name + ".stiffness";
@@ -223,7 +230,16 @@ class Reader {
     read_wall(name, model);
   }
   void read_directions(const std::string& name, AdditiveModel& model) {
-    if (name.rfind("fibre", 0) != 0 || name.find('_') != std::string::npos) return;
+    const size_t split = name.find('_');
+    if (split != std::string::npos) {
+      for (const std::string& part : {name.substr(0, split), name.substr(split + 1)})
+        if (part.rfind("fibre", 0) == 0 && !spec_.parameters.count(part + ".direction"))
+          throw InputError(
+              first_place(name), fmt::format("`{}` needs the direction of {}", name, part),
+              fmt::format("{}: {{direction: [1, 0, 0], at: [0], stiffness: [0]}}", part));
+      return;
+    }
+    if (name.rfind("fibre", 0) != 0) return;
     const auto& value = need(name + ".direction", 3, "a direction in rest axes: [1, 0, 0]");
     const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(value.numbers.data());
     if (!(d.norm() > 0))
@@ -240,10 +256,12 @@ class Reader {
         !(wall->numbers[1] > 0) || !(wall->numbers[2] >= 0) || wall->numbers[0] == 0)
       throw InputError(wall->place, fmt::format("`{}.wall` is not a wall", name), right);
     const double begin = wall->numbers[0], width = wall->numbers[1], modulus = wall->numbers[2];
-    if (begin > 0)
-      add_addend(model, name, {begin, begin + width}, {}, Eigen::Vector2d(0, modulus));
-    else
-      add_addend(model, name, {begin - width, begin}, {}, Eigen::Vector2d(modulus, 0));
+    const bool up = begin > 0;
+    const std::vector<double> at = {up ? begin : begin - width, up ? begin + width : begin};
+    if (auto wrong =
+            points_fault(name + ".wall", at, model.components[component_index(model, name)]))
+      throw InputError(wall->place, wrong->wrong, wrong->right);
+    add_addend(model, name, at, {}, Eigen::Vector2d(up ? 0 : modulus, up ? modulus : 0));
     model.addends.back().name += ".wall";
     model.addends.back().fixed = true;
   }
@@ -259,10 +277,13 @@ class Reader {
 
 }  // namespace
 
-std::optional<AdditiveFault> fault(const AdditiveModel& model) {
+std::optional<AdditiveFault> structure_fault(const AdditiveModel& model) {
   if (!((model.frame.transpose() * model.frame - Matrix3d::Identity()).norm() < 1e-9))
     return AdditiveFault{"frame", "the material frame is not orthonormal",
                          "three unit vectors at right angles"};
+  if (!(model.frame.determinant() > 0))
+    return AdditiveFault{"frame", "the material frame is left-handed",
+                         "axis 3 is the cross product of axes 1 and 2: turn one of the axes round"};
   std::set<std::set<int>> seen;
   for (const Addend& a : model.addends) {
     if (auto wrong = addend_fault(model, a)) return wrong;
@@ -270,6 +291,11 @@ std::optional<AdditiveFault> fault(const AdditiveModel& model) {
       return AdditiveFault{a.name, fmt::format("`{}` stands twice, in either order", a.name),
                            "one addend for every pair"};
   }
+  return {};
+}
+
+std::optional<AdditiveFault> fault(const AdditiveModel& model) {
+  if (auto wrong = structure_fault(model)) return wrong;
   double scale = 0.0;
   for (const Addend& a : model.addends) scale = std::max(scale, a.stiffness.cwiseAbs().maxCoeff());
   const ConvexityTest convex = smallest_eigenvalue(model);

@@ -6,6 +6,7 @@
 
 #include "estimation/additive_material.h"
 #include "estimation/effects_scene.h"
+#include "estimation/fit.h"
 #include "simulation/equilibrium.h"
 #include "support/derivative.h"
 
@@ -155,6 +156,24 @@ TEST(EffectsOnAdditive, AnAddendsNameStandsForItsControlValues) {
   std::vector<std::string> names;
   for (const auto& parameter : base.parameters()) names.push_back(parameter.name);
   EXPECT_EQ(names, (std::vector<std::string>{"E33.1", "E33.2", "E33.3", "J.2"}));
+}
+
+TEST(NamedAddends, AFitStaysConvex) {
+  auto scene = std::make_shared<Scene>(*additive_block({"E11_E33"}));
+  for (auto& photos : scene->photos) photos.clear();
+  for (ExampleSpec& example : scene->capture.examples) {
+    example.photos.clear();
+    // Twice the force that the block gives: the coupling would grow without end.
+    for (MeasuredSpec& measured : example.measured) measured.value = Vector3d(0, 0, 6);
+  }
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto result = fit(workspace, form, form.initial());
+  ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << std::get<NumericalFailure>(result).reason;
+  const Fitted& fitted = std::get<Fitted>(result);
+  EXPECT_FALSE(not_convex(fitted.form.realise(fitted.p)));
+  // E11 has 0.02, and so has E33 at its softest: up to the root of their product.
+  EXPECT_NEAR(std::abs(fitted.p[0]), 0.02, 0.005);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The additive material fitted to positions, forces and photos of a sheet made by another law.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <Eigen/Dense>
@@ -69,7 +69,7 @@ TEST(AdditiveMaterial, IsReadBackFromItsVariantAndFile) {
   model.frame = Eigen::AngleAxisd(0.4, Vector3d::UnitZ()).matrix();
   add_addend(model, "E11", {-0.1, 0.2}, {}, Eigen::Vector2d(0.01, 0.03));
   add_addend(model, "E22", {0.0}, {}, VectorXd::Constant(1, 0.02));
-  add_addend(model, "E11_E22", {0.0}, {0.0, 0.1}, Eigen::Vector2d(0.001, 0.002));
+  add_addend(model, "E11_E22", {0.0, 0.1}, {0.0, 0.1}, Eigen::Vector4d(0.001, 0.002, 0.001, 0.002));
   add_addend(model, "fibre1", {0.0}, {}, VectorXd::Constant(1, 0.02));
   model.components[component_index(model, "fibre1")].direction = Vector3d(0.6, 0.8, 0);
   std::tie(form, p) = with_structure(form, p, model);
@@ -81,8 +81,67 @@ TEST(AdditiveMaterial, IsReadBackFromItsVariantAndFile) {
   const VectorXd x = deformed_state(*scene);
   EXPECT_EQ(signature(again.realise(q), x), signature(form.realise(p), x));
   EXPECT_EQ(again.ingredients[0]->variant(), form.ingredients[0]->variant());
+  const std::string variant = form.ingredients[0]->variant();
+  const auto damaged = [&](const std::string& from, const std::string& to) {
+    std::string text = variant;
+    const size_t at = text.find(from);
+    if (at == std::string::npos) return "no " + from + " in " + text;
+    try {
+      additive_material_from(text.replace(at, from.size(), to), scene->capture.units);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(damaged("[-0.1,0.2]", "[0.2,-0.1]"), testing::HasSubstr("out of order"));
+  EXPECT_THAT(damaged("[-0.1,0.2]", "[]"), testing::HasSubstr("values"));
+  EXPECT_THAT(damaged("\"frame\":[", "\"frame\":[2,0,0,0,1,0,0,0,1],\"x\":["),
+              testing::HasSubstr("not orthonormal"));
   EXPECT_THROW(additive_material_from("{\"additive\": 1}", scene->capture.units),
                std::invalid_argument);
+}
+
+TEST(AdditiveMaterial, ValuesOfAFileMustBeConvex) {
+  const auto scene = block_scene();
+  const ModelForm base = base_form(scene);
+  auto [form, p] = to_additive(base, base.initial());
+  AdditiveModel model = find_additive(form, p).model;
+  for (const char* name : {"E11", "E22"})
+    add_addend(model, name, {0.0}, {}, VectorXd::Constant(1, 0.01));
+  add_addend(model, "E11_E22", {0.0}, {0.0}, VectorXd::Constant(1, 0.02));
+  std::tie(form, p) = with_structure(form, p, model);
+  const fs::path file = folder("model.yaml");
+  std::ofstream(file) << write_model(form, p);
+  try {
+    read_model(file, scene);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.wrong(), testing::HasSubstr("not convex at E11 = 0, E22 = 0"));
+  }
+  fs::remove(file);
+}
+
+TEST(AdditiveMaterial, FramesOfATubeReachTheElements) {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  MaterialSpec& spec = scene->capture.materials.at(0);
+  spec.law = "additive";
+  spec.parameters = {{"frame.axis", {{1, 0, 0}, {}}},
+                     {"frame.center", {{0, 0, 20}, {}}},
+                     {"I1bar.at", {{0}, {}}},
+                     {"I1bar.stiffness", {{0.05}, {}}},
+                     {"J.at", {{0}, {}}},
+                     {"J.stiffness", {{0.5}, {}}},
+                     {"E22.at", {{0}, {}}},
+                     {"E22.stiffness", {{0.5}, {}}}};
+  scene->capture.fit = {"additive"};
+  scene->capture.fit_places.assign(1, {});
+  const ModelForm form = base_form(scene);
+  const Model model = form.realise(form.initial());
+  ASSERT_EQ(model.energy.parts.at(0).frames.cols(), scene->body->mesh.size());
+  // Axis 3 is the tube's in every element, axis 2 goes around it.
+  const Eigen::Map<const Matrix3d> A(model.energy.parts[0].frames.col(0).data());
+  EXPECT_NEAR(A(0, 2), 1.0, 1e-12);
+  EXPECT_NEAR(A(0, 1), 0.0, 1e-12);
 }
 
 TEST(AdditiveMaterial, StartsAtTheEnergyOfTheTextbookLaw) {

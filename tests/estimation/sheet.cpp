@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <random>
@@ -258,7 +259,9 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
             "      - {{position_of: [{:g}, {:g}, {:g}], value: {}, sigma: {:g}}}\n", X.x(), X.y(),
             X.z(), noisy(moved(scene->body->mesh, state.q, X), o.position_sigma), o.position_sigma);
     if (o.kinds.count("forces") && example.name != "rest") {
-      const std::string grip = example.name.rfind("corner", 0) == 0 ? "corner" : "upper";
+      const std::string& grip = std::find_if(all.begin(), all.end(), [&](const Motion& m) {
+                                  return m.name == example.name;
+                                })->grip;
       const Vector3d force = support_force(state, scene->body->regions.at(grip));
       const double sigma = std::max(o.force_sigma, o.force_share * force.norm());
       text += fmt::format("      - {{force_on: {}, value: {}, sigma: {:g}}}\n", grip,

@@ -173,9 +173,9 @@ TEST(AdditiveInput, ReadsWhatACaptureSays) {
                                        {"E11.at", {-0.1, 0, 0.3}},
                                        {"E11.stiffness", {0.1, 0.2, 0.5}},
                                        {"E11.wall", {0.4, 0.1, 3}},
-                                       {"E11_E22.at", {0}},
+                                       {"E11_E22.at", {0, 0.2}},
                                        {"E11_E22.at_2", {0, 0.1}},
-                                       {"E11_E22.stiffness", {0, 0}},
+                                       {"E11_E22.stiffness", {0, 0, 0, 0}},
                                        {"fibre1.at", {0}},
                                        {"fibre1.direction", {0, 0, 2}},
                                        {"fibre1.stiffness", {0.3}},
@@ -184,7 +184,7 @@ TEST(AdditiveInput, ReadsWhatACaptureSays) {
   const AdditiveModel* model = additive_model(*law);
   ASSERT_TRUE(model);
   EXPECT_EQ(model->frame.col(0), Vector3d::UnitY());
-  EXPECT_EQ(model->size(), 3 + 2 + 1 + 1 + 1);
+  EXPECT_EQ(model->size(), 3 + 4 + 1 + 1 + 1);
   ASSERT_TRUE(model->find("E11.wall"));
   EXPECT_TRUE(model->find("E11.wall")->fixed);
   const auto p = law->parameters(Units{"mm", "N"});
@@ -215,6 +215,14 @@ TEST(AdditiveInput, NamesTheFaultAndItsPlace) {
                "not convex at E11 = 0, E22 = 0: smallest eigenvalue -1", "E11_E22.stiffness");
   expect_fault(with({{"frame", {1, 0, 0, 0.1, 1, 0, 0, 0, 1}}}), "not orthonormal", "frame");
   expect_fault(with({{"frame", {1, 0, 0}}}), "3 numbers", "frame");
+  expect_fault(with({{"frame", {1, 0, 0, 0, 1, 0, 0, 0, -1}}}), "left-handed", "frame");
+  expect_fault(
+      with({{"E11_E22.at", {0}}, {"E11_E22.at_2", {0, 0.3}}, {"E11_E22.stiffness", {0, 0}}}),
+      "1 control points along E11 and 2 along E22", "E11_E22.at");
+  expect_fault(
+      with({{"E11_fibre1.at", {0}}, {"E11_fibre1.at_2", {0}}, {"E11_fibre1.stiffness", {0}}}),
+      "needs the direction of fibre1", "E11_fibre1.at");
+  expect_fault(with({{"E11.wall", {-0.4, 0.2, 5}}}), "-0.6", "E11.wall");
   expect_fault(with({{"E14.at", {0}}, {"E14.stiffness", {1}}}), "no addend `E14`", "E14.at");
   expect_fault(with({{"E11.points", {0}}, {"E11.at", {0}}, {"E11.stiffness", {1}}}),
                "no `E11.points`", "E11.points");
