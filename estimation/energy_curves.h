@@ -1,5 +1,5 @@
-// What the data say of an additive material: each addend's energy with its 95 % band, the strains
-// that the examples visit, and where the model is asked beyond its control points.
+// What the data say of a material: its energy with a 95 % band, the strains that the examples
+// visit, and where an additive model is asked beyond its control points.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -22,6 +22,10 @@ VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
 VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
                         const VectorXd& q);
 
+/// `metrics.energy` of a material told by laws, effects included, in the same form: a pull at
+/// constant volume (along x, y and z where that differs) and a change of volume, of the mean over
+/// the body. Bands to first order in the parameters.
+nlohmann::json law_curves(const Scene& scene, const Fitted& fitted);
 /// `metrics.energy`: one curve an addend {name, unit, axis, stretch, value, low, high, visited,
 /// beyond}: Psi over its component (`stretch` holds the strains, `axis` names them), a
 /// two-component addend along its first component with the second at its largest visited size.

@@ -177,6 +177,8 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
   if (json additive = additive_metrics(scene, fitted); !additive.is_null()) {
     out["energy"] = energy_curves(scene, fitted);
     out["additive"] = std::move(additive);
+  } else {
+    out["energy"] = law_curves(scene, fitted);
   }
   return out;
 }
