@@ -128,7 +128,9 @@ bool cancelled(const NumericalFailure& failure) { return failure.reason == "canc
 
 /// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
 /// none.
-bool may_tie(const Racer& rival, const Racer& winner) { return rival.chi() < 1.5 * winner.chi(); }
+bool may_tie(const Racer& rival, const Racer& winner) {
+  return rival.structured() < 1.5 * winner.structured();
+}
 
 /// Left with three times the misfit of the first after as many steps: nobody came from there to
 /// win, and the refit of a field costs as much as all others. Not asked of the effect of the

@@ -1,6 +1,7 @@
 #include "estimation/refit.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hookeye {
 
@@ -138,6 +139,12 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
 }
 
 }  // namespace
+
+double Racer::structured() const {
+  const double f2 = trial.floor * trial.floor, least = 1.1 * 1.1 - 1.0;
+  const auto over = [&](double chi) { return std::sqrt(std::max(chi * chi - f2, least * f2)); };
+  return over(trial.chi_fit) + (trial.chi_validate > 0.0 ? over(trial.chi_validate) : 0.0);
+}
 
 std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
                                                   const EffectScore& score,

@@ -22,6 +22,9 @@ struct Racer {
   ModelForm form;
   Trial trial;
   double chi() const { return trial.chi_fit + trial.chi_validate; }
+  /// The part of it that is no noise, on fitted and on held-out photos; at least what 1.1 times the
+  /// floor is, which meshes and renderers leave.
+  double structured() const;
 };
 
 /// All nameable effects, each given one Gauss-Newton step from its linear step and the first four

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/floor.h"
 #include "estimation/normal_equations.h"
 
 namespace hookeye {
@@ -46,7 +47,9 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
   const auto seen = workspace.evaluate(form, p, half_size(options));
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
   const Evaluation& pictures = std::get<Evaluation>(seen);
-  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false)};
+  const Floor floor = measure_floor(workspace.scene(), pictures);
+  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false),
+                    floor.source == "rest photos" ? floor.chi : 0.0};
 }
 
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
@@ -69,7 +72,7 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
     seen = workspace.evaluate(form, p, pictures);
     if (auto* evaluation = std::get_if<Evaluation>(&seen))
       if (share == 0.0 || evaluation->linear_chi(false) < from)
-        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true)};
+        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true), scale.floor};
     if (options.cancel && options.cancel->load()) break;
   }
   return NumericalFailure{"", 0.0, "cancelled"};

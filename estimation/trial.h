@@ -10,11 +10,13 @@ struct Trial {
   VectorXd p;
   /// Root mean square of residual over noise, made linear in the motion, half-size pictures.
   double chi_fit = 0.0, chi_validate = 0.0;
+  double floor = 0.0;  ///< the same of the rest photos (floor.h); 0: not known
 };
 /// What the trials of a race are measured against: the model that they start from.
 struct TrialScale {
   double huber = 0.0;  ///< Huber's threshold in units of noise
   double chi = 0.0;    ///< Trial::chi_fit of that model
+  double floor = 0.0;  ///< Trial::floor
 };
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,

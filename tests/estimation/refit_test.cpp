@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "estimation/step_json.h"
 #include "tests/estimation/small_capture.h"
 
@@ -60,6 +62,21 @@ TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   ASSERT_TRUE(again.effects.at(0).other_form);
   EXPECT_EQ(again.effects[0].other_form->best->variant(), "in all");
   EXPECT_EQ(again.effects[0].other_form->values, score_.other_form->values);
+}
+
+TEST(Racer, IsJudgedByWhatIsNoNoise) {
+  const auto left = [](double fit, double validate, double floor) {
+    Racer racer;
+    racer.trial = {{}, fit, validate, floor};
+    return racer.structured();
+  };
+  EXPECT_DOUBLE_EQ(left(0.5, 0.0, 0.0), 0.5);  // no rest photos: all of it counts
+  EXPECT_DOUBLE_EQ(left(0.5, 1.3, 0.3), 0.4 + std::sqrt(1.3 * 1.3 - 0.09));
+  // At the floor all are equal, below it too.
+  EXPECT_DOUBLE_EQ(left(0.3, 0.31, 0.3), left(0.29, 0.3, 0.3));
+  EXPECT_GT(left(0.3, 0.3, 0.3), 0.0);
+  // 1.4 times the floor is no tie of what is there, although the whole is but 1.4 times as large.
+  EXPECT_GT(left(0.42, 0.42, 0.3), 1.5 * left(0.3, 0.3, 0.3));
 }
 
 }  // namespace
