@@ -33,6 +33,8 @@ export interface ParameterValue {
 export interface EffectScore {
   effect: string;
   testable?: boolean;
+  /** Whether the program would name it; runs of older versions do not tell. */
+  named?: boolean;
   why_not?: string;
   variant?: string;
   explains?: number;
@@ -110,6 +112,7 @@ export interface TimelineStep {
   parameters: ParameterValue[];
   diagnosis: EffectScore[];
   gate?: number;
+  /** Refits that the added effect was chosen from: their score less the winner's. */
   rivals?: {effect: string; score: number}[];
   command?: string;
   made_by?: Record<string, string>;

@@ -60,6 +60,25 @@ export function wasTested(effect: EffectScore): boolean {
 export function gateOf(entry: StepEntry | undefined): number {
   return Math.max(5, entry?.diagnosis?.gate ?? timelineOf(entry)?.gate ?? 0);
 }
+/** The program's own word where it gave one: it also asks whether a renderer could err as much. */
+export function isNamed(effect: EffectScore, entry: StepEntry | undefined): boolean {
+  return wasTested(effect) && (effect.named ?? (effect.evidence ?? 0) >= gateOf(entry));
+}
+/** Of the catalogue's group `numerical`: they tell of the model's mesh, not of the body. */
+export const isNumerical = (effect: string): boolean => effect === 'mesh_resolution';
+/** What was added to a step, and by how much its refit beat the best of the others that were tried. */
+export interface Decision {
+  added: string;
+  refitted: string[];
+  margin?: number;
+}
+export function decisionAfter(entry: StepEntry | undefined): Decision | undefined {
+  const told = timelineOf(entry);
+  const next = told && run.value.timeline.steps[run.value.timeline.steps.indexOf(told) + 1];
+  if (!next?.added || next.name.startsWith('without-')) return undefined;
+  const others = (next.rivals ?? []).filter((r) => r.effect !== next.added).sort((a, b) => b.score - a.score);
+  return {added: next.added, refitted: others.map((r) => r.effect), margin: others.length ? -others[0].score : undefined};
+}
 export function figuresOf(entry: StepEntry | undefined, photo: PhotoEntry): PhotoFigures | undefined {
   return entry?.metrics?.photos.find((f) => f.example === photo.example && f.camera === photo.camera);
 }

@@ -1,7 +1,7 @@
 // The run in six short sentences with figures, for someone who has never seen it.
 import type {EffectScore, StepEntry} from './document';
-import {around, figure, listed, percent, spaced} from './format';
-import {effectsOf, figuresOf, floor, gateOf, run, timelineOf, units, wasTested, worstPhoto, type Verb} from './state';
+import {around, figure, listed, logEvidence, percent, spaced} from './format';
+import {decisionAfter, effectsOf, figuresOf, floor, gateOf, isNamed, isNumerical, run, timelineOf, units, wasTested, worstPhoto, type Verb} from './state';
 
 export interface Told {
   /** In large letters. */
@@ -47,11 +47,35 @@ function failed(base: StepEntry, lengthPerPx: number): Told {
   };
 }
 
+/** Above the gate and still not named: no null of independent noise knows of a renderer's errors. */
+export const tooLittle = 'so small a part of the misfit may be the renderer’s own error, so it is not named';
+
+/** What the refits of the leading effects came to. */
+export function decidedBy(added: string, others: string[], margin: number): string {
+  const all = ['both', 'all three'][others.length - 1] ?? `all ${others.length + 1}`;
+  return `refits of ${all} decided for ${spaced(added)} over ${spaced(others[0])}, by ${figure(margin, 4)}`;
+}
+
 function sureness(effect: EffectScore, before: StepEntry): string {
   const next = effectsOf(before).filter((e) => wasTested(e) && e.effect !== effect.effect)
     .sort((a, b) => (b.evidence ?? 0) - (a.evidence ?? 0))[0];
-  return `would remove ${percent(effect.explains)} of the misfit; log evidence ${figure(effect.evidence)} ` +
-    `where ${figure(gateOf(before), 2)} is enough` + (next ? `; next: ${spaced(next.effect)}, ${figure(next.evidence)}` : '');
+  const decision = decisionAfter(before);
+  const rest = decision?.added === effect.effect && decision.margin !== undefined
+    ? decidedBy(decision.added, decision.refitted, decision.margin)
+    : next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
+  return `would remove ${percent(effect.explains)} of the misfit; log evidence ${logEvidence(effect.evidence)} ` +
+    `where ${figure(gateOf(before), 2)} is enough` + (rest ? `; ${rest}` : '');
+}
+
+/** Share and choice of an effect that was not the only one. */
+function chapter(effect: EffectScore, before: StepEntry, index: number): string {
+  const decision = decisionAfter(before);
+  const share = effect.explains === undefined ? ''
+    : index === 0 ? ` ${percent(effect.explains)} of the misfit` : ` ${percent(effect.explains)} of the rest`;
+  const chosen = decision?.added === effect.effect && decision.margin !== undefined
+    ? ` (refits decided, by ${figure(decision.margin, 4)})` : '';
+  const mesh = isNumerical(effect.effect) ? ' (the mesh, not the material)' : '';
+  return `${index > 0 ? 'then ' : ''}${spaced(effect.effect)}${share}${chosen}${mesh}`;
 }
 
 function missing(): Told {
@@ -69,14 +93,16 @@ function missing(): Told {
   if (added.length)
     return {headline: listed(added.map((a) => spaced(a.score.effect))),
       sentence: added.length === 1 ? sureness(added[0].score, added[0].before)
-        : added.map((a) => `${spaced(a.score.effect)}: ${percent(a.score.explains)}, log evidence ${figure(a.score.evidence)}`).join('; ')};
+        : added.map((a, i) => chapter(a.score, a.before, i)).join(', ')};
   const now = steps[steps.length - 1];
-  const first = effectsOf(now).filter(wasTested)[0];
+  const tested = effectsOf(now).filter(wasTested);
+  const first = tested.find((e) => isNamed(e, now)) ?? tested[0];
   if (!first) return {headline: 'not tested', sentence: 'this run has not been diagnosed'};
-  return (first.evidence ?? 0) >= gateOf(now)
-    ? {headline: `${spaced(first.effect)}?`, sentence: `leads, not added yet: ${sureness(first, now)}`}
-    : {headline: 'nothing', sentence: `of ${effectsOf(now).length} effects stands out: the best, ${spaced(first.effect)}, ` +
-        `has log evidence ${figure(first.evidence)}, below the ${figure(gateOf(now), 2)} of chance`};
+  if (isNamed(first, now))
+    return {headline: `${spaced(first.effect)}?`, sentence: `leads, not added yet: ${sureness(first, now)}`};
+  const why = (first.evidence ?? 0) < gateOf(now) ? `below the ${figure(gateOf(now), 2)} of chance` : tooLittle;
+  return {headline: 'nothing', sentence: `of ${effectsOf(now).length} effects stands out: the best, ${spaced(first.effect)}, ` +
+    `has log evidence ${logEvidence(first.evidence)}, ${why}`};
 }
 
 function refitted(newest: StepEntry): Told {

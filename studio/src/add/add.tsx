@@ -1,6 +1,6 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
-import {figure, duration, listed, spaced} from '../format';
-import {chosenStep, effectsOf, gateOf, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
+import {figure, duration, listed, logEvidence, spaced} from '../format';
+import {chosenStep, effectsOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
 import {Share} from '../widgets';
 import {add, stop} from './job';
 
@@ -89,7 +89,7 @@ export function Add() {
   // An effect is always added to the newest step, whichever is looked at.
   const newest = run.value.steps[run.value.steps.length - 1];
   const offered = effectsOf(newest).filter(wasTested).slice(0, 10);
-  const standsOut = offered.some((e) => (e.evidence ?? 0) >= gateOf(newest));
+  const standsOut = offered.some((e) => isNamed(e, newest));
   return (
     <div class="add columns">
       <section>
@@ -102,7 +102,7 @@ export function Add() {
             <li key={e.effect}>
               <span class="name">{spaced(e.effect)}</span>
               <Share of={e.explains} />
-              <span class="value">evidence {figure(e.evidence)}</span>
+              <span class="value">evidence {logEvidence(e.evidence)}</span>
               {run.value.live ? <AddButton effect={e.effect} /> : (
                 <button onClick={() => void navigator.clipboard?.writeText(`hookeye add ${run.value.run} ${e.effect}`)}>Copy command</button>
               )}

@@ -3,9 +3,10 @@ import {useRef} from 'preact/hooks';
 import {css, sequential, type Ramp} from '../colours';
 import type {EffectScore} from '../document';
 import {saveCsv, saveSvg} from '../download';
-import {figure, listed, percent, spaced} from '../format';
-import {chosenEffect, effectsOf, gateOf, step, stepIndex, run, wasTested} from '../state';
+import {figure, listed, logEvidence, percent, spaced} from '../format';
+import {chosenEffect, decisionAfter, effectsOf, gateOf, isNamed, step, wasTested, type Decision} from '../state';
 import {AddButton} from '../add/add';
+import {decidedBy, tooLittle} from '../story';
 import {cosine, together} from './order';
 import {Removed} from './removed';
 import {Legend, Share} from '../widgets';
@@ -88,27 +89,43 @@ function Row(props: {effect: EffectScore; chosen: boolean; named: boolean}) {
     chosenEffect.value = e.effect;
   };
   return (
-    <tr class={props.named ? '' : 'below'} aria-selected={props.chosen} onMouseEnter={choose}>
+    <tr class={!wasTested(e) ? 'below untested' : props.named ? '' : 'below'} aria-selected={props.chosen} onMouseEnter={choose}>
       <td><button class="link" onClick={choose} onFocus={choose}>{spaced(e.effect)}</button></td>
       {wasTested(e) ? <>
         <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
-        <td>{figure(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
+        <td>{logEvidence(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
         <td class="wide">{taken.slice(0, 2).map(spaced).join(', ')}{taken.length > 2 && ` and ${taken.length - 2} more`}</td>
       </> : <td colSpan={5}>not tested: {e.why_not}</td>}
     </tr>
   );
 }
 
+/** What was added next, and why that one: the evidence is an estimate, refits decide. */
+function Decided(props: {ranked: EffectScore[]; decision: Decision; folder: string | undefined}) {
+  const {ranked, decision: {added, refitted, margin}, folder} = props;
+  const own = ranked.find((e) => e.effect === added);
+  const next = ranked.find((e) => e !== own);
+  return <p><b>{spaced(added)}</b> was added to step {folder}
+    {own && `: log evidence ${logEvidence(own.evidence)}`}
+    {own && next && `, ${next === ranked[0] ? 'behind' : 'before'} ${spaced(next.effect)} with ${logEvidence(next.evidence)}`}
+    {margin !== undefined && `; ${decidedBy(added, refitted, margin)}`}.</p>;
+}
+
 /** What the ranking comes to, in one sentence. */
-function Outcome(props: {ranked: EffectScore[]; gate: number}) {
-  const [first, second] = props.ranked;
-  const name = run.value.steps[stepIndex.value]?.folder;
-  const rule = `below ${figure(props.gate)}, which chance alone reaches in less than 5 % of runs, nothing is named`;
-  if (!first) return <p>Nothing could be tested in step {name}.</p>;
-  if ((first.evidence ?? 0) < props.gate)
-    return <p><b>Nothing stands out</b> in step {name}: {spaced(first.effect)} leads with log evidence {figure(first.evidence)}; {rule}.</p>;
-  return <p><b>{spaced(first.effect)}</b> leads in step {name} with log evidence {figure(first.evidence)}
-    {second && `, before ${spaced(second.effect)} with ${figure(second.evidence)}`}; {rule}.</p>;
+function Outcome(props: {ranked: EffectScore[]; decision: Decision | undefined}) {
+  const {ranked, decision} = props;
+  const folder = step.value?.folder;
+  const gate = gateOf(step.value);
+  if (decision) return <Decided ranked={ranked} decision={decision} folder={folder} />;
+  const first = ranked.find((e) => isNamed(e, step.value)) ?? ranked[0];
+  const second = ranked.find((e) => e !== first);
+  const rule = `below ${figure(gate)}, which chance alone reaches in less than 5 % of runs, nothing is named`;
+  if (!first) return <p>Nothing could be tested in step {folder}.</p>;
+  if (isNamed(first, step.value))
+    return <p><b>{spaced(first.effect)}</b> leads in step {folder} with log evidence {logEvidence(first.evidence)}
+      {second && `, before ${spaced(second.effect)} with ${logEvidence(second.evidence)}`}; {rule}.</p>;
+  return <p><b>Nothing stands out</b> in step {folder}: {spaced(first.effect)} leads with log evidence {logEvidence(first.evidence)}; {
+    (first.evidence ?? 0) < gate ? rule : tooLittle}.</p>;
 }
 
 export function Missing() {
@@ -116,18 +133,19 @@ export function Missing() {
   const ranked = all.filter(wasTested);
   if (!all.length)
     return <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
-  const gate = gateOf(step.value);
-  const chosen = all.find((e) => e.effect === chosenEffect.value) ?? ranked[0] ?? all[0];
+  const decision = decisionAfter(step.value);
+  const byName = (name: string | undefined): EffectScore | undefined => all.find((e) => e.effect === name);
+  const chosen = byName(chosenEffect.value) ?? byName(decision?.added) ?? ranked[0] ?? all[0];
   return (
     <div class="missing columns">
       <div class="ranking">
-        <Outcome ranked={ranked} gate={gate} />
+        <Outcome ranked={ranked} decision={decision} />
         <table aria-label="Ranked effects">
           <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th class="wide">dof</th>
             <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
-              <Row key={e.effect} effect={e} chosen={e === chosen} named={wasTested(e) && (e.evidence ?? 0) >= gate} />
+              <Row key={e.effect} effect={e} chosen={e === chosen} named={isNamed(e, step.value)} />
             ))}
           </tbody>
         </table>
