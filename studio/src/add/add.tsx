@@ -4,12 +4,13 @@ import {chosenStep, effectsOf, isNamed, job, other, otherStep, run, step, stepIn
 import {Share} from '../widgets';
 import {add, stop} from './job';
 
-export function AddButton(props: {effect: string}) {
+/** `named`: where it may stand beside another effect's name. */
+export function AddButton(props: {effect: string; named?: boolean}) {
   if (!run.value.live) return null;
   const busy = job.value?.state === 'running';
   return (
     <button class="primary" disabled={busy} data-add={props.effect}
-            onClick={() => void add(props.effect)}>Add</button>
+            onClick={() => void add(props.effect)}>Add{props.named && ` ${spaced(props.effect)}`}</button>
   );
 }
 

@@ -1,4 +1,5 @@
 // Verb 3: the ranked effects, what each would explain, and what it cannot be told from.
+import {signal} from '@preact/signals';
 import {useRef} from 'preact/hooks';
 import {css, sequential, type Ramp} from '../colours';
 import type {EffectScore} from '../document';
@@ -11,12 +12,15 @@ import {cosine, together} from './order';
 import {Removed} from './removed';
 import {Legend, Share} from '../widgets';
 
+/** The effect under the pointer: looked at, not chosen. */
+const previewed = signal('');
+
 const cosineRamp: Ramp = {
   title: 'cosine between the changes of the pictures',
   ends: ['told apart', '', '1: cannot be'], scale: sequential, from: 0,
 };
 
-function Confusion(props: {effects: EffectScore[]}) {
+function Confusion(props: {effects: EffectScore[]; strong: string}) {
   const ref = useRef<SVGSVGElement>(null);
   const list = together(props.effects.slice(0, 12));
   const n = list.length;
@@ -34,7 +38,7 @@ function Confusion(props: {effects: EffectScore[]}) {
            aria-label="Cosine between the signatures of effects">
         {list.map((a, i) => (
           <g key={a.effect}>
-            <text x={left - 6} y={i * size + 14} text-anchor="end" class={a.effect === chosenEffect.value ? 'strong' : ''}>{spaced(a.effect)}</text>
+            <text x={left - 6} y={i * size + 14} text-anchor="end" class={a.effect === props.strong ? 'strong' : ''}>{spaced(a.effect)}</text>
             {list.map((b, j) => {
               const c = i === j ? 1 : cosine(a, b);
               return (
@@ -51,11 +55,12 @@ function Confusion(props: {effects: EffectScore[]}) {
   );
 }
 
-function Detail(props: {effect: EffectScore}) {
+/** `pinned`: what Add would add, whichever effect is looked at. */
+function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
   const e = props.effect;
   return (
     <section class="detail" aria-live="polite">
-      <h3>{spaced(e.effect)} <AddButton effect={e.effect} /></h3>
+      <h3>{spaced(e.effect)} <AddButton effect={props.pinned.effect} named /></h3>
       <p>{e.why ?? e.why_not}</p>
       {(e.confused_with ?? []).length > 0 && <p>These photos hardly tell it from {listed(e.confused_with!.map(spaced))}.</p>}
       {e.predicted && e.predicted.length > 0 && (
@@ -82,15 +87,16 @@ function rankingCsv(all: EffectScore[]): void {
 }
 
 /** One effect of the ranking; what could not be tested is greyed and says why. */
-function Row(props: {effect: EffectScore; chosen: boolean; named: boolean}) {
+function Row(props: {effect: EffectScore; pinned: boolean; named: boolean}) {
   const e = props.effect;
   const taken = e.confused_with ?? [];
   const choose = (): void => {
     chosenEffect.value = e.effect;
   };
   return (
-    <tr class={!wasTested(e) ? 'below untested' : props.named ? '' : 'below'} aria-selected={props.chosen} onMouseEnter={choose}>
-      <td><button class="link" onClick={choose} onFocus={choose}>{spaced(e.effect)}</button></td>
+    <tr class={!wasTested(e) ? 'below untested' : props.named ? '' : 'below'} aria-selected={props.pinned}
+        onMouseEnter={() => (previewed.value = e.effect)} onClick={choose}>
+      <td><button class="link" onFocus={choose}>{spaced(e.effect)}</button></td>
       {wasTested(e) ? <>
         <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
         <td>{logEvidence(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
@@ -135,24 +141,24 @@ export function Missing() {
     return <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
   const decision = decisionAfter(step.value);
   const byName = (name: string | undefined): EffectScore | undefined => all.find((e) => e.effect === name);
-  const chosen = byName(chosenEffect.value) ?? byName(decision?.added) ?? ranked[0] ?? all[0];
+  const pinned = byName(chosenEffect.value) ?? byName(decision?.added) ?? ranked[0] ?? all[0];
   return (
     <div class="missing columns">
       <div class="ranking">
         <Outcome ranked={ranked} decision={decision} />
-        <table aria-label="Ranked effects">
+        <table aria-label="Ranked effects" onMouseLeave={() => (previewed.value = '')}>
           <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th class="wide">dof</th>
             <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
-              <Row key={e.effect} effect={e} chosen={e === chosen} named={isNamed(e, step.value)} />
+              <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} />
             ))}
           </tbody>
         </table>
       </div>
       <div class="side">
-        {chosen && <Detail effect={chosen} />}
-        <Confusion effects={ranked} />
+        {pinned && <Detail effect={byName(previewed.value) ?? pinned} pinned={pinned} />}
+        <Confusion effects={ranked} strong={pinned.effect} />
       </div>
     </div>
   );
