@@ -1,5 +1,5 @@
 // The run in six short sentences with figures, for someone who has never seen it.
-import type {EffectScore, StepEntry} from './document';
+import type {EffectScore, ParameterValue, StepEntry} from './document';
 import {around, figure, listed, logEvidence, percent, spaced} from './format';
 import {decisionAfter, effectsOf, figuresOf, floor, gateOf, isNamed, isNumerical, run, timelineOf, units, wasTested, worstPhoto, type Verb} from './state';
 
@@ -105,17 +105,28 @@ function missing(): Told {
     `has log evidence ${logEvidence(first.evidence)}, ${why}`};
 }
 
+/** An effect's own parameters: the largest with its interval, of the others as many as a tab has room for. */
+function valuesOf(effect: string, all: ParameterValue[]): string {
+  if (isNumerical(effect)) return `${spaced(effect)}: the mesh, not the material`;
+  const [main, ...others] = all.filter((p) => p.name === effect || p.name.startsWith(effect + '.'))
+    .sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
+  if (!main) return `${spaced(effect)}: no parameter of its own`;
+  const {value, interval} = around(main.value, main.low, main.high);
+  const short = others.slice(0, 2).map((p) => `, ${p.name.slice(effect.length + 1)} ${around(p.value, p.low, p.high).value} ${p.unit}`);
+  return `${main.name} ${value} ${main.unit}, 95 % interval ${interval}${short.join('')}` +
+    (others.length > 2 ? ` and ${others.length - 2} more` : '');
+}
+
 function refitted(newest: StepEntry): Told {
   const told = timelineOf(newest);
   if (!told?.added || run.value.steps.length < 2)
     return {headline: 'no effect yet', sentence: 'adding one refits the model with it, from where this fit ended'};
-  const own = told.parameters.filter((p) => p.name.startsWith(told.added!));
-  const main = (own.length ? own : told.parameters).slice().sort((a, b) => Math.abs(b.value) - Math.abs(a.value))[0];
-  if (!main) return {headline: spaced(told.added), sentence: 'added'};
-  const {value, interval} = around(main.value, main.low, main.high);
+  const takenBack = told.name.startsWith('without-');
+  const standing = told.effects ?? (takenBack ? [] : [told.added]);
+  const values = standing.map((effect) => valuesOf(effect, told.parameters)).join('; ');
   return {
-    headline: told.name.startsWith('without-') ? `− ${spaced(told.added)}` : `+ ${spaced(told.added)}`,
-    sentence: `refitted from the photos: ${main.name} ${value} ${main.unit}, 95 % interval ${interval}`,
+    headline: takenBack ? `− ${spaced(told.added)}` : standing.map((effect) => `+ ${spaced(effect)}`).join(' '),
+    sentence: values ? `refitted from the photos: ${values}` : 'no added effect is left',
   };
 }
 
