@@ -3,7 +3,7 @@
 // With FOLDER, screenshots are kept there.
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
-import {cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
@@ -229,6 +229,7 @@ async function report() {
   }
   const phone = await open('file://' + html, {width: 390, height: 844});
   await walk(phone.page, 'phone');
+  await accessible(phone.page);
   assert.ok(await phone.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'wider than a phone');
   assert.deepEqual(phone.faults, []);
   await phone.close();
@@ -274,6 +275,7 @@ async function studio() {
   assert.ok(chis[1] < 0.7 * chis[0], `the error does not fall: ${chis}`);
   chis.forEach((chi, i) => assert.ok(Math.abs(chi - stored[i]) < 1e-3 * stored[i] + 1e-3));
   await walk(page, 'studio');
+  await accessible(page);
   assert.deepEqual(faults, []);
   await close();
   program.kill('SIGINT');
@@ -315,6 +317,31 @@ async function retold() {
   assert.deepEqual(faults, []);
   await close();
   say('the finished report tells its run, and holds run.json and the deformed bodies');
+}
+
+/** Names as long as people give them do not make any view wider than a phone. */
+async function longNames() {
+  const long = join(folder, 'long');
+  const name = 'gravity_and_many_words_more_that_no_phone_has_room_for';
+  cpSync(run, long, {recursive: true});
+  renameSync(join(long, 'steps', '01-gravity'), join(long, 'steps', '01-' + name));
+  const document = runJson();
+  document.steps[1].name = name;
+  writeFileSync(join(long, 'run.json'), JSON.stringify(document));
+  const html = join(folder, 'long.html');
+  tell('report', long, '-o', html);
+  const {page, faults, close} = await open('file://' + html, {width: 390, height: 844});
+  for (const verb of verbs) {
+    await page.click('#tab-' + verb);
+    await page.waitForTimeout(800);
+    const wide = await page.evaluate(() => [document.documentElement, document.querySelector('main')]
+      .map((box) => box.scrollWidth - box.clientWidth));
+    assert.deepEqual(wide, [0, 0], `${verb} is wider than a phone`);
+  }
+  await accessible(page);
+  assert.deepEqual(faults, []);
+  await close();
+  say('a long name of a step on a phone');
 }
 
 /** Residuals of pure noise, 7 Mpx each: nothing that could be packed well. */
@@ -363,6 +390,7 @@ try {
   await report();
   await studio();
   await retold();
+  await longNames();
   await large();
   await broken();
 } finally {

@@ -1,7 +1,7 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
 import {figure, duration, listed, logEvidence, spaced} from '../format';
 import {chosenStep, effectsOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
-import {Share} from '../widgets';
+import {Share, Wide} from '../widgets';
 import {add, stop} from './job';
 
 /** `named`: where it may stand beside another effect's name. */
@@ -44,7 +44,7 @@ function Steps() {
   const {steps} = run.value.timeline;
   const added = new Set(steps[steps.length - 1]?.effects);
   return (
-    <table class="steps" aria-label="Steps of the run">
+    <Wide label="Steps of the run" class="steps">
       <thead><tr><th>step</th><th>χ fitted</th><th>χ held out</th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
       <tbody>
         {run.value.steps.map((entry, i) => {
@@ -64,7 +64,7 @@ function Steps() {
           );
         })}
       </tbody>
-    </table>
+    </Wide>
   );
 }
 
@@ -74,7 +74,7 @@ function Difference() {
   if (!a || !b || a === b) return <p class="note">Choose a step under “against” to compare it with the shown one, here and in Compare.</p>;
   const names = [...new Set([...a.parameters, ...b.parameters].map((p) => p.name))];
   return (
-    <table aria-label="Parameters of the two steps">
+    <Wide label="Parameters of the two steps">
       <thead><tr><th>parameter</th>{entries.map((entry) => <th key={entry!.folder}>{entry!.folder}</th>)}<th>unit</th></tr></thead>
       <tbody>
         {names.map((name) => {
@@ -82,7 +82,7 @@ function Difference() {
           return <tr key={name}><td>{name}</td><td>{figure(x?.value, 4)}</td><td>{figure(y?.value, 4)}</td><td>{x?.unit ?? y?.unit}</td></tr>;
         })}
       </tbody>
-    </table>
+    </Wide>
   );
 }
 
