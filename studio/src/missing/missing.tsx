@@ -1,59 +1,17 @@
 // Verb 3: the ranked effects, what each would explain, and what it cannot be told from.
 import {signal} from '@preact/signals';
-import {useRef} from 'preact/hooks';
-import {css, sequential, type Ramp} from '../colours';
 import type {EffectScore} from '../document';
-import {saveCsv, saveSvg} from '../download';
+import {saveCsv} from '../download';
 import {figure, listed, logEvidence, percent, spaced} from '../format';
 import {chosenEffect, decisionAfter, effectsOf, gateOf, isNamed, step, wasTested, type Decision} from '../state';
 import {AddButton} from '../add/add';
 import {decidedBy, tooLittle} from '../story';
-import {cosine, together} from './order';
+import {Confusion} from './confusion';
 import {Removed} from './removed';
-import {Legend, Share} from '../widgets';
+import {Share, Wide} from '../widgets';
 
 /** The effect under the pointer: looked at, not chosen. */
 const previewed = signal('');
-
-const cosineRamp: Ramp = {
-  title: 'cosine between the changes of the pictures',
-  ends: ['told apart', '', '1: cannot be'], scale: sequential, from: 0,
-};
-
-function Confusion(props: {effects: EffectScore[]; strong: string}) {
-  const ref = useRef<SVGSVGElement>(null);
-  const list = together(props.effects.slice(0, 12));
-  const n = list.length;
-  const size = 20;
-  const left = 200;
-  if (n < 2) return null;
-  return (
-    <figure class="confusion">
-      <figcaption>What cannot be told apart sits together
-        <button class="quiet" onClick={() => ref.current && saveSvg('confusion.png', ref.current)}>PNG</button>
-        <button class="quiet" onClick={() => saveCsv('confusion.csv',
-          [['', ...list.map((e) => e.effect)], ...list.map((a) => [a.effect, ...list.map((b) => (a === b ? 1 : cosine(a, b)))])])}>CSV</button>
-      </figcaption>
-      <svg ref={ref} viewBox={`0 0 ${left + n * size + 4} ${n * size + 4}`} role="img"
-           aria-label="Cosine between the signatures of effects">
-        {list.map((a, i) => (
-          <g key={a.effect}>
-            <text x={left - 6} y={i * size + 14} text-anchor="end" class={a.effect === props.strong ? 'strong' : ''}>{spaced(a.effect)}</text>
-            {list.map((b, j) => {
-              const c = i === j ? 1 : cosine(a, b);
-              return (
-                <rect key={b.effect} x={left + j * size} y={i * size} width={size - 1} height={size - 1} fill={css(sequential(c))}>
-                  <title>{`${spaced(a.effect)} and ${spaced(b.effect)}: cosine ${c.toFixed(2)}`}</title>
-                </rect>
-              );
-            })}
-          </g>
-        ))}
-      </svg>
-      <Legend ramp={cosineRamp} />
-    </figure>
-  );
-}
 
 /** `pinned`: what Add would add, whichever effect is looked at. */
 function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
@@ -64,7 +22,7 @@ function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
       <p>{e.why ?? e.why_not}</p>
       {(e.confused_with ?? []).length > 0 && <p>These photos hardly tell it from {listed(e.confused_with!.map(spaced))}.</p>}
       {e.predicted && e.predicted.length > 0 && (
-        <table>
+        <Wide label="Parameters it would have">
           <thead><tr><th>would be</th><th>value</th><th>95 % interval</th></tr></thead>
           <tbody>
             {e.predicted.slice(0, 8).map((p) => (
@@ -72,7 +30,7 @@ function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
                 <td>{figure(p.low)} .. {figure(p.high)}</td></tr>
             ))}
           </tbody>
-        </table>
+        </Wide>
       )}
       <Removed effect={e.effect} />
     </section>
@@ -144,9 +102,9 @@ export function Missing() {
   const pinned = byName(chosenEffect.value) ?? byName(decision?.added) ?? ranked[0] ?? all[0];
   return (
     <div class="missing columns">
-      <div class="ranking">
+      <div class="ranking" onMouseLeave={() => (previewed.value = '')}>
         <Outcome ranked={ranked} decision={decision} />
-        <table aria-label="Ranked effects" onMouseLeave={() => (previewed.value = '')}>
+        <Wide label="Ranked effects">
           <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th class="wide">dof</th>
             <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
           <tbody>
@@ -154,7 +112,7 @@ export function Missing() {
               <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} />
             ))}
           </tbody>
-        </table>
+        </Wide>
       </div>
       <div class="side">
         {pinned && <Detail effect={byName(previewed.value) ?? pinned} pinned={pinned} />}

@@ -37,8 +37,12 @@ function scaleOf(cells: Cells, unit: number): {scale: number; cut: boolean} {
 
 type Layer = 'now' | 'removed';
 
+/** The value at a pixel; cells reach beyond the last ones. */
+const nearest = (photo: Grid, x: number, y: number): number =>
+  photo.values[Math.min(photo.height - 1, Math.floor(y / photo.shrink)) * photo.width + Math.min(photo.width - 1, Math.floor(x / photo.shrink))];
+
 /** The photo in grey, and over it the cells, the more opaque the more there is to show. */
-function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, photo: Grid, layer: Layer, scale: number): void {
+function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, photo: Grid | null, layer: Layer, scale: number): void {
   const bytes = fromBase64(cells.bytes);
   const count = cells.columns * cells.rows;
   const now = bytes.subarray(0, count);
@@ -48,14 +52,12 @@ function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, p
   canvas.height = part.rows * size;
   const context = canvas.getContext('2d')!;
   const pixels = context.createImageData(canvas.width, canvas.height);
-  const gain = gainOf(photo);
+  const gain = photo ? gainOf(photo) : 1;
   for (let y = 0, i = 0; y < canvas.height; ++y)
     for (let x = 0; x < canvas.width; ++x, ++i) {
       const column = part.left + Math.floor(x / size);
       const row = part.top + Math.floor(y / size);
-      const u = Math.min(photo.width - 1, Math.floor((part.left * size + x) / photo.shrink));
-      const v = Math.min(photo.height - 1, Math.floor((part.top * size + y) / photo.shrink));
-      const grey = shown(photo.values[v * photo.width + u] * gain);
+      const grey = photo ? shown(nearest(photo, part.left * size + x, part.top * size + y) * gain) : 128;
       const code = bytes[row * cells.columns + column + (layer === 'now' ? 0 : count)];
       let colour: Rgb = [grey, grey, grey];
       if (code > 0) {
@@ -76,7 +78,8 @@ function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer
   useEffect(() => {
     let current = true;
     const cells = prediction.photos[entry.name];
-    void picture(entry.photo).then((photo) => {
+    const photo = entry.photo ? picture(entry.photo) : Promise.resolve(null);
+    void photo.then((photo) => {
       if (current && canvas.current && cells) draw(canvas.current, prediction, cells, photo, layer, scale);
     }, () => undefined);
     return () => {
