@@ -3,7 +3,7 @@ import {useEffect, useState} from 'preact/hooks';
 import type {StepEntry} from '../document';
 import {floor} from '../state';
 import {Bars, type Row} from '../widgets';
-import {examplesOf, surface} from './surface';
+import {examplesOf, readable} from './surface';
 
 interface Sum {
   squares: number;
@@ -30,8 +30,7 @@ function strainRows(pairs: [number, number][]): Row[] {
 async function fieldRows(step: StepEntry): Promise<{regions: Row[]; strains: Row[]}> {
   const regions = new Map<string, Sum>();
   const pairs: [number, number][] = [];
-  for (const example of examplesOf(step)) {
-    const s = await surface(step, example);
+  for (const s of (await readable(step, examplesOf(step))).all.values()) {
     for (const [name, nodes] of Object.entries(s.regions)) {
       const sum = regions.get(name) ?? {squares: 0, count: 0};
       for (const node of nodes) {

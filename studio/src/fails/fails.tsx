@@ -3,13 +3,13 @@ import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, notCounted, sequential, type Ramp} from '../colours';
 import {saveCsv, saveText} from '../download';
-import {figure} from '../format';
+import {figure, listed} from '../format';
 import {savePictures} from '../pictures';
 import {run, step, theme} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
 import type {BodyScene, Look} from './scene';
-import {examplesOf, quantities, quantityNames, reach, surface, unitOf, type Quantity, type Surface} from './surface';
+import {examplesOf, quantities, quantityNames, reach, readable, unitOf, type Quantity, type Surface} from './surface';
 import {Picked, picked} from './picked';
 import {useScene} from './use_scene';
 import {surfaceVtu} from './vtu';
@@ -95,16 +95,15 @@ export function Fails() {
     // The capture's order, as far as it is known.
     const order = (run.value.capture?.examples ?? []).map((e) => e.name);
     names.sort((a, b) => order.indexOf(a) - order.indexOf(b));
-    void Promise.all(names.map(async (name) => [name, await surface(now, name)] as const)).then(
-      (all) => {
-        if (!current) return;
-        setSurfaces(new Map(all));
-        if (!names.includes(chosenExample.value)) {
-          const by = now.metrics?.chi_by_example ?? {};
-          chosenExample.value = [...names].sort((a, b) => (by[b] ?? 0) - (by[a] ?? 0))[0] ?? '';
-        }
-      },
-      (error: Error) => current && setFault(error.message));
+    void readable(now, names).then(({all, lost}) => {
+      if (!current) return;
+      setSurfaces(all);
+      setFault(lost.length ? `The body in ${listed(lost)} cannot be read.` : '');
+      if (!all.has(chosenExample.value)) {
+        const by = now.metrics?.chi_by_example ?? {};
+        chosenExample.value = [...all.keys()].sort((a, b) => (by[b] ?? 0) - (by[a] ?? 0))[0] ?? '';
+      }
+    });
     return () => {
       current = false;
     };

@@ -53,7 +53,7 @@ export function Chart(props: {
             splits: () => props.x, values: (_: uPlot, at: number[]) => at.map((i) => names[i] ?? ''),
           })},
           {...axis, label: props.yLabel, labelSize: 22, size: 64,
-            values: (_, at) => at.map((v: number | null) => (v === null ? '' : figure(v)))},
+            values: (_, at) => at.map((v: number | null) => (v == null ? '' : figure(v)))},
         ],
         series: [
           {label: props.xLabel, value: names ? (_, v) => names[v] ?? '–' : undefined},
@@ -63,7 +63,7 @@ export function Chart(props: {
             width: 2,
             dash: line.dash,
             points: {show: line.points ?? false, size: 8, fill: line.colour},
-            value: (_: uPlot, v: number | null) => (v === null ? '–' : v.toPrecision(4)),
+            value: (_: uPlot, v: number | null | undefined) => (v == null ? '–' : v.toPrecision(4)),
           })),
         ],
         hooks: {

@@ -102,16 +102,17 @@ export function Falls() {
   return (
     <div class="falls columns">
       <section>
-        <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
+        {list.length > 0 && <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
                says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
-               xLabel="step" yLabel="χ, residual over noise" />
+               xLabel="step" yLabel="χ, residual over noise" />}
         {curves.map((curve) => <Energy key={curve.name} curve={curve} />)}
       </section>
       <section>
         <h3>Parameters
           <button class="quiet" onClick={() => saveCsv('parameters.csv', [['step', 'name', 'unit', 'value', 'low', 'high'],
             ...told.flatMap((s) => s.list.map((p) => [s.folder, p.name, p.unit, p.value, p.low, p.high]))])}>CSV</button></h3>
-        {told.length ? <Parameters steps={told} /> : <p class="empty">run.json tells nothing of this step.</p>}
+        {told.length ? <Parameters steps={told} />
+          : <p class="empty">{list.length ? 'run.json tells nothing of this step.' : 'No step is finished yet.'}</p>}
         {latest?.diagnosis?.mesh_note && <p class="note">The mesh: {latest.diagnosis.mesh_note}.</p>}
         {now?.undetermined?.map((sentence) => <p class="note" key={sentence}>{sentence}</p>)}
         {now?.converged === false && <p class="note">This fit did not converge in {now.iterations} iterations.</p>}
