@@ -17,7 +17,8 @@ export interface PhotoEntry {
   width: number;
   height: number;
   file: string;
-  photo: Picture;
+  /** Left out where the capture could not be read. */
+  photo?: Picture;
   /** Standard deviation of the noise: as a picture, or from the intensity. */
   sigma?: Picture;
   noise?: {read: number; full_well: number; factor: number};

@@ -3,8 +3,20 @@ import {computed, signal} from '@preact/signals';
 import type {EffectScore, JobState, PageDocument, PhotoEntry, PhotoFigures, StepEntry, TimelineStep} from './document';
 import {keysOf} from './format';
 
+/** Where the capture is not there to tell of its photos, the residuals do; their size is in them. */
+export function withPhotos(page: PageDocument): PageDocument {
+  if (page.photos.length) return page;
+  const told = page.steps.flatMap((step) => step.metrics?.photos ?? []);
+  const names = [...new Set(page.steps.flatMap((step) => Object.keys(step.residuals)))];
+  const photos = names.sort().map((name): PhotoEntry => {
+    const figures = told.find((f) => `${name}-`.startsWith(`${f.example}-${f.camera}-`));
+    return {name, example: figures?.example ?? name, camera: figures?.camera ?? '',
+      use: figures?.use === 'validate' ? 'validate' : 'fit', width: 0, height: 0, file: ''};
+  });
+  return {...page, photos};
+}
 export const run = signal<PageDocument>(
-  JSON.parse(document.getElementById('document')?.textContent ?? 'null'),
+  withPhotos(JSON.parse(document.getElementById('document')?.textContent ?? 'null')),
 );
 export const job = signal<JobState | null>(null);
 
@@ -41,7 +53,9 @@ export const stepIndex = computed(() => {
   return chosenStep.value < 0 ? count - 1 : Math.min(chosenStep.value, count - 1);
 });
 export const step = computed<StepEntry | undefined>(() => run.value.steps[stepIndex.value]);
-export const other = computed<StepEntry | undefined>(() => run.value.steps[otherStep.value]);
+export const other = computed<StepEntry | undefined>(
+  () => (otherStep.value === stepIndex.value ? undefined : run.value.steps[otherStep.value]),
+);
 
 /** The timeline's entry of a step, or nothing where run.json does not know it. */
 export function timelineOf(entry: StepEntry | undefined): TimelineStep | undefined {

@@ -21,7 +21,7 @@ function law(): string {
 
 function compared(): Told {
   const {photos} = run.value;
-  if (!photos.length) return {headline: 'no photos', sentence: 'They are not here; see what is missing above.'};
+  if (!photos.some((p) => p.photo)) return {headline: 'no photos', sentence: 'They are not here; see what is missing above.'};
   const examples = new Set(photos.map((p) => p.example));
   const heldOut = photos.filter((p) => p.use === 'validate').length;
   return {

@@ -21,6 +21,10 @@ interface Props {
   split?: number;
   arrows?: Arrow[];
   gain?: number;
+  /** Said over the panel where there is no picture. */
+  absent?: string;
+  /** Dragging the picture moves the edge of a swipe: anywhere while it fits, else near the edge. */
+  onSplit?: (at: number) => void;
   onPick?: (x: number, y: number) => void;
 }
 
@@ -99,7 +103,7 @@ function render(canvas: HTMLCanvasElement, props: Props): void {
 
 export function Panel(props: Props) {
   const ref = useRef<HTMLCanvasElement>(null);
-  const drag = useRef<{x: number; y: number; moved: boolean} | null>(null);
+  const drag = useRef<{x: number; y: number; moved: boolean; swipes: boolean} | null>(null);
   const fingers = useRef(new Map<number, {x: number; y: number}>());
   // Read here, so that the panel is drawn again whenever either changes.
   void place.value;
@@ -142,8 +146,9 @@ export function Panel(props: Props) {
     } else if (drag.current) {
       const [dx, dy] = [event.offsetX - drag.current.x, event.offsetY - drag.current.y];
       if (Math.hypot(dx, dy) > 2 || drag.current.moved) {
-        pan(size(canvas), props.photo, dx, dy);
-        drag.current = {x: event.offsetX, y: event.offsetY, moved: true};
+        if (drag.current.swipes) props.onSplit!(Math.min(1, Math.max(0, event.offsetX / canvas.clientWidth)));
+        else pan(size(canvas), props.photo, dx, dy);
+        drag.current = {...drag.current, x: event.offsetX, y: event.offsetY, moved: true};
       }
     }
     if (before) fingers.current.set(event.pointerId, {x: event.offsetX, y: event.offsetY});
@@ -155,7 +160,9 @@ export function Panel(props: Props) {
   const down = (event: PointerEvent): void => {
     ref.current!.setPointerCapture(event.pointerId);
     fingers.current.set(event.pointerId, {x: event.offsetX, y: event.offsetY});
-    drag.current = {x: event.offsetX, y: event.offsetY, moved: false};
+    const fromEdge = Math.abs(event.offsetX - (props.split ?? 0) * ref.current!.clientWidth);
+    const swipes = !!props.onSplit && (place.value.scale === 0 || fromEdge < 24);
+    drag.current = {x: event.offsetX, y: event.offsetY, moved: false, swipes};
   };
   const up = (event: PointerEvent): void => {
     fingers.current.delete(event.pointerId);
@@ -166,6 +173,7 @@ export function Panel(props: Props) {
   return (
     <figure class="panel">
       <figcaption>{props.title}</figcaption>
+      {props.absent && <p class="absent">{props.absent}</p>}
       <canvas
         ref={ref}
         role="img"
