@@ -1,6 +1,8 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
+import {useState} from 'preact/hooks';
 import {figure, duration, listed, logEvidence, spaced} from '../format';
 import {chosenStep, effectsOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
+import {Ask} from '../facts/glossary';
 import {Share, Wide} from '../widgets';
 import {add, stop} from './job';
 
@@ -45,7 +47,7 @@ function Steps() {
   const added = new Set(steps[steps.length - 1]?.effects);
   return (
     <Wide label="Steps of the run" class="steps">
-      <thead><tr><th>step</th><th>χ fitted</th><th>χ held out</th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
+      <thead><tr><th>step</th><th>χ fitted<Ask word="chi" /></th><th>χ held out<Ask word="heldOut" /></th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
       <tbody>
         {run.value.steps.map((entry, i) => {
           const t = timelineOf(entry);
@@ -86,6 +88,22 @@ function Difference() {
   );
 }
 
+/** Says what became of the click; where there is no clipboard, the command itself to copy by hand. */
+function CopyCommand(props: {text: string}) {
+  const [outcome, setOutcome] = useState<'' | 'copied' | 'refused'>('');
+  const copy = async (): Promise<void> => {
+    try {
+      await navigator.clipboard.writeText(props.text);
+      setOutcome('copied');
+      setTimeout(() => setOutcome(''), 2500);
+    } catch {
+      setOutcome('refused');
+    }
+  };
+  if (outcome === 'refused') return <code role="status">{props.text}</code>;
+  return <button aria-live="polite" onClick={() => void copy()}>{outcome === 'copied' ? 'Copied' : 'Copy command'}</button>;
+}
+
 export function Add() {
   // An effect is always added to the newest step, whichever is looked at.
   const newest = run.value.steps[run.value.steps.length - 1];
@@ -105,7 +123,7 @@ export function Add() {
               <Share of={e.explains} />
               <span class="value">evidence {logEvidence(e.evidence)}</span>
               {run.value.live ? <AddButton effect={e.effect} /> : (
-                <button onClick={() => void navigator.clipboard?.writeText(`hookeye add ${run.value.run} ${e.effect}`)}>Copy command</button>
+                <CopyCommand text={`hookeye add ${run.value.run} ${e.effect}`} />
               )}
             </li>
           ))}

@@ -4,6 +4,7 @@ import type {RefObject} from 'preact';
 import {useEffect, useRef} from 'preact/hooks';
 import type {PhotoEntry, StepEntry} from '../document';
 import {saveCsv} from '../download';
+import {Ask} from '../facts/glossary';
 import {figure} from '../format';
 import {savePictures} from '../pictures';
 import {chosenPhoto, figuresOf, other, run, step, units, wantedPixel} from '../state';
@@ -197,7 +198,7 @@ export function Compare() {
         </div>
         <p class="readout" role="status" id="readout">{readout(shown)}</p>
         <div class="legends">
-          <Legend ramp={residualRamp} />
+          <Legend ramp={residualRamp} /><Ask word="sigma" />
           <ArrowLegend shown={shown} second={other.value ? second : null} />
           <span class="swatch">grey: does not count</span>
         </div>

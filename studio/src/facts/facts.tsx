@@ -4,6 +4,7 @@ import {figure} from '../format';
 import {bytesOf} from '../parts';
 import {floor, run, step, stepIndex, timelineOf} from '../state';
 import {Wide} from '../widgets';
+import {Glossary} from './glossary';
 
 function practiceRows(): [string, string][] {
   const metrics = step.value?.metrics;
@@ -56,6 +57,8 @@ export function Facts() {
       <section>
         <h3>How it was measured <button class="quiet" onClick={() => saveCsv('reporting.csv', [['item', 'value'], ...rows])}>CSV</button></h3>
         <Wide label="How it was measured"><tbody>{rows.map(([name, value]) => <tr key={name}><th scope="row">{name}</th><td>{value}</td></tr>)}</tbody></Wide>
+        <h3>Words</h3>
+        <Glossary />
         <h3>What made it</h3>
         <Wide label="What made it"><tbody>
           <tr><th scope="row">Command of step {stepIndex.value}</th><td><code>{told?.command ?? 'not recorded'}</code></td></tr>

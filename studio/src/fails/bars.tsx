@@ -1,6 +1,7 @@
 // Where the misfit sits: by load case, camera, region and strain level.
 import {useEffect, useState} from 'preact/hooks';
 import type {StepEntry} from '../document';
+import {Ask} from '../facts/glossary';
 import {floor} from '../state';
 import {Bars, type Row} from '../widgets';
 import {examplesOf, readable} from './surface';
@@ -77,7 +78,7 @@ export function FailureBars(props: {step: StepEntry}) {
       {all.map(([title, list]) => list.length > 0 && (
         <Bars key={title} title={title} rows={list} mark={floor.value.chi} />
       ))}
-      <p class="note">The line is the noise floor, χ = {floor.value.chi.toFixed(2)} ({floor.value.source}).</p>
+      <p class="note">The line is the noise floor, χ = {floor.value.chi.toFixed(2)} ({floor.value.source})<Ask word="floor" />.</p>
     </div>
   );
 }

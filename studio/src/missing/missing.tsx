@@ -5,6 +5,7 @@ import {saveCsv} from '../download';
 import {figure, listed, logEvidence, percent, spaced} from '../format';
 import {chosenEffect, decisionAfter, effectsOf, gateOf, isNamed, step, wasTested, type Decision} from '../state';
 import {AddButton} from '../add/add';
+import {Ask} from '../facts/glossary';
 import {decidedBy, tooLittle} from '../story';
 import {Confusion} from './confusion';
 import {Removed} from './removed';
@@ -72,7 +73,7 @@ function Decided(props: {ranked: EffectScore[]; decision: Decision; folder: stri
   return <p><b>{spaced(added)}</b> was added to step {folder}
     {own && `: log evidence ${logEvidence(own.evidence)}`}
     {own && next && `, ${next === ranked[0] ? 'behind' : 'before'} ${spaced(next.effect)} with ${logEvidence(next.evidence)}`}
-    {margin !== undefined && `; ${decidedBy(added, refitted, margin)}`}.</p>;
+    {margin !== undefined && `; ${decidedBy(added, refitted, margin)}`}{margin !== undefined && <Ask word="refit" />}.</p>;
 }
 
 /** What the ranking comes to, in one sentence. */
@@ -87,7 +88,7 @@ function Outcome(props: {ranked: EffectScore[]; decision: Decision | undefined})
   if (!first) return <p>Nothing could be tested in step {folder}.</p>;
   if (isNamed(first, step.value))
     return <p><b>{spaced(first.effect)}</b> leads in step {folder} with log evidence {logEvidence(first.evidence)}
-      {second && `, before ${spaced(second.effect)} with ${logEvidence(second.evidence)}`}; {rule}.</p>;
+      {second && `, before ${spaced(second.effect)} with ${logEvidence(second.evidence)}`}; {rule}<Ask word="gate" />.</p>;
   return <p><b>Nothing stands out</b> in step {folder}: {spaced(first.effect)} leads with log evidence {logEvidence(first.evidence)}; {
     (first.evidence ?? 0) < gate ? rule : tooLittle}.</p>;
 }
@@ -105,7 +106,7 @@ export function Missing() {
       <div class="ranking" onMouseLeave={() => (previewed.value = '')}>
         <Outcome ranked={ranked} decision={decision} />
         <Wide label="Ranked effects">
-          <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th class="wide">dof</th>
+          <thead><tr><th>effect</th><th>would explain</th><th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th><th class="wide">dof<Ask word="dof" /></th>
             <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
