@@ -8,6 +8,8 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {launch} from './browser.mjs';
+import {broken, lost, withoutSteps} from './damaged.mjs';
+import {hoverIsNoChoice, removedIsDrawn} from './missing.mjs';
 import {smallCapture} from './small_capture.mjs';
 
 const hookeye = process.argv[2];
@@ -128,28 +130,6 @@ async function keyboardOnly(page) {
   await page.keyboard.press('?');
   await page.waitForSelector('[role=dialog]');
   await page.keyboard.press('Escape');
-}
-
-/** The leading effect's pictures, all in colour: the residual there is and what it would remove
- *  over the photo, and the latter on the body. */
-async function removedIsDrawn(page) {
-  await page.click('#tab-missing');
-  const coloured = () => page.$$eval('.removed canvas', (all) => all.map((canvas) => {
-    const copy = document.createElement('canvas');
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const context = copy.getContext('2d');
-    context.drawImage(canvas, 0, 0);  // the body's canvas has no pixels of its own to ask for
-    const data = context.getImageData(0, 0, copy.width, copy.height).data;
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4)
-      if (Math.abs(data[i] - data[i + 2]) > 25) count += 1;
-    return count;
-  }));
-  for (const end = Date.now() + 30000; Date.now() < end; await page.waitForTimeout(300)) {
-    const counts = await coloured();
-    if (counts.length === 3 && counts.every((c) => c > 100)) return;
-  }
-  assert.fail(`what the effect would remove is not drawn: ${await coloured()}`);
 }
 
 /** A point of the body, picked by the keyboard, is shown in the photos that see it; one leads there. */
@@ -307,6 +287,7 @@ async function retold() {
   await page.click('text=residuals of both steps');
   await page.waitForSelector('figcaption:has-text("residual of 01-gravity")');
   await page.click('text=side by side');
+  await hoverIsNoChoice(page, until);
   await figuresAreSaved(page);
   await accessible(page);
   await page.click('#tab-facts');
@@ -367,21 +348,6 @@ async function large() {
   say(`a run too large for one file: ${(1e-6 * size).toFixed(1)} MB. ${reduction}`);
 }
 
-async function broken() {
-  const half = join(folder, 'half');
-  cpSync(run, half, {recursive: true});
-  writeFileSync(join(half, 'run.json'), readFileSync(join(half, 'run.json'), 'utf8').slice(0, 400));
-  rmSync(join(half, 'steps', '00-base', 'metrics.json'));
-  tell('report', half, '-o', join(folder, 'half.html'));
-  const {page, faults, close} = await open('file://' + join(folder, 'half.html'));
-  await page.waitForSelector('.faults');
-  assert.match(await page.textContent('.faults'), /run\.json is damaged/);
-  await walk(page, 'half');
-  assert.deepEqual(faults, []);
-  await close();
-  say('a broken run opens and says what is not there');
-}
-
 try {
   const capture = smallCapture(hookeye, folder);
   tell('fit', capture, '-o', run);
@@ -392,7 +358,7 @@ try {
   await retold();
   await longNames();
   await large();
-  await broken();
+  for (const tried of [broken, lost, withoutSteps]) say(await tried({folder, run, tell, open, walk, until}));
 } finally {
   if (program?.exitCode === null) program.kill('SIGTERM');
   await browser.close();
