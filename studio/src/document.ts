@@ -17,7 +17,8 @@ export interface PhotoEntry {
   width: number;
   height: number;
   file: string;
-  photo: Picture;
+  /** Left out where the capture could not be read. */
+  photo?: Picture;
   /** Standard deviation of the noise: as a picture, or from the intensity. */
   sigma?: Picture;
   noise?: {read: number; full_well: number; factor: number};
@@ -33,6 +34,8 @@ export interface ParameterValue {
 export interface EffectScore {
   effect: string;
   testable?: boolean;
+  /** Whether the program would name it; runs of older versions do not tell. */
+  named?: boolean;
   why_not?: string;
   variant?: string;
   explains?: number;
@@ -110,6 +113,7 @@ export interface TimelineStep {
   parameters: ParameterValue[];
   diagnosis: EffectScore[];
   gate?: number;
+  /** Refits that the added effect was chosen from: their score less the winner's. */
   rivals?: {effect: string; score: number}[];
   command?: string;
   made_by?: Record<string, string>;

@@ -5,6 +5,10 @@ export function figure(value: number | null | undefined, digits = 3): string {
   if (size >= 1e5 || size < 1e-3) return value.toExponential(digits - 1).replace('-', '−').replace('e−', 'e-');
   return Number(value.toPrecision(digits)).toString().replace('-', '−');
 }
+/** A logarithm of odds: a tenth matters however large it is. */
+export function logEvidence(value: number | null | undefined): string {
+  return value !== null && value !== undefined && Math.abs(value) >= 10 ? value.toFixed(1).replace('-', '−') : figure(value);
+}
 export function percent(share: number | undefined): string {
   return share === undefined || !Number.isFinite(share) ? '–' : `${Math.round(100 * share)} %`;
 }

@@ -3,8 +3,20 @@ import {computed, signal} from '@preact/signals';
 import type {EffectScore, JobState, PageDocument, PhotoEntry, PhotoFigures, StepEntry, TimelineStep} from './document';
 import {keysOf} from './format';
 
+/** Where the capture is not there to tell of its photos, the residuals do; their size is in them. */
+export function withPhotos(page: PageDocument): PageDocument {
+  if (page.photos.length) return page;
+  const told = page.steps.flatMap((step) => step.metrics?.photos ?? []);
+  const names = [...new Set(page.steps.flatMap((step) => Object.keys(step.residuals)))];
+  const photos = names.sort().map((name): PhotoEntry => {
+    const figures = told.find((f) => `${name}-`.startsWith(`${f.example}-${f.camera}-`));
+    return {name, example: figures?.example ?? name, camera: figures?.camera ?? '',
+      use: figures?.use === 'validate' ? 'validate' : 'fit', width: 0, height: 0, file: ''};
+  });
+  return {...page, photos};
+}
 export const run = signal<PageDocument>(
-  JSON.parse(document.getElementById('document')?.textContent ?? 'null'),
+  withPhotos(JSON.parse(document.getElementById('document')?.textContent ?? 'null')),
 );
 export const job = signal<JobState | null>(null);
 
@@ -41,7 +53,9 @@ export const stepIndex = computed(() => {
   return chosenStep.value < 0 ? count - 1 : Math.min(chosenStep.value, count - 1);
 });
 export const step = computed<StepEntry | undefined>(() => run.value.steps[stepIndex.value]);
-export const other = computed<StepEntry | undefined>(() => run.value.steps[otherStep.value]);
+export const other = computed<StepEntry | undefined>(
+  () => (otherStep.value === stepIndex.value ? undefined : run.value.steps[otherStep.value]),
+);
 
 /** The timeline's entry of a step, or nothing where run.json does not know it. */
 export function timelineOf(entry: StepEntry | undefined): TimelineStep | undefined {
@@ -59,6 +73,25 @@ export function wasTested(effect: EffectScore): boolean {
 /** Evidence below which no effect is named (estimation/diagnosis.h: kNameable). */
 export function gateOf(entry: StepEntry | undefined): number {
   return Math.max(5, entry?.diagnosis?.gate ?? timelineOf(entry)?.gate ?? 0);
+}
+/** The program's own word where it gave one: it also asks whether a renderer could err as much. */
+export function isNamed(effect: EffectScore, entry: StepEntry | undefined): boolean {
+  return wasTested(effect) && (effect.named ?? (effect.evidence ?? 0) >= gateOf(entry));
+}
+/** Of the catalogue's group `numerical`: they tell of the model's mesh, not of the body. */
+export const isNumerical = (effect: string): boolean => effect === 'mesh_resolution';
+/** What was added to a step, and by how much its refit beat the best of the others that were tried. */
+export interface Decision {
+  added: string;
+  refitted: string[];
+  margin?: number;
+}
+export function decisionAfter(entry: StepEntry | undefined): Decision | undefined {
+  const told = timelineOf(entry);
+  const next = told && run.value.timeline.steps[run.value.timeline.steps.indexOf(told) + 1];
+  if (!next?.added || next.name.startsWith('without-')) return undefined;
+  const others = (next.rivals ?? []).filter((r) => r.effect !== next.added).sort((a, b) => b.score - a.score);
+  return {added: next.added, refitted: others.map((r) => r.effect), margin: others.length ? -others[0].score : undefined};
 }
 export function figuresOf(entry: StepEntry | undefined, photo: PhotoEntry): PhotoFigures | undefined {
   return entry?.metrics?.photos.find((f) => f.example === photo.example && f.camera === photo.camera);

@@ -1,7 +1,7 @@
 // The run in six short sentences with figures, for someone who has never seen it.
-import type {EffectScore, StepEntry} from './document';
-import {around, figure, listed, percent, spaced} from './format';
-import {effectsOf, figuresOf, floor, gateOf, run, timelineOf, units, wasTested, worstPhoto, type Verb} from './state';
+import type {EffectScore, ParameterValue, StepEntry} from './document';
+import {around, figure, listed, logEvidence, percent, spaced} from './format';
+import {decisionAfter, effectsOf, figuresOf, floor, gateOf, isNamed, isNumerical, run, timelineOf, units, wasTested, worstPhoto, type Verb} from './state';
 
 export interface Told {
   /** In large letters. */
@@ -21,7 +21,7 @@ function law(): string {
 
 function compared(): Told {
   const {photos} = run.value;
-  if (!photos.length) return {headline: 'no photos', sentence: 'They are not here; see what is missing above.'};
+  if (!photos.some((p) => p.photo)) return {headline: 'no photos', sentence: 'They are not here; see what is missing above.'};
   const examples = new Set(photos.map((p) => p.example));
   const heldOut = photos.filter((p) => p.use === 'validate').length;
   return {
@@ -47,11 +47,35 @@ function failed(base: StepEntry, lengthPerPx: number): Told {
   };
 }
 
+/** Above the gate and still not named: no null of independent noise knows of a renderer's errors. */
+export const tooLittle = 'so small a part of the misfit may be the renderer’s own error, so it is not named';
+
+/** What the refits of the leading effects came to. */
+export function decidedBy(added: string, others: string[], margin: number): string {
+  const all = ['both', 'all three'][others.length - 1] ?? `all ${others.length + 1}`;
+  return `refits of ${all} decided for ${spaced(added)} over ${spaced(others[0])}, by ${figure(margin, 4)}`;
+}
+
 function sureness(effect: EffectScore, before: StepEntry): string {
   const next = effectsOf(before).filter((e) => wasTested(e) && e.effect !== effect.effect)
     .sort((a, b) => (b.evidence ?? 0) - (a.evidence ?? 0))[0];
-  return `would remove ${percent(effect.explains)} of the misfit; log evidence ${figure(effect.evidence)} ` +
-    `where ${figure(gateOf(before), 2)} is enough` + (next ? `; next: ${spaced(next.effect)}, ${figure(next.evidence)}` : '');
+  const decision = decisionAfter(before);
+  const rest = decision?.added === effect.effect && decision.margin !== undefined
+    ? decidedBy(decision.added, decision.refitted, decision.margin)
+    : next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
+  return `would remove ${percent(effect.explains)} of the misfit; log evidence ${logEvidence(effect.evidence)} ` +
+    `where ${figure(gateOf(before), 2)} is enough` + (rest ? `; ${rest}` : '');
+}
+
+/** Share and choice of an effect that was not the only one. */
+function chapter(effect: EffectScore, before: StepEntry, index: number): string {
+  const decision = decisionAfter(before);
+  const share = effect.explains === undefined ? ''
+    : index === 0 ? ` ${percent(effect.explains)} of the misfit` : ` ${percent(effect.explains)} of the rest`;
+  const chosen = decision?.added === effect.effect && decision.margin !== undefined
+    ? ` (refits decided, by ${figure(decision.margin, 4)})` : '';
+  const mesh = isNumerical(effect.effect) ? ' (the mesh, not the material)' : '';
+  return `${index > 0 ? 'then ' : ''}${spaced(effect.effect)}${share}${chosen}${mesh}`;
 }
 
 function missing(): Told {
@@ -69,27 +93,40 @@ function missing(): Told {
   if (added.length)
     return {headline: listed(added.map((a) => spaced(a.score.effect))),
       sentence: added.length === 1 ? sureness(added[0].score, added[0].before)
-        : added.map((a) => `${spaced(a.score.effect)}: ${percent(a.score.explains)}, log evidence ${figure(a.score.evidence)}`).join('; ')};
+        : added.map((a, i) => chapter(a.score, a.before, i)).join(', ')};
   const now = steps[steps.length - 1];
-  const first = effectsOf(now).filter(wasTested)[0];
+  const tested = effectsOf(now).filter(wasTested);
+  const first = tested.find((e) => isNamed(e, now)) ?? tested[0];
   if (!first) return {headline: 'not tested', sentence: 'this run has not been diagnosed'};
-  return (first.evidence ?? 0) >= gateOf(now)
-    ? {headline: `${spaced(first.effect)}?`, sentence: `leads, not added yet: ${sureness(first, now)}`}
-    : {headline: 'nothing', sentence: `of ${effectsOf(now).length} effects stands out: the best, ${spaced(first.effect)}, ` +
-        `has log evidence ${figure(first.evidence)}, below the ${figure(gateOf(now), 2)} of chance`};
+  if (isNamed(first, now))
+    return {headline: `${spaced(first.effect)}?`, sentence: `leads, not added yet: ${sureness(first, now)}`};
+  const why = (first.evidence ?? 0) < gateOf(now) ? `below the ${figure(gateOf(now), 2)} of chance` : tooLittle;
+  return {headline: 'nothing', sentence: `of ${effectsOf(now).length} effects stands out: the best, ${spaced(first.effect)}, ` +
+    `has log evidence ${logEvidence(first.evidence)}, ${why}`};
+}
+
+/** An effect's own parameters: the largest with its interval, of the others as many as a tab has room for. */
+function valuesOf(effect: string, all: ParameterValue[]): string {
+  if (isNumerical(effect)) return `${spaced(effect)}: the mesh, not the material`;
+  const [main, ...others] = all.filter((p) => p.name === effect || p.name.startsWith(effect + '.'))
+    .sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
+  if (!main) return `${spaced(effect)}: no parameter of its own`;
+  const {value, interval} = around(main.value, main.low, main.high);
+  const short = others.slice(0, 2).map((p) => `, ${p.name.slice(effect.length + 1)} ${around(p.value, p.low, p.high).value} ${p.unit}`);
+  return `${main.name} ${value} ${main.unit}, 95 % interval ${interval}${short.join('')}` +
+    (others.length > 2 ? ` and ${others.length - 2} more` : '');
 }
 
 function refitted(newest: StepEntry): Told {
   const told = timelineOf(newest);
   if (!told?.added || run.value.steps.length < 2)
     return {headline: 'no effect yet', sentence: 'adding one refits the model with it, from where this fit ended'};
-  const own = told.parameters.filter((p) => p.name.startsWith(told.added!));
-  const main = (own.length ? own : told.parameters).slice().sort((a, b) => Math.abs(b.value) - Math.abs(a.value))[0];
-  if (!main) return {headline: spaced(told.added), sentence: 'added'};
-  const {value, interval} = around(main.value, main.low, main.high);
+  const takenBack = told.name.startsWith('without-');
+  const standing = told.effects ?? (takenBack ? [] : [told.added]);
+  const values = standing.map((effect) => valuesOf(effect, told.parameters)).join('; ');
   return {
-    headline: told.name.startsWith('without-') ? `− ${spaced(told.added)}` : `+ ${spaced(told.added)}`,
-    sentence: `refitted from the photos: ${main.name} ${value} ${main.unit}, 95 % interval ${interval}`,
+    headline: takenBack ? `− ${spaced(told.added)}` : standing.map((effect) => `+ ${spaced(effect)}`).join(' '),
+    sentence: values ? `refitted from the photos: ${values}` : 'no added effect is left',
   };
 }
 

@@ -1,12 +1,30 @@
 // Small parts of every view.
 import type {Signal} from '@preact/signals';
 import type {ComponentChildren} from 'preact';
+import {useEffect, useRef} from 'preact/hooks';
 import {gradient, type Ramp} from './colours';
 import {saveCsv} from './download';
 import {saveBars} from './pictures';
 
 export function Toolbar(props: {children: ComponentChildren}) {
   return <div class="toolbar">{props.children}</div>;
+}
+
+/** A table that may be wider than a phone scrolls by itself; only then the keyboard stops at it. */
+export function Wide(props: {label: string; class?: string; children: ComponentChildren}) {
+  const ref = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const box = ref.current!;
+    const measure = (): void => {
+      if (box.scrollWidth > box.clientWidth) box.tabIndex = 0;
+      else box.removeAttribute('tabindex');
+    };
+    const watch = new ResizeObserver(measure);
+    watch.observe(box);
+    watch.observe(box.firstElementChild!);
+    return () => watch.disconnect();
+  }, []);
+  return <div class="wide-table" ref={ref} role="group" aria-label={props.label}><table class={props.class} aria-label={props.label}>{props.children}</table></div>;
 }
 
 /** A bar for a share of one. */

@@ -3,11 +3,13 @@
 // With FOLDER, screenshots are kept there.
 import assert from 'node:assert/strict';
 import {execFileSync, spawn} from 'node:child_process';
-import {cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {cpSync, existsSync, mkdtempSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {launch} from './browser.mjs';
+import {broken, lost, withoutSteps} from './damaged.mjs';
+import {hoverIsNoChoice, removedIsDrawn} from './missing.mjs';
 import {smallCapture} from './small_capture.mjs';
 
 const hookeye = process.argv[2];
@@ -130,28 +132,6 @@ async function keyboardOnly(page) {
   await page.keyboard.press('Escape');
 }
 
-/** The leading effect's pictures, all in colour: the residual there is and what it would remove
- *  over the photo, and the latter on the body. */
-async function removedIsDrawn(page) {
-  await page.click('#tab-missing');
-  const coloured = () => page.$$eval('.removed canvas', (all) => all.map((canvas) => {
-    const copy = document.createElement('canvas');
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const context = copy.getContext('2d');
-    context.drawImage(canvas, 0, 0);  // the body's canvas has no pixels of its own to ask for
-    const data = context.getImageData(0, 0, copy.width, copy.height).data;
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4)
-      if (Math.abs(data[i] - data[i + 2]) > 25) count += 1;
-    return count;
-  }));
-  for (const end = Date.now() + 30000; Date.now() < end; await page.waitForTimeout(300)) {
-    const counts = await coloured();
-    if (counts.length === 3 && counts.every((c) => c > 100)) return;
-  }
-  assert.fail(`what the effect would remove is not drawn: ${await coloured()}`);
-}
-
 /** A point of the body, picked by the keyboard, is shown in the photos that see it; one leads there. */
 async function pointIsShown(page) {
   await page.click('#tab-fails');
@@ -229,6 +209,7 @@ async function report() {
   }
   const phone = await open('file://' + html, {width: 390, height: 844});
   await walk(phone.page, 'phone');
+  await accessible(phone.page);
   assert.ok(await phone.page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'wider than a phone');
   assert.deepEqual(phone.faults, []);
   await phone.close();
@@ -274,6 +255,7 @@ async function studio() {
   assert.ok(chis[1] < 0.7 * chis[0], `the error does not fall: ${chis}`);
   chis.forEach((chi, i) => assert.ok(Math.abs(chi - stored[i]) < 1e-3 * stored[i] + 1e-3));
   await walk(page, 'studio');
+  await accessible(page);
   assert.deepEqual(faults, []);
   await close();
   program.kill('SIGINT');
@@ -305,6 +287,7 @@ async function retold() {
   await page.click('text=residuals of both steps');
   await page.waitForSelector('figcaption:has-text("residual of 01-gravity")');
   await page.click('text=side by side');
+  await hoverIsNoChoice(page, until);
   await figuresAreSaved(page);
   await accessible(page);
   await page.click('#tab-facts');
@@ -315,6 +298,31 @@ async function retold() {
   assert.deepEqual(faults, []);
   await close();
   say('the finished report tells its run, and holds run.json and the deformed bodies');
+}
+
+/** Names as long as people give them do not make any view wider than a phone. */
+async function longNames() {
+  const long = join(folder, 'long');
+  const name = 'gravity_and_many_words_more_that_no_phone_has_room_for';
+  cpSync(run, long, {recursive: true});
+  renameSync(join(long, 'steps', '01-gravity'), join(long, 'steps', '01-' + name));
+  const document = runJson();
+  document.steps[1].name = name;
+  writeFileSync(join(long, 'run.json'), JSON.stringify(document));
+  const html = join(folder, 'long.html');
+  tell('report', long, '-o', html);
+  const {page, faults, close} = await open('file://' + html, {width: 390, height: 844});
+  for (const verb of verbs) {
+    await page.click('#tab-' + verb);
+    await page.waitForTimeout(800);
+    const wide = await page.evaluate(() => [document.documentElement, document.querySelector('main')]
+      .map((box) => box.scrollWidth - box.clientWidth));
+    assert.deepEqual(wide, [0, 0], `${verb} is wider than a phone`);
+  }
+  await accessible(page);
+  assert.deepEqual(faults, []);
+  await close();
+  say('a long name of a step on a phone');
 }
 
 /** Residuals of pure noise, 7 Mpx each: nothing that could be packed well. */
@@ -340,21 +348,6 @@ async function large() {
   say(`a run too large for one file: ${(1e-6 * size).toFixed(1)} MB. ${reduction}`);
 }
 
-async function broken() {
-  const half = join(folder, 'half');
-  cpSync(run, half, {recursive: true});
-  writeFileSync(join(half, 'run.json'), readFileSync(join(half, 'run.json'), 'utf8').slice(0, 400));
-  rmSync(join(half, 'steps', '00-base', 'metrics.json'));
-  tell('report', half, '-o', join(folder, 'half.html'));
-  const {page, faults, close} = await open('file://' + join(folder, 'half.html'));
-  await page.waitForSelector('.faults');
-  assert.match(await page.textContent('.faults'), /run\.json is damaged/);
-  await walk(page, 'half');
-  assert.deepEqual(faults, []);
-  await close();
-  say('a broken run opens and says what is not there');
-}
-
 try {
   const capture = smallCapture(hookeye, folder);
   tell('fit', capture, '-o', run);
@@ -363,8 +356,9 @@ try {
   await report();
   await studio();
   await retold();
+  await longNames();
   await large();
-  await broken();
+  for (const tried of [broken, lost, withoutSteps]) say(await tried({folder, run, tell, open, walk, until}));
 } finally {
   if (program?.exitCode === null) program.kill('SIGTERM');
   await browser.close();

@@ -1,15 +1,18 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
-import {figure, duration, listed, spaced} from '../format';
-import {chosenStep, effectsOf, gateOf, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
-import {Share} from '../widgets';
+import {useState} from 'preact/hooks';
+import {figure, duration, listed, logEvidence, spaced} from '../format';
+import {chosenStep, effectsOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
+import {Ask} from '../facts/glossary';
+import {Share, Wide} from '../widgets';
 import {add, stop} from './job';
 
-export function AddButton(props: {effect: string}) {
+/** `named`: where it may stand beside another effect's name. */
+export function AddButton(props: {effect: string; named?: boolean}) {
   if (!run.value.live) return null;
   const busy = job.value?.state === 'running';
   return (
     <button class="primary" disabled={busy} data-add={props.effect}
-            onClick={() => void add(props.effect)}>Add</button>
+            onClick={() => void add(props.effect)}>Add{props.named && ` ${spaced(props.effect)}`}</button>
   );
 }
 
@@ -43,8 +46,8 @@ function Steps() {
   const {steps} = run.value.timeline;
   const added = new Set(steps[steps.length - 1]?.effects);
   return (
-    <table class="steps" aria-label="Steps of the run">
-      <thead><tr><th>step</th><th>χ fitted</th><th>χ held out</th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
+    <Wide label="Steps of the run" class="steps">
+      <thead><tr><th>step</th><th>χ fitted<Ask word="chi" /></th><th>χ held out<Ask word="heldOut" /></th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
       <tbody>
         {run.value.steps.map((entry, i) => {
           const t = timelineOf(entry);
@@ -63,7 +66,7 @@ function Steps() {
           );
         })}
       </tbody>
-    </table>
+    </Wide>
   );
 }
 
@@ -73,7 +76,7 @@ function Difference() {
   if (!a || !b || a === b) return <p class="note">Choose a step under “against” to compare it with the shown one, here and in Compare.</p>;
   const names = [...new Set([...a.parameters, ...b.parameters].map((p) => p.name))];
   return (
-    <table aria-label="Parameters of the two steps">
+    <Wide label="Parameters of the two steps">
       <thead><tr><th>parameter</th>{entries.map((entry) => <th key={entry!.folder}>{entry!.folder}</th>)}<th>unit</th></tr></thead>
       <tbody>
         {names.map((name) => {
@@ -81,15 +84,31 @@ function Difference() {
           return <tr key={name}><td>{name}</td><td>{figure(x?.value, 4)}</td><td>{figure(y?.value, 4)}</td><td>{x?.unit ?? y?.unit}</td></tr>;
         })}
       </tbody>
-    </table>
+    </Wide>
   );
+}
+
+/** Says what became of the click; where there is no clipboard, the command itself to copy by hand. */
+function CopyCommand(props: {text: string}) {
+  const [outcome, setOutcome] = useState<'' | 'copied' | 'refused'>('');
+  const copy = async (): Promise<void> => {
+    try {
+      await navigator.clipboard.writeText(props.text);
+      setOutcome('copied');
+      setTimeout(() => setOutcome(''), 2500);
+    } catch {
+      setOutcome('refused');
+    }
+  };
+  if (outcome === 'refused') return <code role="status">{props.text}</code>;
+  return <button aria-live="polite" onClick={() => void copy()}>{outcome === 'copied' ? 'Copied' : 'Copy command'}</button>;
 }
 
 export function Add() {
   // An effect is always added to the newest step, whichever is looked at.
   const newest = run.value.steps[run.value.steps.length - 1];
   const offered = effectsOf(newest).filter(wasTested).slice(0, 10);
-  const standsOut = offered.some((e) => (e.evidence ?? 0) >= gateOf(newest));
+  const standsOut = offered.some((e) => isNamed(e, newest));
   return (
     <div class="add columns">
       <section>
@@ -102,9 +121,9 @@ export function Add() {
             <li key={e.effect}>
               <span class="name">{spaced(e.effect)}</span>
               <Share of={e.explains} />
-              <span class="value">evidence {figure(e.evidence)}</span>
+              <span class="value">evidence {logEvidence(e.evidence)}</span>
               {run.value.live ? <AddButton effect={e.effect} /> : (
-                <button onClick={() => void navigator.clipboard?.writeText(`hookeye add ${run.value.run} ${e.effect}`)}>Copy command</button>
+                <CopyCommand text={`hookeye add ${run.value.run} ${e.effect}`} />
               )}
             </li>
           ))}

@@ -1,7 +1,7 @@
 // Talking to the program that serves the page. A refit goes on when this page is closed.
 import {effect} from '@preact/signals';
 import type {JobState, PageDocument} from '../document';
-import {chosenStep, job, run} from '../state';
+import {chosenStep, job, run, withPhotos} from '../state';
 
 export const lost = {value: false};
 
@@ -16,7 +16,7 @@ async function ask<T>(path: string, body?: unknown): Promise<T> {
 }
 
 export async function reload(): Promise<void> {
-  run.value = {...(await ask<PageDocument>('document')), live: true};
+  run.value = {...withPhotos(await ask<PageDocument>('document')), live: true};
 }
 
 export async function add(name: string, takeBack = false): Promise<void> {

@@ -25,11 +25,12 @@ export async function frames(entry: PhotoEntry, step: StepEntry | undefined): Pr
   const quiet = <T>(wanted: Promise<T> | undefined): Promise<T | null> =>
     wanted ? wanted.catch(() => null) : Promise.resolve(null);
   const [photo, sigma, left] = await Promise.all([
-    quiet(picture(entry.photo)),
+    quiet(entry.photo && picture(entry.photo)),
     quiet(entry.sigma && picture(entry.sigma)),
     quiet(residual && picture(residual)),
   ]);
-  return {photo, sigma, residual: left, entry};
+  const size = left && entry.width === 0 ? {width: left.width * left.shrink, height: left.height * left.shrink} : {};
+  return {photo, sigma, residual: left, entry: {...entry, ...size}};
 }
 
 export interface PixelValues {
@@ -62,10 +63,11 @@ export function gainOf(photo: Grid): number {
   return 1 / Math.max(1e-3, sorted[Math.floor(sorted.length * 0.995)] ?? 1);
 }
 
-export function paint(frames: Frames, kind: Kind): HTMLCanvasElement {
-  const source = kind === 'photo' ? frames.photo : (frames.residual ?? frames.photo);
+/** The picture, or nothing where it is not there. */
+export function paint(frames: Frames, kind: Kind): HTMLCanvasElement | null {
+  const source = {photo: frames.photo, residual: frames.residual, model: frames.photo && frames.residual}[kind];
+  if (!source) return null;
   const canvas = document.createElement('canvas');
-  if (!source) return canvas;
   canvas.width = source.width;
   canvas.height = source.height;
   const context = canvas.getContext('2d')!;

@@ -1,4 +1,5 @@
 // One picture: draws, zooms, pans, and says which pixel is under the pointer.
+import type {RefObject} from 'preact';
 import {useEffect, useRef} from 'preact/hooks';
 import {cursor, focus, pan, pixelAt, place, resolved, screenAt, zoom, type Size} from './viewport';
 
@@ -21,6 +22,10 @@ interface Props {
   split?: number;
   arrows?: Arrow[];
   gain?: number;
+  /** Said over the panel where there is no picture. */
+  absent?: string;
+  /** Dragging the picture moves the edge of a swipe: anywhere while it fits, else near the edge. */
+  onSplit?: (at: number) => void;
   onPick?: (x: number, y: number) => void;
 }
 
@@ -97,10 +102,59 @@ function render(canvas: HTMLCanvasElement, props: Props): void {
   drawCursor(context, panel, props.photo);
 }
 
+const sizeOf = (canvas: HTMLCanvasElement): Size => ({width: canvas.clientWidth, height: canvas.clientHeight});
+
+interface Drag {
+  x: number;
+  y: number;
+  moved: boolean;
+  swipes: boolean;
+}
+/** Dragging pans or swipes, two fingers zoom, and the pixel under the pointer is told to all panels. */
+function usePointer(ref: RefObject<HTMLCanvasElement>, props: Props) {
+  const drag = useRef<Drag | null>(null);
+  const fingers = useRef(new Map<number, {x: number; y: number}>());
+  const dragged = (canvas: HTMLCanvasElement, from: Drag, now: {x: number; y: number}): void => {
+    const [dx, dy] = [now.x - from.x, now.y - from.y];
+    if (Math.hypot(dx, dy) <= 2 && !from.moved) return;
+    if (from.swipes) props.onSplit!(Math.min(1, Math.max(0, now.x / canvas.clientWidth)));
+    else pan(sizeOf(canvas), props.photo, dx, dy);
+    drag.current = {...from, ...now, moved: true};
+  };
+  const onPointerMove = (event: PointerEvent): void => {
+    const canvas = ref.current!;
+    const now = {x: event.offsetX, y: event.offsetY};
+    const before = fingers.current.get(event.pointerId);
+    if (before && fingers.current.size === 2) {
+      const [still] = [...fingers.current].filter(([id]) => id !== event.pointerId);
+      const distance = (p: {x: number; y: number}): number => Math.hypot(p.x - still[1].x, p.y - still[1].y);
+      zoom(sizeOf(canvas), props.photo, distance(now) / Math.max(1, distance(before)), now.x, now.y);
+    } else if (drag.current) dragged(canvas, drag.current, now);
+    if (before) fingers.current.set(event.pointerId, now);
+    const pixel = pixelAt(sizeOf(canvas), props.photo, now.x, now.y);
+    const inside = pixel.x >= 0 && pixel.y >= 0 && pixel.x < props.photo.width && pixel.y < props.photo.height;
+    cursor.value = inside ? pixel : null;
+  };
+  const onPointerDown = (event: PointerEvent): void => {
+    const canvas = ref.current!;
+    canvas.setPointerCapture(event.pointerId);
+    const now = {x: event.offsetX, y: event.offsetY};
+    fingers.current.set(event.pointerId, now);
+    const fromEdge = Math.abs(now.x - (props.split ?? 0) * canvas.clientWidth);
+    const swipes = !!props.onSplit && (place.value.scale === 0 || fromEdge < 24);
+    drag.current = {...now, moved: false, swipes};
+  };
+  const onPointerUp = (event: PointerEvent): void => {
+    fingers.current.delete(event.pointerId);
+    if (drag.current && !drag.current.moved && cursor.value)
+      props.onPick?.(cursor.value.x, cursor.value.y);
+    drag.current = null;
+  };
+  return {onPointerMove, onPointerDown, onPointerUp, onPointerCancel: onPointerUp};
+}
+
 export function Panel(props: Props) {
   const ref = useRef<HTMLCanvasElement>(null);
-  const drag = useRef<{x: number; y: number; moved: boolean} | null>(null);
-  const fingers = useRef(new Map<number, {x: number; y: number}>());
   // Read here, so that the panel is drawn again whenever either changes.
   void place.value;
   void cursor.value;
@@ -117,7 +171,7 @@ export function Panel(props: Props) {
     watch.observe(canvas);
     const wheel = (event: WheelEvent): void => {
       event.preventDefault();
-      zoom(size(canvas), props.photo, Math.exp(-0.0015 * event.deltaY), event.offsetX, event.offsetY);
+      zoom(sizeOf(canvas), props.photo, Math.exp(-0.0015 * event.deltaY), event.offsetX, event.offsetY);
     };
     canvas.addEventListener('wheel', wheel, {passive: false});
     return () => {
@@ -125,55 +179,16 @@ export function Panel(props: Props) {
       canvas.removeEventListener('wheel', wheel);
     };
   }, [props.photo.width, props.photo.height]);
-
-  const size = (canvas: HTMLCanvasElement): Size => ({
-    width: canvas.clientWidth,
-    height: canvas.clientHeight,
-  });
-  const moved = (event: PointerEvent): void => {
-    const canvas = ref.current!;
-    const before = fingers.current.get(event.pointerId);
-    if (before && fingers.current.size === 2) {
-      const [still] = [...fingers.current].filter(([id]) => id !== event.pointerId);
-      const distance = (p: {x: number; y: number}): number =>
-        Math.hypot(p.x - still[1].x, p.y - still[1].y);
-      const now = {x: event.offsetX, y: event.offsetY};
-      zoom(size(canvas), props.photo, distance(now) / Math.max(1, distance(before)), now.x, now.y);
-    } else if (drag.current) {
-      const [dx, dy] = [event.offsetX - drag.current.x, event.offsetY - drag.current.y];
-      if (Math.hypot(dx, dy) > 2 || drag.current.moved) {
-        pan(size(canvas), props.photo, dx, dy);
-        drag.current = {x: event.offsetX, y: event.offsetY, moved: true};
-      }
-    }
-    if (before) fingers.current.set(event.pointerId, {x: event.offsetX, y: event.offsetY});
-    const pixel = pixelAt(size(canvas), props.photo, event.offsetX, event.offsetY);
-    const inside =
-      pixel.x >= 0 && pixel.y >= 0 && pixel.x < props.photo.width && pixel.y < props.photo.height;
-    cursor.value = inside ? pixel : null;
-  };
-  const down = (event: PointerEvent): void => {
-    ref.current!.setPointerCapture(event.pointerId);
-    fingers.current.set(event.pointerId, {x: event.offsetX, y: event.offsetY});
-    drag.current = {x: event.offsetX, y: event.offsetY, moved: false};
-  };
-  const up = (event: PointerEvent): void => {
-    fingers.current.delete(event.pointerId);
-    if (drag.current && !drag.current.moved && cursor.value)
-      props.onPick?.(cursor.value.x, cursor.value.y);
-    drag.current = null;
-  };
+  const pointer = usePointer(ref, props);
   return (
     <figure class="panel">
       <figcaption>{props.title}</figcaption>
+      {props.absent && <p class="absent">{props.absent}</p>}
       <canvas
         ref={ref}
         role="img"
         aria-label={`${props.title}, ${props.photo.width} by ${props.photo.height} pixels`}
-        onPointerMove={moved}
-        onPointerDown={down}
-        onPointerUp={up}
-        onPointerCancel={up}
+        {...pointer}
         onDblClick={() => (place.value = {scale: 0, x: 0, y: 0})}
       />
     </figure>

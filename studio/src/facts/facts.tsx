@@ -3,6 +3,8 @@ import {save, saveCsv} from '../download';
 import {figure} from '../format';
 import {bytesOf} from '../parts';
 import {floor, run, step, stepIndex, timelineOf} from '../state';
+import {Wide} from '../widgets';
+import {Glossary} from './glossary';
 
 function practiceRows(): [string, string][] {
   const metrics = step.value?.metrics;
@@ -54,21 +56,23 @@ export function Facts() {
     <div class="facts columns">
       <section>
         <h3>How it was measured <button class="quiet" onClick={() => saveCsv('reporting.csv', [['item', 'value'], ...rows])}>CSV</button></h3>
-        <table><tbody>{rows.map(([name, value]) => <tr key={name}><th scope="row">{name}</th><td>{value}</td></tr>)}</tbody></table>
+        <Wide label="How it was measured"><tbody>{rows.map(([name, value]) => <tr key={name}><th scope="row">{name}</th><td>{value}</td></tr>)}</tbody></Wide>
+        <h3>Words</h3>
+        <Glossary />
         <h3>What made it</h3>
-        <table><tbody>
+        <Wide label="What made it"><tbody>
           <tr><th scope="row">Command of step {stepIndex.value}</th><td><code>{told?.command ?? 'not recorded'}</code></td></tr>
           <tr><th scope="row">Versions</th><td>{Object.entries(told?.made_by ?? {hookeye: run.value.version}).map(([k, v]) => `${k} ${v}`).join(', ')}</td></tr>
           <tr><th scope="row">This page</th><td>hookeye {run.value.version}</td></tr>
-        </tbody></table>
+        </tbody></Wide>
       </section>
       <section>
         <h3>The capture{capture?.title ? `: ${capture.title}` : ''}</h3>
         {capture ? <>
-          <table><thead><tr><th>example</th><th>use</th><th>supports and loads</th></tr></thead>
+          <Wide label="Load cases of the capture"><thead><tr><th>example</th><th>use</th><th>supports and loads</th></tr></thead>
             <tbody>{capture.examples.map((e) => (
               <tr key={e.name}><td>{e.name}</td><td>{e.use === 'fit' ? 'fitted' : 'held out'}</td><td>{[...e.supports, ...e.loads].join('; ') || 'none'}</td></tr>
-            ))}</tbody></table>
+            ))}</tbody></Wide>
           <p>Material {capture.laws.join(', ')}, fitted: {capture.fit.join(', ') || 'nothing'}. Texture: {capture.texture}.
             Cameras: {capture.cameras.map((c) => `${c.name} (${c.width} × ${c.height}, ${c.projection})`).join(', ')}.</p>
           <p class="note">{capture.file}</p>

@@ -1,9 +1,10 @@
 // Where the misfit sits: by load case, camera, region and strain level.
 import {useEffect, useState} from 'preact/hooks';
 import type {StepEntry} from '../document';
+import {Ask} from '../facts/glossary';
 import {floor} from '../state';
 import {Bars, type Row} from '../widgets';
-import {examplesOf, surface} from './surface';
+import {examplesOf, readable} from './surface';
 
 interface Sum {
   squares: number;
@@ -30,8 +31,7 @@ function strainRows(pairs: [number, number][]): Row[] {
 async function fieldRows(step: StepEntry): Promise<{regions: Row[]; strains: Row[]}> {
   const regions = new Map<string, Sum>();
   const pairs: [number, number][] = [];
-  for (const example of examplesOf(step)) {
-    const s = await surface(step, example);
+  for (const s of (await readable(step, examplesOf(step))).all.values()) {
     for (const [name, nodes] of Object.entries(s.regions)) {
       const sum = regions.get(name) ?? {squares: 0, count: 0};
       for (const node of nodes) {
@@ -78,7 +78,7 @@ export function FailureBars(props: {step: StepEntry}) {
       {all.map(([title, list]) => list.length > 0 && (
         <Bars key={title} title={title} rows={list} mark={floor.value.chi} />
       ))}
-      <p class="note">The line is the noise floor, χ = {floor.value.chi.toFixed(2)} ({floor.value.source}).</p>
+      <p class="note">The line is the noise floor, χ = {floor.value.chi.toFixed(2)} ({floor.value.source})<Ask word="floor" />.</p>
     </div>
   );
 }

@@ -2,14 +2,15 @@
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, notCounted, sequential, type Ramp} from '../colours';
+import type {StepEntry} from '../document';
 import {saveCsv, saveText} from '../download';
-import {figure} from '../format';
+import {figure, listed} from '../format';
 import {savePictures} from '../pictures';
 import {run, step, theme} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
 import type {BodyScene, Look} from './scene';
-import {examplesOf, quantities, quantityNames, reach, surface, unitOf, type Quantity, type Surface} from './surface';
+import {examplesOf, quantities, quantityNames, reach, readable, unitOf, type Quantity, type Surface} from './surface';
 import {Picked, picked} from './picked';
 import {useScene} from './use_scene';
 import {surfaceVtu} from './vtu';
@@ -80,35 +81,54 @@ function fieldsCsv(s: Surface, name: string): void {
   saveCsv(`${name}-surface.csv`, rows);
 }
 
-export function Fails() {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const {scene, fault: sceneFault} = useScene(canvas);
+/** The bodies of a step by load case, in the capture's order as far as it is known, and what is not there. */
+function useSurfaces(now: StepEntry | undefined): {surfaces: Map<string, Surface>; fault: string} {
   const [surfaces, setSurfaces] = useState(new Map<string, Surface>());
   const [fault, setFault] = useState('');
-  const notHere = examplesOf(step.value).length ? '' : `The body of this step is not here. ${run.value.reduction ?? ''}`;
-  const now = step.value;
-
   useEffect(() => {
     let current = true;
     if (!now) return;
     const names = examplesOf(now);
-    // The capture's order, as far as it is known.
     const order = (run.value.capture?.examples ?? []).map((e) => e.name);
     names.sort((a, b) => order.indexOf(a) - order.indexOf(b));
-    void Promise.all(names.map(async (name) => [name, await surface(now, name)] as const)).then(
-      (all) => {
-        if (!current) return;
-        setSurfaces(new Map(all));
-        if (!names.includes(chosenExample.value)) {
-          const by = now.metrics?.chi_by_example ?? {};
-          chosenExample.value = [...names].sort((a, b) => (by[b] ?? 0) - (by[a] ?? 0))[0] ?? '';
-        }
-      },
-      (error: Error) => current && setFault(error.message));
+    void readable(now, names).then(({all, lost}) => {
+      if (!current) return;
+      setSurfaces(all);
+      setFault(lost.length ? `The body in ${listed(lost)} cannot be read.` : '');
+      if (!all.has(chosenExample.value)) {
+        const by = now.metrics?.chi_by_example ?? {};
+        chosenExample.value = [...all.keys()].sort((a, b) => (by[b] ?? 0) - (by[a] ?? 0))[0] ?? '';
+      }
+    });
     return () => {
       current = false;
     };
   }, [now]);
+  return {surfaces, fault};
+}
+
+function Tools(props: {scene: BodyScene | null; shown: Surface | undefined; ramp: Ramp}) {
+  const {scene, shown} = props;
+  return (
+    <Toolbar>
+      <Buttons label="Colour by" values={quantities} chosen={quantity} names={quantityNames} />
+      <label>deformed × {amount.value.toFixed(1)} <input type="range" min="0" max="5" step="0.1" value={amount.value}
+        onInput={(e) => (amount.value = Number(e.currentTarget.value))} /></label>
+      <button onClick={() => scene?.frame()}>Fit</button>
+      <span class="push" />
+      <button class="quiet" onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
+      <button class="quiet" onClick={() => scene && savePictures(`${chosenExample.value}-body.png`, [{canvas: scene.canvas, says: chosenExample.value}], [props.ramp])}>PNG</button>
+      <button class="quiet" onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
+    </Toolbar>
+  );
+}
+
+export function Fails() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const {scene, fault: sceneFault} = useScene(canvas);
+  const notHere = examplesOf(step.value).length ? '' : `The body of this step is not here. ${run.value.reduction ?? ''}`;
+  const now = step.value;
+  const {surfaces, fault} = useSurfaces(now);
 
   const q = quantity.value;
   const most = reach([...surfaces.values()].map((s) => s.scalars[q]));
@@ -131,16 +151,7 @@ export function Fails() {
   return (
     <div class="fails">
       <div class="stage">
-        <Toolbar>
-          <Buttons label="Colour by" values={quantities} chosen={quantity} names={quantityNames} />
-          <label>deformed × {amount.value.toFixed(1)} <input type="range" min="0" max="5" step="0.1" value={amount.value}
-            onInput={(e) => (amount.value = Number(e.currentTarget.value))} /></label>
-          <button onClick={() => scene?.frame()}>Fit</button>
-          <span class="push" />
-          <button class="quiet" onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
-          <button class="quiet" onClick={() => canvas.current && savePictures(`${chosenExample.value}-body.png`, [{canvas: canvas.current, says: chosenExample.value}], [ramp])}>PNG</button>
-          <button class="quiet" onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
-        </Toolbar>
+        <Tools scene={scene} shown={shown} ramp={ramp} />
         <div class="body3d">
           {(sceneFault || fault || notHere) && <p class="empty">{sceneFault || fault || notHere}</p>}
           <canvas ref={canvas} tabIndex={0} role="img" onKeyDown={keys}

@@ -20,11 +20,11 @@ async function draw(canvas: HTMLCanvasElement, index: number, x: number, y: numb
   context.fillStyle = '#808080';
   context.fillRect(0, 0, canvas.width, canvas.height);
   (['photo', 'residual'] as const).forEach((kind, k) => {
-    const source = kind === 'photo' ? all.photo : all.residual;
-    if (!source) return;
+    const [source, painted] = [kind === 'photo' ? all.photo : all.residual, paint(all, kind)];
+    if (!source || !painted) return;
     const [left, s] = [k * shownSize, source.shrink];
     context.imageSmoothingEnabled = false;
-    context.drawImage(paint(all, kind), (x + 0.5 - around) / s, (y + 0.5 - around) / s, (2 * around) / s, (2 * around) / s,
+    context.drawImage(painted, (x + 0.5 - around) / s, (y + 0.5 - around) / s, (2 * around) / s, (2 * around) / s,
       left, 0, shownSize, shownSize);
     for (const [width, colour] of [[3, '#000'], [1.5, '#ffd400']] as const) {
       context.lineWidth = width;

@@ -44,7 +44,7 @@ export const quantities = keysOf(quantityNames);
 
 export function unitOf(q: Quantity): string {
   if (q === 'residual') return 'σ of noise';
-  if (q === 'strain') return 'largest principal Green strain';
+  if (q === 'strain') return 'the principal Green strain of largest size';
   return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
 }
 
@@ -85,6 +85,14 @@ export async function surface(step: StepEntry, example: string): Promise<Surface
       seen: array(view.seen),
     })),
   };
+}
+
+/** The bodies that can be read, and the names of the others: one damaged file hides no other. */
+export async function readable(step: StepEntry, names: string[]): Promise<{all: Map<string, Surface>; lost: string[]}> {
+  const read = await Promise.allSettled(names.map((name) => surface(step, name)));
+  const all = new Map<string, Surface>();
+  read.forEach((one, i) => one.status === 'fulfilled' && all.set(names[i], one.value));
+  return {all, lost: names.filter((name) => !all.has(name))};
 }
 
 /** 99 % point of the absolute values: one bad node does not set the scale. */

@@ -14,6 +14,10 @@ export interface Line {
   dash?: number[];
   points?: boolean;
 }
+/** Whether names stand side by side under the axis; else numbers do, and the names are in the legend. */
+const fit = (u: uPlot, names: string[]): boolean =>
+  7.5 * Math.max(...names.map((name) => name.length)) < u.width / (names.length + 0.4);
+
 export function Chart(props: {
   title: string;
   /** What it shows, for those who do not see it. */
@@ -50,10 +54,10 @@ export function Chart(props: {
         scales: {x: {time: false, range: names ? [-0.3, names.length - 0.7] : undefined}, y: {distr: props.log ? 3 : 1}},
         axes: [
           {...axis, label: props.xLabel, labelSize: 22, ...(names && {
-            splits: () => props.x, values: (_: uPlot, at: number[]) => at.map((i) => names[i] ?? ''),
+            splits: () => props.x, values: (u: uPlot, at: number[]) => at.map((i) => (fit(u, names) ? names[i] : names[i] && `${i}`) ?? ''),
           })},
           {...axis, label: props.yLabel, labelSize: 22, size: 64,
-            values: (_, at) => at.map((v: number | null) => (v === null ? '' : figure(v)))},
+            values: (_, at) => at.map((v: number | null) => (v == null ? '' : figure(v)))},
         ],
         series: [
           {label: props.xLabel, value: names ? (_, v) => names[v] ?? '–' : undefined},
@@ -63,7 +67,7 @@ export function Chart(props: {
             width: 2,
             dash: line.dash,
             points: {show: line.points ?? false, size: 8, fill: line.colour},
-            value: (_: uPlot, v: number | null) => (v === null ? '–' : v.toPrecision(4)),
+            value: (_: uPlot, v: number | null | undefined) => (v == null ? '–' : v.toPrecision(4)),
           })),
         ],
         hooks: {

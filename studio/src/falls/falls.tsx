@@ -3,6 +3,7 @@ import {useMemo} from 'preact/hooks';
 import {saveCsv} from '../download';
 import {around, figure} from '../format';
 import {floor, other, run, step, timelineOf} from '../state';
+import {Wide} from '../widgets';
 import {Chart, type Line} from './chart';
 import type {EnergyCurve, ParameterValue, StepEntry} from '../document';
 
@@ -11,7 +12,7 @@ function Parameters(props: {steps: {folder: string; list: ParameterValue[]}[]}) 
   const {steps} = props;
   const names = [...new Set(steps.flatMap((s) => s.list.map((p) => p.name)))];
   return (
-    <table class="parameters" aria-label="Parameters with 95 % intervals">
+    <Wide label="Parameters with 95 % intervals" class="parameters">
       <thead><tr><th>parameter</th>{steps.map((s) => <th key={s.folder} colSpan={2}>{s.folder}, 95 % interval</th>)}<th>unit</th></tr></thead>
       <tbody>
         {names.map((name) => {
@@ -26,7 +27,7 @@ function Parameters(props: {steps: {folder: string; list: ParameterValue[]}[]}) 
           );
         })}
       </tbody>
-    </table>
+    </Wide>
   );
 }
 
@@ -101,16 +102,17 @@ export function Falls() {
   return (
     <div class="falls columns">
       <section>
-        <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
+        {list.length > 0 && <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
                says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
-               xLabel="step" yLabel="χ, residual over noise" />
+               xLabel="step" yLabel="χ, residual over noise" />}
         {curves.map((curve) => <Energy key={curve.name} curve={curve} />)}
       </section>
       <section>
         <h3>Parameters
           <button class="quiet" onClick={() => saveCsv('parameters.csv', [['step', 'name', 'unit', 'value', 'low', 'high'],
             ...told.flatMap((s) => s.list.map((p) => [s.folder, p.name, p.unit, p.value, p.low, p.high]))])}>CSV</button></h3>
-        {told.length ? <Parameters steps={told} /> : <p class="empty">run.json tells nothing of this step.</p>}
+        {told.length ? <Parameters steps={told} />
+          : <p class="empty">{list.length ? 'run.json tells nothing of this step.' : 'No step is finished yet.'}</p>}
         {latest?.diagnosis?.mesh_note && <p class="note">The mesh: {latest.diagnosis.mesh_note}.</p>}
         {now?.undetermined?.map((sentence) => <p class="note" key={sentence}>{sentence}</p>)}
         {now?.converged === false && <p class="note">This fit did not converge in {now.iterations} iterations.</p>}
@@ -125,7 +127,7 @@ function Measured(props: {of: StepEntry | undefined}) {
   if (!all.length) return null;
   const three = (v: number[]): string => v.map((c) => figure(c)).join(', ');
   return (
-    <table aria-label="Measured forces and positions">
+    <Wide label="Measured forces and positions">
       <thead><tr><th>measured <button class="quiet" onClick={() => saveCsv('measured.csv', [
         ['example', 'kind', 'region', 'sigma', 'measured x', 'y', 'z', 'model x', 'y', 'z'],
         ...all.map((m) => [m.example, m.kind, m.region, m.sigma, ...m.measured, ...m.predicted])])}>CSV</button></th><th>value</th><th>model</th><th>over σ</th></tr></thead>
@@ -135,6 +137,6 @@ function Measured(props: {of: StepEntry | undefined}) {
             <td>{three(m.predicted)}</td><td>{three(m.over_sigma)}</td></tr>
         ))}
       </tbody>
-    </table>
+    </Wide>
   );
 }

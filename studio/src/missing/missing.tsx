@@ -1,64 +1,29 @@
 // Verb 3: the ranked effects, what each would explain, and what it cannot be told from.
-import {useRef} from 'preact/hooks';
-import {css, sequential, type Ramp} from '../colours';
+import {signal} from '@preact/signals';
 import type {EffectScore} from '../document';
-import {saveCsv, saveSvg} from '../download';
-import {figure, listed, percent, spaced} from '../format';
-import {chosenEffect, effectsOf, gateOf, step, stepIndex, run, wasTested} from '../state';
+import {saveCsv} from '../download';
+import {figure, listed, logEvidence, percent, spaced} from '../format';
+import {chosenEffect, decisionAfter, effectsOf, gateOf, isNamed, step, wasTested, type Decision} from '../state';
 import {AddButton} from '../add/add';
-import {cosine, together} from './order';
+import {Ask} from '../facts/glossary';
+import {decidedBy, tooLittle} from '../story';
+import {Confusion} from './confusion';
 import {Removed} from './removed';
-import {Legend, Share} from '../widgets';
+import {Share, Wide} from '../widgets';
 
-const cosineRamp: Ramp = {
-  title: 'cosine between the changes of the pictures',
-  ends: ['told apart', '', '1: cannot be'], scale: sequential, from: 0,
-};
+/** The effect under the pointer: looked at, not chosen. */
+const previewed = signal('');
 
-function Confusion(props: {effects: EffectScore[]}) {
-  const ref = useRef<SVGSVGElement>(null);
-  const list = together(props.effects.slice(0, 12));
-  const n = list.length;
-  const size = 20;
-  const left = 200;
-  if (n < 2) return null;
-  return (
-    <figure class="confusion">
-      <figcaption>What cannot be told apart sits together
-        <button class="quiet" onClick={() => ref.current && saveSvg('confusion.png', ref.current)}>PNG</button>
-        <button class="quiet" onClick={() => saveCsv('confusion.csv',
-          [['', ...list.map((e) => e.effect)], ...list.map((a) => [a.effect, ...list.map((b) => (a === b ? 1 : cosine(a, b)))])])}>CSV</button>
-      </figcaption>
-      <svg ref={ref} viewBox={`0 0 ${left + n * size + 4} ${n * size + 4}`} role="img"
-           aria-label="Cosine between the signatures of effects">
-        {list.map((a, i) => (
-          <g key={a.effect}>
-            <text x={left - 6} y={i * size + 14} text-anchor="end" class={a.effect === chosenEffect.value ? 'strong' : ''}>{spaced(a.effect)}</text>
-            {list.map((b, j) => {
-              const c = i === j ? 1 : cosine(a, b);
-              return (
-                <rect key={b.effect} x={left + j * size} y={i * size} width={size - 1} height={size - 1} fill={css(sequential(c))}>
-                  <title>{`${spaced(a.effect)} and ${spaced(b.effect)}: cosine ${c.toFixed(2)}`}</title>
-                </rect>
-              );
-            })}
-          </g>
-        ))}
-      </svg>
-      <Legend ramp={cosineRamp} />
-    </figure>
-  );
-}
-
-function Detail(props: {effect: EffectScore}) {
+/** `pinned`: what Add would add, whichever effect is looked at. */
+function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
   const e = props.effect;
   return (
     <section class="detail" aria-live="polite">
-      <h3>{spaced(e.effect)} <AddButton effect={e.effect} /></h3>
+      <h3>{spaced(e.effect)} <AddButton effect={props.pinned.effect} named /></h3>
       <p>{e.why ?? e.why_not}</p>
       {(e.confused_with ?? []).length > 0 && <p>These photos hardly tell it from {listed(e.confused_with!.map(spaced))}.</p>}
       {e.predicted && e.predicted.length > 0 && (
-        <table>
+        <Wide label="Parameters it would have">
           <thead><tr><th>would be</th><th>value</th><th>95 % interval</th></tr></thead>
           <tbody>
             {e.predicted.slice(0, 8).map((p) => (
@@ -66,7 +31,7 @@ function Detail(props: {effect: EffectScore}) {
                 <td>{figure(p.low)} .. {figure(p.high)}</td></tr>
             ))}
           </tbody>
-        </table>
+        </Wide>
       )}
       <Removed effect={e.effect} />
     </section>
@@ -81,34 +46,51 @@ function rankingCsv(all: EffectScore[]): void {
 }
 
 /** One effect of the ranking; what could not be tested is greyed and says why. */
-function Row(props: {effect: EffectScore; chosen: boolean; named: boolean}) {
+function Row(props: {effect: EffectScore; pinned: boolean; named: boolean}) {
   const e = props.effect;
   const taken = e.confused_with ?? [];
   const choose = (): void => {
     chosenEffect.value = e.effect;
   };
   return (
-    <tr class={props.named ? '' : 'below'} aria-selected={props.chosen} onMouseEnter={choose}>
-      <td><button class="link" onClick={choose} onFocus={choose}>{spaced(e.effect)}</button></td>
+    <tr class={!wasTested(e) ? 'below untested' : props.named ? '' : 'below'} aria-selected={props.pinned}
+        onMouseEnter={() => (previewed.value = e.effect)} onClick={choose}>
+      <td><button class="link" onFocus={choose}>{spaced(e.effect)}</button></td>
       {wasTested(e) ? <>
         <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
-        <td>{figure(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
+        <td>{logEvidence(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
         <td class="wide">{taken.slice(0, 2).map(spaced).join(', ')}{taken.length > 2 && ` and ${taken.length - 2} more`}</td>
       </> : <td colSpan={5}>not tested: {e.why_not}</td>}
     </tr>
   );
 }
 
+/** What was added next, and why that one: the evidence is an estimate, refits decide. */
+function Decided(props: {ranked: EffectScore[]; decision: Decision; folder: string | undefined}) {
+  const {ranked, decision: {added, refitted, margin}, folder} = props;
+  const own = ranked.find((e) => e.effect === added);
+  const next = ranked.find((e) => e !== own);
+  return <p><b>{spaced(added)}</b> was added to step {folder}
+    {own && `: log evidence ${logEvidence(own.evidence)}`}
+    {own && next && `, ${next === ranked[0] ? 'behind' : 'before'} ${spaced(next.effect)} with ${logEvidence(next.evidence)}`}
+    {margin !== undefined && `; ${decidedBy(added, refitted, margin)}`}{margin !== undefined && <Ask word="refit" />}.</p>;
+}
+
 /** What the ranking comes to, in one sentence. */
-function Outcome(props: {ranked: EffectScore[]; gate: number}) {
-  const [first, second] = props.ranked;
-  const name = run.value.steps[stepIndex.value]?.folder;
-  const rule = `below ${figure(props.gate)}, which chance alone reaches in less than 5 % of runs, nothing is named`;
-  if (!first) return <p>Nothing could be tested in step {name}.</p>;
-  if ((first.evidence ?? 0) < props.gate)
-    return <p><b>Nothing stands out</b> in step {name}: {spaced(first.effect)} leads with log evidence {figure(first.evidence)}; {rule}.</p>;
-  return <p><b>{spaced(first.effect)}</b> leads in step {name} with log evidence {figure(first.evidence)}
-    {second && `, before ${spaced(second.effect)} with ${figure(second.evidence)}`}; {rule}.</p>;
+function Outcome(props: {ranked: EffectScore[]; decision: Decision | undefined}) {
+  const {ranked, decision} = props;
+  const folder = step.value?.folder;
+  const gate = gateOf(step.value);
+  if (decision) return <Decided ranked={ranked} decision={decision} folder={folder} />;
+  const first = ranked.find((e) => isNamed(e, step.value)) ?? ranked[0];
+  const second = ranked.find((e) => e !== first);
+  const rule = `below ${figure(gate)}, which chance alone reaches in less than 5 % of runs, nothing is named`;
+  if (!first) return <p>Nothing could be tested in step {folder}.</p>;
+  if (isNamed(first, step.value))
+    return <p><b>{spaced(first.effect)}</b> leads in step {folder} with log evidence {logEvidence(first.evidence)}
+      {second && `, before ${spaced(second.effect)} with ${logEvidence(second.evidence)}`}; {rule}<Ask word="gate" />.</p>;
+  return <p><b>Nothing stands out</b> in step {folder}: {spaced(first.effect)} leads with log evidence {logEvidence(first.evidence)}; {
+    (first.evidence ?? 0) < gate ? rule : tooLittle}.</p>;
 }
 
 export function Missing() {
@@ -116,25 +98,26 @@ export function Missing() {
   const ranked = all.filter(wasTested);
   if (!all.length)
     return <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
-  const gate = gateOf(step.value);
-  const chosen = all.find((e) => e.effect === chosenEffect.value) ?? ranked[0] ?? all[0];
+  const decision = decisionAfter(step.value);
+  const byName = (name: string | undefined): EffectScore | undefined => all.find((e) => e.effect === name);
+  const pinned = byName(chosenEffect.value) ?? byName(decision?.added) ?? ranked[0] ?? all[0];
   return (
     <div class="missing columns">
-      <div class="ranking">
-        <Outcome ranked={ranked} gate={gate} />
-        <table aria-label="Ranked effects">
-          <thead><tr><th>effect</th><th>would explain</th><th>evidence</th><th>weight</th><th class="wide">dof</th>
+      <div class="ranking" onMouseLeave={() => (previewed.value = '')}>
+        <Outcome ranked={ranked} decision={decision} />
+        <Wide label="Ranked effects">
+          <thead><tr><th>effect</th><th>would explain</th><th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th><th class="wide">dof<Ask word="dof" /></th>
             <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
-              <Row key={e.effect} effect={e} chosen={e === chosen} named={wasTested(e) && (e.evidence ?? 0) >= gate} />
+              <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} />
             ))}
           </tbody>
-        </table>
+        </Wide>
       </div>
       <div class="side">
-        {chosen && <Detail effect={chosen} />}
-        <Confusion effects={ranked} />
+        {pinned && <Detail effect={byName(previewed.value) ?? pinned} pinned={pinned} />}
+        <Confusion effects={ranked} strong={pinned.effect} />
       </div>
     </div>
   );

@@ -2,7 +2,6 @@
 // that see it.
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, notCounted} from '../colours';
-import {residualScale} from '../compare/frames';
 import {surface, type Surface} from '../fails/surface';
 import {useScene} from '../fails/use_scene';
 import {fromBase64} from '../parts';
@@ -34,7 +33,7 @@ export function changeOnNodes(s: Surface, prediction: Prediction): Float32Array 
   return count.map((n, i) => (n > 0 ? Math.sqrt(left[i] / n) - Math.sqrt(was[i] / n) : NaN));
 }
 
-export function OnBody(props: {prediction: Prediction; example: string; says: string}) {
+export function OnBody(props: {prediction: Prediction; scale: number; example: string; says: string}) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const {scene, fault} = useScene(canvas);
   const [body, setBody] = useState<Surface | null>(null);
@@ -53,9 +52,9 @@ export function OnBody(props: {prediction: Prediction; example: string; says: st
     scene.show(body, {
       amount: 1,
       ghost: false,
-      colour: (i) => (Number.isFinite(change[i]) ? diverging(change[i] / residualScale) : notCounted),
+      colour: (i) => (Number.isFinite(change[i]) ? diverging(change[i] / props.scale) : notCounted),
     });
-  }, [scene, body, props.prediction, theme.value]);
+  }, [scene, body, props.prediction, props.scale, theme.value]);
   return (
     <div class="on-body">
       <canvas ref={canvas} tabIndex={0} role="img" aria-label={`${props.says}; arrow keys turn the body, + and - zoom`}

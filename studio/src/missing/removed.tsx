@@ -4,17 +4,17 @@ import {useEffect, useRef} from 'preact/hooks';
 import {diverging, sequential, shown, type Ramp, type Rgb} from '../colours';
 import type {PhotoEntry} from '../document';
 import {saveCsv} from '../download';
-import {spaced} from '../format';
+import {figure, spaced} from '../format';
 import {fromBase64, picture, type Grid} from '../parts';
 import {savePictures} from '../pictures';
 import {chosenPhoto, run, step} from '../state';
 import {Legend} from '../widgets';
-import {gainOf, residualScale} from '../compare/frames';
+import {gainOf} from '../compare/frames';
 import {OnBody} from './on_body';
 import {usePrediction, type Cells, type Prediction} from './prediction';
 
 /** The smallest box of cells that count. */
-function box(cells: Cells, now: Uint8Array): {left: number; top: number; columns: number; rows: number} {
+function boxOf(cells: Cells, now: Uint8Array): {left: number; top: number; columns: number; rows: number} {
   let [left, top, right, bottom] = [cells.columns, cells.rows, -1, -1];
   for (let y = 0, i = 0; y < cells.rows; ++y)
     for (let x = 0; x < cells.columns; ++x, ++i)
@@ -23,32 +23,46 @@ function box(cells: Cells, now: Uint8Array): {left: number; top: number; columns
   return {left, top, columns: right - left + 1, rows: bottom - top + 1};
 }
 
+/** One scale for what there is and for what the effect changes [sigma]: the 99 % point of what there is,
+ *  so that neither saturates while the other is pale. Where a byte was too small for the change
+ *  (`cut`), both end where the bytes do. */
+function scaleOf(cells: Cells, unit: number): {scale: number; cut: boolean} {
+  const bytes = fromBase64(cells.bytes);
+  const count = cells.columns * cells.rows;
+  const there = bytes.slice(0, count).filter((code) => code > 0).sort();
+  const cut = bytes.subarray(count).some((code, i) => bytes[i] > 0 && (code <= 1 || code === 255));
+  const codes = cut ? 127 : (there[Math.floor(0.99 * (there.length - 1))] ?? 1) - 1;
+  return {scale: Math.max(1, codes * unit), cut};
+}
+
 type Layer = 'now' | 'removed';
 
+/** The value at a pixel; cells reach beyond the last ones. */
+const nearest = (photo: Grid, x: number, y: number): number =>
+  photo.values[Math.min(photo.height - 1, Math.floor(y / photo.shrink)) * photo.width + Math.min(photo.width - 1, Math.floor(x / photo.shrink))];
+
 /** The photo in grey, and over it the cells, the more opaque the more there is to show. */
-function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, photo: Grid, layer: Layer): void {
+function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, photo: Grid | null, layer: Layer, scale: number): void {
   const bytes = fromBase64(cells.bytes);
   const count = cells.columns * cells.rows;
   const now = bytes.subarray(0, count);
-  const part = box(cells, now);
+  const part = boxOf(cells, now);
   const size = prediction.cell_px;
   canvas.width = part.columns * size;
   canvas.height = part.rows * size;
   const context = canvas.getContext('2d')!;
   const pixels = context.createImageData(canvas.width, canvas.height);
-  const gain = gainOf(photo);
+  const gain = photo ? gainOf(photo) : 1;
   for (let y = 0, i = 0; y < canvas.height; ++y)
     for (let x = 0; x < canvas.width; ++x, ++i) {
       const column = part.left + Math.floor(x / size);
       const row = part.top + Math.floor(y / size);
-      const u = Math.min(photo.width - 1, Math.floor((part.left * size + x) / photo.shrink));
-      const v = Math.min(photo.height - 1, Math.floor((part.top * size + y) / photo.shrink));
-      const grey = shown(photo.values[v * photo.width + u] * gain);
+      const grey = photo ? shown(nearest(photo, part.left * size + x, part.top * size + y) * gain) : 128;
       const code = bytes[row * cells.columns + column + (layer === 'now' ? 0 : count)];
       let colour: Rgb = [grey, grey, grey];
       if (code > 0) {
         const sigmas = (layer === 'now' ? code - 1 : 128 - code) * prediction.unit;
-        const t = sigmas / residualScale;
+        const t = sigmas / scale;
         const over = layer === 'now' ? sequential(t) : diverging(t);
         const alpha = Math.min(0.85, 0.15 + Math.abs(t));
         colour = over.map((c, k) => Math.round(alpha * c + (1 - alpha) * colour[k])) as Rgb;
@@ -58,19 +72,20 @@ function draw(canvas: HTMLCanvasElement, prediction: Prediction, cells: Cells, p
   context.putImageData(pixels, 0, 0);
 }
 
-function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer; says: string}) {
+function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer; scale: number; says: string}) {
   const canvas = useRef<HTMLCanvasElement>(null);
-  const {prediction, entry, layer} = props;
+  const {prediction, entry, layer, scale} = props;
   useEffect(() => {
     let current = true;
     const cells = prediction.photos[entry.name];
-    void picture(entry.photo).then((photo) => {
-      if (current && canvas.current && cells) draw(canvas.current, prediction, cells, photo, layer);
+    const photo = entry.photo ? picture(entry.photo) : Promise.resolve(null);
+    void photo.then((photo) => {
+      if (current && canvas.current && cells) draw(canvas.current, prediction, cells, photo, layer, scale);
     }, () => undefined);
     return () => {
       current = false;
     };
-  }, [prediction, entry, layer]);
+  }, [prediction, entry, layer, scale]);
   return (
     <div>
       <canvas ref={canvas} role="img" aria-label={props.says} />
@@ -79,9 +94,9 @@ function Layered(props: {prediction: Prediction; entry: PhotoEntry; layer: Layer
   );
 }
 
-const ramps: Ramp[] = [
-  {title: 'residual there is [σ of noise]', ends: ['0', '', `${residualScale}`], scale: sequential, from: 0},
-  {title: 'change by the effect [σ of noise]', ends: [`−${residualScale} removed`, '0', `+${residualScale}`], scale: diverging, from: -1},
+const rampsOf = (most: number): Ramp[] => [
+  {title: 'residual there is [σ of noise]', ends: ['0', '', `${figure(most)} or more`], scale: sequential, from: 0},
+  {title: 'change by the effect [σ of noise]', ends: [`−${figure(most)}: removed`, '0', `+${figure(most)}: added`], scale: diverging, from: -1},
 ];
 
 function cellsCsv(prediction: Prediction, name: string, effect: string): void {
@@ -96,7 +111,7 @@ function cellsCsv(prediction: Prediction, name: string, effect: string): void {
 }
 
 export function Removed(props: {effect: string}) {
-  const figure = useRef<HTMLElement>(null);
+  const box = useRef<HTMLElement>(null);
   const part = step.value?.fields[`removes-${props.effect}`];
   const prediction = usePrediction(part);
   const photos = run.value.photos.filter((p) => prediction?.photos[p.name]);
@@ -104,9 +119,11 @@ export function Removed(props: {effect: string}) {
   const entry = photos.find((p) => p.name === wanted) ?? photos[0];
   if (!part) return <p class="note">Its residual is drawn for the leading effects only.</p>;
   if (!prediction || !entry) return null;
-  const says = `what ${spaced(props.effect)} would remove`;
+  const says = `what ${spaced(props.effect)} would change`;
+  const {scale, cut} = scaleOf(prediction.photos[entry.name], prediction.unit);
+  const ramps = rampsOf(scale);
   return (
-    <figure class="removed" ref={figure}>
+    <figure class="removed" ref={box}>
       <figcaption>
         <label>W{says.slice(1)} in{' '}
           <select value={entry.name} onChange={(e) => {
@@ -117,15 +134,17 @@ export function Removed(props: {effect: string}) {
         </label>
         <button class="quiet" onClick={() => cellsCsv(prediction, entry.name, props.effect)}>CSV</button>
         <button class="quiet" onClick={() => savePictures(`${props.effect}-removes-${entry.name}.png`,
-          [...figure.current!.querySelectorAll('.pair > div')].map((part) => (
+          [...box.current!.querySelectorAll('.pair > div')].map((part) => (
             {canvas: part.querySelector('canvas')!, says: part.querySelector('p')!.textContent ?? ''})), ramps)}>PNG</button>
       </figcaption>
       <div class="pair">
-        <Layered prediction={prediction} entry={entry} layer="now" says="the residual there is" />
-        <Layered prediction={prediction} entry={entry} layer="removed" says={says} />
-        <OnBody prediction={prediction} example={entry.example} says={`${says}, on the body in ${entry.example}`} />
+        <Layered prediction={prediction} entry={entry} layer="now" scale={scale} says="the residual there is" />
+        <Layered prediction={prediction} entry={entry} layer="removed" scale={scale} says={says} />
+        <OnBody prediction={prediction} scale={scale} example={entry.example}
+                says={`${says}, on the body in ${entry.example}`} />
       </div>
       <div class="legends">{ramps.map((ramp) => <Legend key={ramp.title} ramp={ramp} />)}</div>
+      <p class="note">Both scales are the same: {cut ? 'what changes is stored no further.' : '99 % of the residual there is lies within.'}</p>
     </figure>
   );
 }
