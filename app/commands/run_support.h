@@ -1,8 +1,9 @@
-// What the commands on a run share: opening it, its newest model, writing a step, tables.
+// What the commands on a run share: opening it, its newest model, writing a step.
 #pragma once
 
 #include <optional>
 
+#include "app/commands/tables.h"
 #include "app/invocation.h"
 #include "app/session.h"
 #include "capture_io/run.h"
@@ -37,11 +38,7 @@ std::filesystem::path record(Run& run, const Step& step, const std::string& comm
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 
-/// For the terminal, within 100 columns.
-std::string parameter_table(const Fitted& fitted);
-std::string photo_table(const Scene& scene, const Fitted& fitted, const Floor& floor);
-std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
-/// "0.83 ########--": a share as a small bar.
-std::string bar(double share, int width = 10);
+/// Names the folders of a step's pictures.
+void say_pictures(const std::filesystem::path& step, const Session& session);
 
 }  // namespace hookeye

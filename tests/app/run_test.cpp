@@ -1,0 +1,93 @@
+// Commands on a run: what they say, what they write into run.json, what they make of a broken one.
+#include <gmock/gmock.h>
+
+#include "app/fitted_run.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// run/ with a base model and gravity added to it, as far as compare and report read it.
+class WrittenRun : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    write_cube("{z: 1}");
+    json timeline = {{"hookeye", 1},
+                     {"capture", (folder_ / "capture.yaml").string()},
+                     {"verdict", "explained"},
+                     {"sentence", "missing: gravity"},
+                     {"steps", json::array()}};
+    for (const std::string name : {"base", "gravity"}) {
+      write_step((name == "base" ? "00-" : "01-") + name);
+      timeline["steps"].push_back({{"name", name}, {"added", nullptr}, {"chi_fit", 22.0}});
+    }
+    write("run/run.json", timeline.dump(2));
+  }
+
+  void write_step(const std::string& name) const {
+    const std::string step = "run/steps/" + name + "/";
+    for (const char* sub : {"compare", "residuals", "page"})
+      fs::create_directories(folder_ / step / sub);
+    const std::string longish = "an_example_with_a_long_name_indeed";
+    json photos = json::array(), measured = json::array();
+    for (const double chi : {22.0, 11.0, 0.5})
+      photos.push_back({{"example", longish},
+                        {"camera", "the_camera_on_the_left"},
+                        {"use", "validate"},
+                        {"chi", chi},
+                        {"rms_px", 1.234},
+                        {"only_noise", false}});
+    measured.push_back({{"example", longish},
+                        {"kind", "position_of"},
+                        {"region", "a_region_with_a_long_name"},
+                        {"measured", {-1.2345e-5, 12.345, -123.45}},
+                        {"predicted", {-1.2345e-5, 12.345, -123.45}},
+                        {"over_sigma", {-1.2345e-5, 12.345, -123.45}}});
+    std::string sentence = "the photos leave open";
+    for (int i = 0; i < 30; ++i) sentence += " a word";
+    const json metrics = {{"chi_fit", 22.0},
+                          {"chi_validate", 0.0},
+                          {"rms_px_fit", 1.5},
+                          {"rms_px_validate", 0.0},
+                          {"converged", true},
+                          {"floor", {{"chi", 1.1}, {"source", "rest photos"}}},
+                          {"photos", photos},
+                          {"chi_by_example", {{longish + longish + longish, 22.0}}},
+                          {"chi_by_camera", {{"left", 11.0}}},
+                          {"measured", measured},
+                          {"undetermined", {sentence}}};
+    write(step + "metrics.json", metrics.dump(1));
+    write(step + "parameters.csv",
+          "name,unit,long_name,value,low,high\nmu,MPa,\"modulus, shear\",0.05,0.04,0.06\n");
+  }
+};
+
+TEST_F(WrittenRun, CompareFitsAHundredColumns) {
+  const Result result = hookeye("compare run");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(too_long(result.out), IsEmpty());
+  EXPECT_THAT(result.out, HasSubstr("-1.234e-05"));
+  EXPECT_THAT(result.out, HasSubstr("steps/01-gravity/compare\n"));
+}
+
+TEST_F(WrittenRun, CompareDrawsABarWithTheFloorForEveryPhoto) {
+  const Result result = hookeye("compare run");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("#|#############"));  // chi 22, the floor at 1.1
+  EXPECT_THAT(result.out, HasSubstr("#|######......."));  // 11
+  EXPECT_THAT(result.out, HasSubstr(".|............."));  // 0.5: below it
+}
+
+TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
+  const Result result = hookeye("diagnose run");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(too_long(result.out), IsEmpty());
+  EXPECT_THAT(result.out, HasSubstr("steps/00-base/compare\n"));
+  EXPECT_THAT(result.out, HasSubstr("steps/00-base/removed ("));
+}
+
+}  // namespace
+}  // namespace hookeye::test
