@@ -50,10 +50,23 @@ DiscoverOptions discover_options() {
   return options;
 }
 
+namespace {
+
+/// What discover said was said of the step that was the newest then. Before the new step is
+/// written, so that no kill leaves it beside a step that it does not mean.
+void drop_verdict(Run& run) {
+  run.update([](nlohmann::json& timeline) {
+    for (const char* key : {"verdict", "sentence", "missing", "tie"}) timeline.erase(key);
+  });
+}
+
+}  // namespace
+
 std::filesystem::path record(Run& run, const Step& step, const std::string& command) {
   nlohmann::json entry = timeline_entry(step);
   entry["command"] = command;
   entry["made_by"] = versions();
+  drop_verdict(run);
   return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {
     write_step(folder, *step.fitted.form.scene, step);
   });

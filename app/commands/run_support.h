@@ -33,7 +33,8 @@ Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_o
 
 DiscoverOptions discover_options();
 
-/// Writes the step's folder and the timeline's entry, which keeps the command that made it.
+/// Writes the step's folder and the timeline's entry, which keeps the command that made it. The
+/// run's verdict goes: it was about the step before.
 std::filesystem::path record(Run& run, const Step& step, const std::string& command = invocation());
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);

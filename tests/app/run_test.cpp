@@ -81,6 +81,44 @@ TEST_F(WrittenRun, CompareDrawsABarWithTheFloorForEveryPhoto) {
   EXPECT_THAT(result.out, HasSubstr(".|............."));  // 0.5: below it
 }
 
+/// A verdict as discover writes it.
+class JudgedRun : public FittedRun {
+ protected:
+  void judge() const {
+    json changed = timeline();
+    changed["verdict"] = "explained";
+    changed["sentence"] = "missing: nothing";
+    changed["missing"] = changed["tie"] = json::array();
+    write("run/run.json", changed.dump(2));
+  }
+  void expect_unjudged() const {
+    for (const char* key : {"verdict", "sentence", "missing", "tie"})
+      EXPECT_FALSE(timeline().contains(key)) << key;
+  }
+};
+
+TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
+  judge();
+  ASSERT_EQ(hookeye("add run gravity").status, 0);
+  EXPECT_EQ(timeline().at("steps").size(), 2U);
+  expect_unjudged();
+  judge();
+  ASSERT_EQ(hookeye("add run gravity --take-back").status, 0);
+  EXPECT_EQ(timeline().at("steps").size(), 3U);
+  expect_unjudged();
+  const Result found = hookeye("discover capture -o run");  // goes on from the newest step
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(too_long(found.out), IsEmpty());
+  EXPECT_THAT(found.out, HasSubstr("/compare\n"));
+  const json judged = timeline();
+  for (const char* key : {"verdict", "sentence", "missing", "tie"})
+    EXPECT_TRUE(judged.contains(key)) << key;
+  // The same command on a finished run: no other step, the same verdict.
+  ASSERT_EQ(hookeye("discover capture -o run").status, 0);
+  EXPECT_EQ(timeline().at("steps").size(), judged.at("steps").size());
+  EXPECT_EQ(timeline().at("verdict"), judged.at("verdict"));
+}
+
 TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   const Result result = hookeye("diagnose run");
   ASSERT_EQ(result.status, 0) << result.err;
