@@ -32,6 +32,17 @@ Step newest_step(const Run& run, Bench& bench, const FitOptions& options) {
   return step;
 }
 
+std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest) {
+  const auto file = run.steps().back() / "diagnosis.json";
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    return diagnosis_from_json(nlohmann::json::parse(read_text(file), nullptr, false),
+                               newest.form.realise(newest.p), file);
+  } catch (const InputError&) {
+    return {};  // of another model or version, or damaged: it is made anew
+  }
+}
+
 FitOptions fit_options() {
   FitOptions options;
   options.cancel = &interrupted();

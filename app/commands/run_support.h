@@ -31,6 +31,9 @@ FitOptions fit_options();
 /// The newest step of a run, its model evaluated again (pictures and derivatives).
 Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_options());
 
+/// The newest step's diagnosis as written. Empty: there is none of this model.
+std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest);
+
 DiscoverOptions discover_options();
 
 /// Writes the step's folder and the timeline's entry, which keeps the command that made it. The

@@ -8,6 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// run/ with a base model and gravity added to it, as far as compare and report read it.
 class WrittenRun : public Cli {
@@ -125,6 +126,12 @@ TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   EXPECT_THAT(too_long(result.out), IsEmpty());
   EXPECT_THAT(result.out, HasSubstr("steps/00-base/compare\n"));
   EXPECT_THAT(result.out, HasSubstr("steps/00-base/removed ("));
+  // What is on disk is not diagnosed again.
+  const Result added = hookeye("add run gravity");
+  ASSERT_EQ(added.status, 0) << added.err;
+  EXPECT_THAT(added.err, Not(HasSubstr("diagnosing")));
+  // 01-gravity has no diagnosis yet.
+  EXPECT_THAT(hookeye("add run swelling").err, HasSubstr("diagnosing the newest step"));
 }
 
 }  // namespace
