@@ -42,6 +42,7 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, Sess
 void run_add(const AddArguments& arguments, Session& session) {
   check_effect(arguments.request.effect);
   Run run = Run::open(arguments.run, true);
+  check_stands(run, arguments.request);
   Bench bench = open_capture(run.capture(), session);
   Step current = newest_step(run, bench);
   if (auto stored = stored_diagnosis(run, current.fitted)) current.diagnosis = std::move(*stored);

@@ -86,6 +86,15 @@ void check_effect(const std::string& name) {
   if (!find_effect(name)) unknown_effect(name);
 }
 
+void check_stands(const Run& run, const AddRequest& request) {
+  const nlohmann::json& steps = run.timeline().at("steps");
+  // Runs of earlier versions do not tell: then the model does, once it is read.
+  if (!request.take_back || steps.empty() || !steps.back().contains("effects")) return;
+  const auto effects = steps.back().at("effects").get<std::vector<std::string>>();
+  if (std::find(effects.begin(), effects.end(), request.effect) == effects.end())
+    not_there(request.effect, effects);
+}
+
 Step next_step(Bench& bench, const Step& current, const AddRequest& request,
                const AddOptions& options) {
   return request.take_back ? without_effect(bench, current, request.effect, options)

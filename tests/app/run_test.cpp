@@ -134,5 +134,15 @@ TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   EXPECT_THAT(hookeye("add run swelling").err, HasSubstr("diagnosing the newest step"));
 }
 
+TEST_F(FittedRun, OnlyWhatStandsIsTakenBack) {
+  const Result none = hookeye("add run gravity --take-back");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("it has none"));
+  ASSERT_EQ(hookeye("add run gravity").status, 0);
+  const Result other = hookeye("add run swelling --take-back");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("it has gravity: take back one of these"));
+}
+
 }  // namespace
 }  // namespace hookeye::test

@@ -13,6 +13,7 @@ namespace hookeye::test {
 namespace {
 
 using testing::Contains;
+using testing::HasSubstr;
 using testing::Not;
 
 /// `hookeye studio run`, ended with the object.
@@ -82,6 +83,38 @@ class Studio {
   int port_ = 0;
   std::string root_;
 };
+
+TEST_F(Cli, AStudioForAllAddressesIsRefused) {
+  for (const std::string host : {"0.0.0.0", "0", "::", "::ffff:0.0.0.0", "''"}) {
+    const Result result = hookeye("studio . --host " + host);
+    EXPECT_EQ(result.status, 2) << host;
+    EXPECT_THAT(result.err, HasSubstr("all addresses of the machine")) << host;
+    EXPECT_EQ(result.out, "") << host;
+  }
+}
+
+/// Requests that cannot be are answered with what is wrong, before anything starts.
+TEST_F(Cli, TheStudioSaysWhatIsWrongWithARequest) {
+  write_cube("{z: 1}");
+  fs::create_directories(folder_ / "run/steps/00-base");
+  json timeline = {{"hookeye", 1},
+                   {"capture", (folder_ / "capture.yaml").string()},
+                   {"steps", {{{"name", "base"}, {"effects", {"swelling"}}}}}};
+  write("run/run.json", timeline.dump());
+  const Studio studio(folder_);
+  if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)
+    GTEST_SKIP() << "built without the page";
+  ASSERT_TRUE(studio.ready());
+  const auto type = studio.post("add", R"({"effect": "gravity", "take_back": "x"})");
+  EXPECT_EQ(type.status, 400);
+  EXPECT_EQ(type.body, "take_back is true or false, not \"x\"");
+  const auto other = studio.post("add", R"({"effect": "gravity", "take_back": true})");
+  EXPECT_EQ(other.status, 409);
+  EXPECT_THAT(other.body, HasSubstr("it has swelling"));
+  EXPECT_EQ(studio.post("add", R"({"effect": "gravvity"})").status, 400);
+  EXPECT_EQ(studio.post("add", "{").status, 400);
+  EXPECT_EQ(json::parse(studio.get("job").body).at("state"), "idle");
+}
 
 TEST_F(FittedRun, TheStudioTellsWhatARefitIsDoing) {
   ASSERT_EQ(hookeye("diagnose run").status, 0);
