@@ -5,6 +5,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
+#include "app/report/parse_json.h"
 
 namespace hookeye {
 namespace {
@@ -62,13 +63,20 @@ std::string measured_rows(const json& measured) {
   return table(rows);
 }
 
+json metrics_of(const std::filesystem::path& step) {
+  const auto file = step / "metrics.json";
+  std::string damage;
+  if (auto found = parse_json(read_text(file), damage)) return *found;
+  throw InputError({file.string()}, "the file is " + damage, "restore it, or repeat the step");
+}
+
 void run_compare(const std::string& folder, Session& session) {
   const Run run = Run::open(folder, false);
   if (run.steps().empty())
     throw InputError({folder}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");
   const auto step = run.steps().back();
-  const json metrics = json::parse(read_text(step / "metrics.json"));
+  const json metrics = metrics_of(step);
   const double floor = metrics["floor"]["chi"];
   session.document = metrics;
   session.say("{}",

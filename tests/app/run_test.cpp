@@ -6,9 +6,11 @@
 namespace hookeye::test {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+using testing::StartsWith;
 
 /// run/ with a base model and gravity added to it, as far as compare and report read it.
 class WrittenRun : public Cli {
@@ -64,6 +66,21 @@ class WrittenRun : public Cli {
     write(step + "parameters.csv",
           "name,unit,long_name,value,low,high\nmu,MPa,\"modulus, shear\",0.05,0.04,0.06\n");
   }
+
+  /// The document inside the report of run/, and what the report says is wrong with the run. Null
+  /// where the program was built without Node.js.
+  json report() const {
+    const Result result = hookeye("report run -o page.html --json");
+    if (result.status != 0) {
+      EXPECT_THAT(result.err, HasSubstr("without its page"));
+      return {};
+    }
+    const std::string page = read(folder_ / "page.html"), open = "id=\"document\">";
+    const size_t begin = page.find(open) + open.size();
+    json document = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    document["faults"] = json::parse(result.out).at("faults");
+    return document;
+  }
 };
 
 TEST_F(WrittenRun, CompareFitsAHundredColumns) {
@@ -80,6 +97,58 @@ TEST_F(WrittenRun, CompareDrawsABarWithTheFloorForEveryPhoto) {
   EXPECT_THAT(result.out, HasSubstr("#|#############"));  // chi 22, the floor at 1.1
   EXPECT_THAT(result.out, HasSubstr("#|######......."));  // 11
   EXPECT_THAT(result.out, HasSubstr(".|............."));  // 0.5: below it
+}
+
+TEST_F(WrittenRun, CompareSaysWhereAFileIsDamaged) {
+  const fs::path file = folder_ / "run/steps/01-gravity/metrics.json";
+  fs::resize_file(file, 40);
+  const Result result = hookeye("compare run");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("metrics.json: the file is damaged (cut short at byte 40)"));
+  EXPECT_THAT(result.err, Not(HasSubstr("json.exception")));
+}
+
+TEST_F(WrittenRun, TheReportOfARunWithoutItsTimelineTellsOfItsSteps) {
+  const std::string whole = read(folder_ / "run/run.json");
+  for (const bool gone : {true, false}) {
+    if (gone)
+      fs::remove(folder_ / "run/run.json");
+    else
+      write("run/run.json", whole.substr(0, 50));
+    const json document = report();
+    if (document.is_null()) GTEST_SKIP() << "built without the page";
+    const json& timeline = document.at("timeline");
+    EXPECT_FALSE(timeline.contains("sentence"));
+    EXPECT_EQ(timeline.at("floor").at("chi"), 1.1);
+    ASSERT_EQ(timeline.at("steps").size(), 2U);
+    const json& step = timeline.at("steps").at(1);
+    EXPECT_EQ(step.at("name"), "gravity");
+    EXPECT_EQ(step.at("added"), "gravity");
+    EXPECT_EQ(step.at("chi_fit"), 22.0);
+    EXPECT_TRUE(step.at("chi_validate").is_null());
+    EXPECT_EQ(step.at("parameters").at(0).at("long_name"), "modulus, shear");
+    EXPECT_EQ(step.at("parameters").at(0).at("high"), 0.06);
+    EXPECT_THAT(document.at("faults").get<std::vector<std::string>>(),
+                Contains(StartsWith(gone ? "run.json is not there: steps"
+                                         : "run.json is damaged (cut short at byte 50): steps")));
+    EXPECT_EQ(fs::exists(folder_ / "run/run.json"), !gone) << "the report only reads";
+  }
+}
+
+TEST_F(WrittenRun, DamagedFilesAreNamedInWords) {
+  write("run/steps/00-base/page/body.json", "{\"nodes\": [1, 2");
+  write("run/steps/00-base/diagnosis.json", "");
+  write("run/steps/01-gravity/metrics.json", "{]");
+  const json document = report();
+  if (document.is_null()) GTEST_SKIP() << "built without the page";
+  const auto faults = document.at("faults").get<std::vector<std::string>>();
+  EXPECT_THAT(faults, Contains(StartsWith("field/00-base/body.json is damaged (cut short at byte "
+                                          "15): ")));
+  EXPECT_THAT(faults, Contains(StartsWith("00-base/diagnosis.json is damaged (cut short at byte "
+                                          "0): ")));
+  EXPECT_THAT(faults, Contains(StartsWith("01-gravity/metrics.json is damaged (not JSON from byte "
+                                          "2 on): ")));
+  EXPECT_THAT(faults, Not(Contains(HasSubstr("json.exception"))));
 }
 
 /// A verdict as discover writes it.
