@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/text.h"
 #include "capture_io/numerical_failure.h"
 
 namespace CLI {
@@ -43,8 +44,5 @@ struct Failed {
 using CommandBody = std::function<void(Session&)>;
 /// Adds a subcommand whose callback sets `chosen`.
 using AddCommand = void (*)(CLI::App& app, CommandBody& chosen);
-
-/// Lines of columns, aligned: the first row is the head.
-std::string table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace hookeye

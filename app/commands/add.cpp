@@ -1,4 +1,6 @@
 // hookeye add: refit with an effect (or without it again); the next step of the run.
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 
 #include "app/commands/add_step.h"
@@ -40,12 +42,15 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, Sess
 void run_add(const AddArguments& arguments, Session& session) {
   check_effect(arguments.request.effect);
   Run run = Run::open(arguments.run, true);
+  check_stands(run, arguments.request);
   Bench bench = open_capture(run.capture(), session);
-  const Step current = newest_step(run, bench);
+  Step current = newest_step(run, bench);
+  if (auto stored = stored_diagnosis(run, current.fitted)) current.diagnosis = std::move(*stored);
   AddOptions options;
   options.fit = fit_options();
   options.diagnosis.cancel = &interrupted();
-  options.note = [&session](const std::string& sentence) { session.say("{}\n", sentence); };
+  options.doing = [](const std::string& work) { spdlog::info("{}", work); };
+  options.note = [&session](const std::string& sentence) { session.say("{}", wrapped(sentence)); };
   const Step step = next_step(bench, current, arguments.request, options);
   const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);

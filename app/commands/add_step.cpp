@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace hookeye {
 namespace {
 
@@ -14,12 +16,22 @@ namespace {
                                 : fmt::format("did you mean '{}'?", near));
 }
 
+[[noreturn]] void not_there(const std::string& wanted, const std::vector<std::string>& effects) {
+  throw InputError(
+      {wanted}, "the newest step does not have this effect",
+      effects.empty() ? "it has none, so nothing can be taken back"
+                      : fmt::format("it has {}: take back one of these", fmt::join(effects, ", ")));
+}
+
 Step with_effect(Bench& bench, const Step& current, const std::string& name,
                  const AddOptions& options) {
+  const bool tested =
+      std::any_of(current.diagnosis.effects.begin(), current.diagnosis.effects.end(),
+                  [&](const EffectScore& score) { return score.effect == name; });
+  if (!tested && options.doing) options.doing("diagnosing the newest step");
   const Diagnosis diagnosis =
-      current.diagnosis.effects.empty()
-          ? value_or_fail(diagnose(bench.workspace, current.fitted, options.diagnosis))
-          : current.diagnosis;
+      tested ? current.diagnosis
+             : value_or_fail(diagnose(bench.workspace, current.fitted, options.diagnosis));
   for (const auto& score : diagnosis.effects) {
     if (score.effect != name) continue;
     if (!score.best)
@@ -29,6 +41,7 @@ Step with_effect(Bench& bench, const Step& current, const std::string& name,
       options.note(
           fmt::format("predicted: removes {:.0f} % of the misfit", 100.0 * score.explains));
     }
+    if (options.doing) options.doing("refitting");
     Step step;
     step.name = step.added = name;
     step.fitted = value_or_fail(add_effect(bench.workspace, current.fitted, score, options.fit));
@@ -38,7 +51,7 @@ Step with_effect(Bench& bench, const Step& current, const std::string& name,
 }
 
 Step without_effect(Bench& bench, const Step& current, const std::string& name,
-                    const FitOptions& wanted) {
+                    const AddOptions& wanted) {
   ModelForm form = current.fitted.form;
   std::vector<double> p;
   int offset = 0;
@@ -55,12 +68,11 @@ Step without_effect(Bench& bench, const Step& current, const std::string& name,
     }
     offset += n;
   }
-  if (!found)
-    throw InputError({name}, "the newest step does not have this effect",
-                     "take back an effect that was added");
+  if (!found) not_there(name, effects_in(current.fitted.form));
+  if (wanted.doing) wanted.doing("refitting");
   Step step;
   step.name = "without-" + name;
-  FitOptions options = wanted;
+  FitOptions options = wanted.fit;
   options.coarse_to_fine = false;
   VectorXd start = Eigen::Map<const VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
   if (mesh) std::tie(form, start) = transfer(form.realise(start), bench.scene);
@@ -74,9 +86,18 @@ void check_effect(const std::string& name) {
   if (!find_effect(name)) unknown_effect(name);
 }
 
+void check_stands(const Run& run, const AddRequest& request) {
+  const nlohmann::json& steps = run.timeline().at("steps");
+  // Runs of earlier versions do not tell: then the model does, once it is read.
+  if (!request.take_back || steps.empty() || !steps.back().contains("effects")) return;
+  const auto effects = steps.back().at("effects").get<std::vector<std::string>>();
+  if (std::find(effects.begin(), effects.end(), request.effect) == effects.end())
+    not_there(request.effect, effects);
+}
+
 Step next_step(Bench& bench, const Step& current, const AddRequest& request,
                const AddOptions& options) {
-  return request.take_back ? without_effect(bench, current, request.effect, options.fit)
+  return request.take_back ? without_effect(bench, current, request.effect, options)
                            : with_effect(bench, current, request.effect, options);
 }
 

@@ -16,15 +16,20 @@ struct AddRequest {
 struct AddOptions {
   FitOptions fit;
   DiagnosisOptions diagnosis;
+  std::function<void(const std::string& work)> doing;     ///< told what begins; may be empty
   std::function<void(const std::string& sentence)> note;  ///< may be empty
 };
 
 /// Throws InputError for an effect that is unknown, cannot be added or is not in the model; Failed
-/// or Interrupted where there is no result. `current` must be the newest step.
+/// or Interrupted where there is no result. `current` must be the newest step; where its diagnosis
+/// does not hold the effect, it is diagnosed first.
 Step next_step(Bench& bench, const Step& current, const AddRequest& request,
                const AddOptions& options);
 
 /// Throws InputError with the nearest name.
 void check_effect(const std::string& name);
+
+/// Throws InputError where an effect is to be taken back that the newest step does not have.
+void check_stands(const Run& run, const AddRequest& request);
 
 }  // namespace hookeye

@@ -1,50 +1,73 @@
 // hookeye compare: where the newest step of a run fails.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
+#include "app/report/parse_json.h"
 
 namespace hookeye {
 namespace {
 
 using nlohmann::json;
 
+/// Each of a table's bars ends at the largest chi, or at the floor where all are below it.
+double scale_of(const std::vector<double>& chi, double floor) {
+  return std::max(floor, chi.empty() ? 0.0 : *std::max_element(chi.begin(), chi.end()));
+}
+
 std::string chi_rows(const json& table_json, const std::string& head, double floor) {
-  std::vector<std::vector<std::string>> rows = {{head, "chi", "over floor", ""}};
-  double most = 0.0;
-  for (const auto& [name, chi] : table_json.items()) most = std::max(most, chi.get<double>());
+  std::vector<std::vector<std::string>> rows = {{head, "chi", "over floor", "|: floor"}};
+  std::vector<double> all;
+  for (const auto& chi : table_json) all.push_back(chi);
   for (const auto& [name, chi] : table_json.items())
     rows.push_back({name, fmt::format("{:.2f}", chi.get<double>()),
                     fmt::format("{:.2f}", chi.get<double>() / floor),
-                    bar(chi.get<double>() / most).substr(7)});
+                    marked_bar(chi, floor, scale_of(all, floor))});
   return table(rows);
 }
 
 std::string photo_rows(const json& photos, double floor) {
   std::vector<std::vector<std::string>> rows = {
-      {"example", "camera", "use", "chi", "over floor", "rms px", "what is left"}};
-  for (const auto& photo : photos)
-    rows.push_back({photo["example"], photo["camera"], photo["use"],
-                    fmt::format("{:.2f}", photo["chi"].get<double>()),
-                    fmt::format("{:.2f}", photo["chi"].get<double>() / floor),
-                    fmt::format("{:.3f}", photo["rms_px"].get<double>()),
-                    photo["only_noise"].get<bool>() ? "noise" : "structure"});
+      {"example", "camera", "use", "chi", "|: floor", "over floor", "rms px", "what is left"}};
+  std::vector<double> all;
+  for (const auto& photo : photos) all.push_back(photo.at("chi"));
+  for (const auto& photo : photos) {
+    const double chi = photo.at("chi");
+    rows.push_back({photo.at("example"), photo.at("camera"), photo.at("use"),
+                    fmt::format("{:.2f}", chi), marked_bar(chi, floor, scale_of(all, floor)),
+                    fmt::format("{:.2f}", chi / floor),
+                    fmt::format("{:.3f}", photo.at("rms_px").get<double>()),
+                    photo.at("only_noise").get<bool>() ? "noise" : "structure"});
+  }
   return table(rows);
 }
 
+/// Three lines each: three vectors side by side would not fit.
 std::string measured_rows(const json& measured) {
   if (measured.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
-      {"example", "measured", "region", "value", "model", "over sigma"}};
-  auto three = [](const json& v) {
-    return fmt::format("{:.4g} {:.4g} {:.4g}", v[0].get<double>(), v[1].get<double>(),
-                       v[2].get<double>());
-  };
+      {"example", "measured", "region", "", "value", "model", "over sigma"}};
   for (const auto& one : measured)
-    rows.push_back({one["example"], one["kind"], one["region"], three(one["measured"]),
-                    three(one["predicted"]), three(one["over_sigma"])});
+    for (size_t i = 0; i < 3; ++i) {
+      const auto component = [&](const char* key) {
+        return fmt::format("{:.4g}", one.at(key).at(i).get<double>());
+      };
+      const auto once = [&](const char* key) {
+        return i == 0 ? one.at(key).get<std::string>() : std::string();
+      };
+      rows.push_back({once("example"), once("kind"), once("region"), std::string(1, "xyz"[i]),
+                      component("measured"), component("predicted"), component("over_sigma")});
+    }
   return table(rows);
+}
+
+json metrics_of(const std::filesystem::path& step) {
+  const auto file = step / "metrics.json";
+  std::string damage;
+  if (auto found = parse_json(read_text(file), damage)) return *found;
+  throw InputError({file.string()}, "the file is " + damage, "restore it, or repeat the step");
 }
 
 void run_compare(const std::string& folder, Session& session) {
@@ -53,23 +76,23 @@ void run_compare(const std::string& folder, Session& session) {
     throw InputError({folder}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");
   const auto step = run.steps().back();
-  const json metrics = json::parse(read_text(step / "metrics.json"));
+  const json metrics = metrics_of(step);
   const double floor = metrics["floor"]["chi"];
   session.document = metrics;
-  session.say("step {}: chi {:.3f} fitted, {:.3f} held out; floor {:.3f} ({})\n",
-              step.filename().string(), metrics["chi_fit"].get<double>(),
-              metrics["chi_validate"].get<double>(), floor,
-              metrics["floor"]["source"].get<std::string>());
+  session.say("{}",
+              wrapped(fmt::format("step {}: chi {:.3f} fitted, {:.3f} held out; floor {:.3f} ({})",
+                                  step.filename().string(), metrics["chi_fit"].get<double>(),
+                                  metrics["chi_validate"].get<double>(), floor,
+                                  metrics["floor"]["source"].get<std::string>())));
   session.say("{}\n", photo_rows(metrics["photos"], floor));
   session.say("{}\n", chi_rows(metrics["chi_by_example"], "by example", floor));
   session.say("{}\n", chi_rows(metrics["chi_by_camera"], "by camera", floor));
   if (metrics.contains("chi_by_region") && !metrics["chi_by_region"].empty())
     session.say("{}\n", chi_rows(metrics["chi_by_region"], "by region", floor));
   session.say("{}", measured_rows(metrics["measured"]));
-  for (const auto& sentence : metrics["undetermined"])
-    session.say("{}\n", sentence.get<std::string>());
-  session.say("pictures: {}/*.png\nbodies:   {}/*.vtu\n", (step / "compare").string(),
-              (step / "deformed").string());
+  for (const auto& sentence : metrics["undetermined"]) session.say("{}", wrapped(sentence));
+  say_pictures(step, session);
+  session.say("bodies:   {}\n", (step / "deformed").string());
 }
 
 }  // namespace

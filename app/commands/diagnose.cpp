@@ -22,10 +22,8 @@ void run_diagnose(const std::string& folder, Session& session) {
   session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name, step.fitted.evaluation.chi(false),
               step.diagnosis.floor.chi);
   session.say("{}", diagnosis_table(step.diagnosis));
-  if (const auto& note = step.diagnosis.mesh_note; !note.empty()) session.say("{}\n", note);
-  if (std::filesystem::exists(run.steps().back() / "removed"))
-    session.say("pictures of what they would remove: {}/*/*.png\n",
-                (run.steps().back() / "removed").string());
+  if (const auto& note = step.diagnosis.mesh_note; !note.empty()) session.say("{}", wrapped(note));
+  say_pictures(run.steps().back(), session);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // hookeye discover: fit, diagnose, add, until what is left is noise.
-#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -15,13 +14,6 @@ struct DiscoverArguments {
   std::string capture, run;
   std::vector<std::string> without;
 };
-
-/// "gravity", "strain_stiffening, without softening".
-std::string name_of(const Step& step) {
-  return step.dropped.empty()
-             ? step.name
-             : fmt::format("{}, without {}", step.name, fmt::join(step.dropped, ", "));
-}
 
 DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
   auto recorded = std::make_shared<bool>(first_is_recorded);
@@ -51,20 +43,6 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
   return events;
 }
 
-std::string steps_table(const Discovery& discovery) {
-  std::vector<std::vector<std::string>> rows = {
-      {"step", "chi fitted", "chi held out", "rms px", "over the floor"}};
-  const double top = discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
-  for (const auto& step : discovery.steps) {
-    const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
-    rows.push_back({name_of(step), fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
-                    fmt::format("{:.3f}", step.fitted.evaluation.chi(true)),
-                    fmt::format("{:.3f}", step.fitted.evaluation.rms_px(false)),
-                    fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
-  }
-  return table(rows);
-}
-
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   Bench bench = open_capture(arguments.capture, session);
   Run run = Run::create(arguments.run, bench.scene->capture.file);
@@ -86,8 +64,9 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   session.document = run.timeline();
   session.say("{}\n{}", steps_table(found), parameter_table(found.steps.back().fitted));
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
-    session.say("{}\n", note);
-  session.say("\n{}: {}\n", to_string(found.verdict), found.sentence);
+    session.say("{}", wrapped(note));
+  session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));
+  say_pictures(run.steps().back(), session);
   session.say("run: {}\n", arguments.run);
 }
 

@@ -87,6 +87,8 @@ class Parts {
       if (const auto blob = run_.blob(name))
         return made_.emplace(name, part(name, *blob)).first->second;
       faults.push_back(name + " is not there");
+    } catch (const DamagedPart& error) {
+      faults.push_back(error.what());
     } catch (const std::exception& error) {
       faults.push_back(name + ": " + error.what());
     }

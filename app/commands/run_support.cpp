@@ -2,9 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cmath>
-#include <map>
-
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "estimation/removed.h"
@@ -35,6 +32,17 @@ Step newest_step(const Run& run, Bench& bench, const FitOptions& options) {
   return step;
 }
 
+std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest) {
+  const auto file = run.steps().back() / "diagnosis.json";
+  if (!std::filesystem::exists(file)) return {};
+  try {
+    return diagnosis_from_json(nlohmann::json::parse(read_text(file), nullptr, false),
+                               newest.form.realise(newest.p), file);
+  } catch (const InputError&) {
+    return {};  // of another model or version, or damaged: it is made anew
+  }
+}
+
 FitOptions fit_options() {
   FitOptions options;
   options.cancel = &interrupted();
@@ -53,10 +61,23 @@ DiscoverOptions discover_options() {
   return options;
 }
 
+namespace {
+
+/// What discover said was said of the step that was the newest then. Before the new step is
+/// written, so that no kill leaves it beside a step that it does not mean.
+void drop_verdict(Run& run) {
+  run.update([](nlohmann::json& timeline) {
+    for (const char* key : {"verdict", "sentence", "missing", "tie"}) timeline.erase(key);
+  });
+}
+
+}  // namespace
+
 std::filesystem::path record(Run& run, const Step& step, const std::string& command) {
   nlohmann::json entry = timeline_entry(step);
   entry["command"] = command;
   entry["made_by"] = versions();
+  drop_verdict(run);
   return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {
     write_step(folder, *step.fitted.form.scene, step);
   });
@@ -87,63 +108,10 @@ void record_diagnosis(Run& run, const Step& step) {
   });
 }
 
-std::string parameter_table(const Fitted& fitted) {
-  std::vector<std::vector<std::string>> rows = {
-      {"parameter", "value", "95 % interval", "unit", ""}};
-  const auto parameters = fitted.form.parameters();
-  for (size_t i = 0; i < parameters.size(); ++i)
-    rows.push_back({parameters[i].name, fmt::format("{:.5g}", fitted.p[i]),
-                    fmt::format("{:.5g} .. {:.5g}", fitted.low[i], fitted.high[i]),
-                    parameters[i].unit, parameters[i].long_name.substr(0, 40)});
-  std::string text = table(rows);
-  for (const auto& sentence : fitted.undetermined) text += "  " + sentence + "\n";
-  return text;
-}
-
-std::string photo_table(const Scene& scene, const Fitted& fitted, const Floor& floor) {
-  std::vector<std::vector<std::string>> rows = {
-      {"example", "camera", "use", "chi", "over floor", "rms px", "what is left"}};
-  for (const auto& example : fitted.evaluation.examples)
-    for (const auto& photo : example.photos) {
-      const auto& spec = scene.capture.examples[example.example];
-      const bool noise = flow_statistics(photo.flow).whiteness_p > 0.01;
-      rows.push_back({spec.name, spec.photos[photo.photo].camera,
-                      example.held_out ? "validate" : "fit", fmt::format("{:.2f}", photo.chi()),
-                      fmt::format("{:.2f}", photo.chi() / floor.chi),
-                      fmt::format("{:.3f}", photo.flow.rms_px()), noise ? "noise" : "structure"});
-    }
-  return table(rows);
-}
-
-std::string bar(double share, int width) {
-  const int full = static_cast<int>(std::lround(std::clamp(share, 0.0, 1.0) * width));
-  return fmt::format("{:4.0f} % {}{}", 100.0 * share, std::string(full, '#'),
-                     std::string(width - full, '.'));
-}
-
-std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
-  std::vector<std::vector<std::string>> rows = {
-      {"effect", "would remove", "evidence", "p", "dof", "easily taken for"}};
-  std::string sentences, untestable;
-  for (const auto& effect : diagnosis.effects) {
-    if (!effect.testable) {
-      untestable += fmt::format("  {}: {}\n", effect.effect, effect.why_not);
-      continue;
-    }
-    if (rows.size() > most) continue;
-    std::string confused;
-    for (const auto& other : effect.confused_with)
-      if (confused.size() < 30) confused += (confused.empty() ? "" : ", ") + other.effect;
-    rows.push_back({effect.effect, bar(effect.explains), fmt::format("{:.1f}", effect.evidence),
-                    fmt::format("{:.3f}", effect.p_value), fmt::format("{}", effect.dof),
-                    confused});
-    if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += "  " + effect.why + "\n";
-  }
-  return table(rows) +
-         fmt::format(
-             "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
-             std::max(diagnosis.gate, kNameable)) +
-         sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
+void say_pictures(const std::filesystem::path& step, const Session& session) {
+  session.say("pictures: {}\n", (step / "compare").string());
+  if (std::filesystem::exists(step / "removed"))
+    session.say("          {} (what effects would remove)\n", (step / "removed").string());
 }
 
 }  // namespace hookeye

@@ -1,8 +1,9 @@
-// What the commands on a run share: opening it, its newest model, writing a step, tables.
+// What the commands on a run share: opening it, its newest model, writing a step.
 #pragma once
 
 #include <optional>
 
+#include "app/commands/tables.h"
 #include "app/invocation.h"
 #include "app/session.h"
 #include "capture_io/run.h"
@@ -30,18 +31,18 @@ FitOptions fit_options();
 /// The newest step of a run, its model evaluated again (pictures and derivatives).
 Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_options());
 
+/// The newest step's diagnosis as written. Empty: there is none of this model.
+std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest);
+
 DiscoverOptions discover_options();
 
-/// Writes the step's folder and the timeline's entry, which keeps the command that made it.
+/// Writes the step's folder and the timeline's entry, which keeps the command that made it. The
+/// run's verdict goes: it was about the step before.
 std::filesystem::path record(Run& run, const Step& step, const std::string& command = invocation());
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 
-/// For the terminal, within 100 columns.
-std::string parameter_table(const Fitted& fitted);
-std::string photo_table(const Scene& scene, const Fitted& fitted, const Floor& floor);
-std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
-/// "0.83 ########--": a share as a small bar.
-std::string bar(double share, int width = 10);
+/// Names the folders of a step's pictures.
+void say_pictures(const std::filesystem::path& step, const Session& session);
 
 }  // namespace hookeye

@@ -33,7 +33,7 @@ void add_studio(CLI::App& app, CommandBody& chosen) {
   command->add_option("--port", arguments->options.port, "Port (default: any free one)")
       ->check(CLI::Range(1, 65535));
   command->add_option("--host", arguments->options.host,
-                      "Address to listen at; others than 127.0.0.1 open it to the network");
+                      "An address of this machine; all but 127.0.0.1 open it to the network");
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_studio(*arguments, session); };
   });

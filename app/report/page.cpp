@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "app/report/parse_json.h"
 #include "estimation/page_data.h"
 
 #ifdef HOOKEYE_HAS_PAGE
@@ -83,7 +84,12 @@ std::vector<std::string> blob_names(const json& document) {
 
 std::string part(const std::string& name, const RunView::Blob& blob) {
   const std::string open = "<script type=\"text/plain\" data-part=\"" + attribute(name) + "\"";
-  if (blob.text) return open + ">" + inside_script(json::parse(blob.bytes)) + "</script>\n";
+  if (blob.text) {
+    std::string damage;
+    const auto found = parse_json(blob.bytes, damage);
+    if (!found) throw DamagedPart(name + " is " + damage + ": it is left out");
+    return open + ">" + inside_script(*found) + "</script>\n";
+  }
   return open + " data-base64>" + base64(blob.bytes.data(), blob.bytes.size()) + "</script>\n";
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,12 @@ namespace hookeye {
 /// `parts`: elements made by part(), put after the page's script so that they do not delay it.
 std::string make_page(const nlohmann::json& document, const std::string& parts = {});
 
-/// A blob as an element of the page, found there by its name.
+/// What cannot be put into a page: "NAME is damaged (...): ..."
+struct DamagedPart : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A blob as an element of the page, found there by its name. Throws DamagedPart.
 std::string part(const std::string& name, const RunView::Blob& blob);
 
 /// Names of all blobs that a document refers to, each once.

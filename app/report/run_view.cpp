@@ -8,6 +8,8 @@
 
 #include "app/report/encode_png.h"
 #include "app/report/facts.h"
+#include "app/report/parse_json.h"
+#include "app/report/rebuilt_timeline.h"
 #include "capture_io/run.h"
 
 namespace hookeye {
@@ -17,18 +19,34 @@ using nlohmann::json;
 
 namespace {
 
-/// The parsed file, or null and a fault.
-json read_json(const fs::path& file, const std::string& called, json& faults) {
-  if (!fs::exists(file)) {
-    faults.push_back(called + " is not there");
-    return {};
+/// The parsed file, or null and a fault that ends with what follows from it.
+json read_json(const fs::path& file, const std::string& called, const std::string& so,
+               json& faults) {
+  std::string damage = "not there";
+  if (fs::exists(file)) {
+    try {
+      if (auto found = parse_json(read_text(file), damage)) return *found;
+    } catch (const InputError&) {
+      damage = "not readable";
+    }
   }
-  try {
-    return json::parse(read_text(file));
-  } catch (const std::exception&) {
-    faults.push_back(called + " is damaged");
-    return {};
-  }
+  faults.push_back(fmt::format("{} is {}: {}", called, damage, so));
+  return {};
+}
+
+bool is_timeline(const json& found) {
+  return found.is_object() && found.contains("steps") && found["steps"].is_array();
+}
+
+/// run.json, or what the steps tell where it is lost.
+json timeline_of(const fs::path& run, const std::vector<fs::path>& steps, json& faults) {
+  const std::string so =
+      "steps and their figures are taken from the step folders; the verdict and the place of the "
+      "capture are lost";
+  json found = read_json(run / "run.json", "run.json", so, faults);
+  if (is_timeline(found)) return found;
+  if (!found.is_null()) faults.push_back("run.json is not a run's timeline: " + so);
+  return rebuilt_timeline(steps);
 }
 
 /// Steps in order: those on disk, whether the timeline knows them or not.
@@ -80,7 +98,7 @@ RunView::RunView(fs::path folder) : folder_(std::move(folder)) {
                      "make one with `hookeye fit CAPTURE -o RUN`");
   folder_ = fs::canonical(folder_);
   json ignored = json::array();
-  const json timeline = read_json(folder_ / "run.json", "run.json", ignored);
+  const json timeline = read_json(folder_ / "run.json", "run.json", "", ignored);
   const std::string where =
       timeline.is_object() && timeline.contains("capture") && timeline["capture"].is_string()
           ? timeline["capture"].get<std::string>()
@@ -145,9 +163,12 @@ json RunView::photos_json(json& faults, int factor) {
 json RunView::step_json(const fs::path& step, json& faults, int factor) {
   const std::string name = step.filename().string();
   json out = {{"folder", name},
-              {"metrics", read_json(step / "metrics.json", name + "/metrics.json", faults)}};
-  json ignored = json::array();
-  out["diagnosis"] = read_json(step / "diagnosis.json", "", ignored);
+              {"metrics", read_json(step / "metrics.json", name + "/metrics.json",
+                                    "the figures of this step are not here", faults)},
+              {"diagnosis", nullptr}};
+  if (fs::exists(step / "diagnosis.json"))  // else it has not been diagnosed, which is no fault
+    out["diagnosis"] = read_json(step / "diagnosis.json", name + "/diagnosis.json",
+                                 "what this step lacks is not here", faults);
   out["residuals"] = json::object();
   out["fields"] = json::object();
   out["files"] = json::array();
@@ -187,11 +208,8 @@ json RunView::step_json(const fs::path& step, json& faults, int factor) {
 json RunView::document(int shrink_old, int shrink_new) {
   const std::lock_guard lock(mutex_);
   json faults = json::array();
-  json timeline = read_json(folder_ / "run.json", "run.json", faults);
-  if (!timeline.is_object()) timeline = json::object();
-  if (!timeline.contains("steps") || !timeline["steps"].is_array())
-    timeline["steps"] = json::array();
   const auto folders = step_folders(folder_);
+  const json timeline = timeline_of(folder_, folders, faults);
   json steps = json::array();
   for (size_t i = 0; i < folders.size(); ++i)
     steps.push_back(

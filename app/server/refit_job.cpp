@@ -33,24 +33,31 @@ json RefitJob::state() {
   const auto now = Clock::now();
   out["seconds"] = std::chrono::duration<double>(now - started_).count();
   const int done = out.value("iteration", 0), of = out.value("of", 0);
-  if (done > 0 && of > done)
-    out["seconds_left"] =
-        std::chrono::duration<double>(now - stage_started_).count() / done * (of - done);
+  if (done > first_iteration_ && of > done)
+    out["seconds_left"] = std::chrono::duration<double>(now - stage_started_).count() /
+                          (done - first_iteration_) * (of - done);
   return out;
 }
 
 void RefitJob::stage(const std::string& name) {
   const std::lock_guard lock(mutex_);
+  begin_stage(name);
+}
+
+void RefitJob::begin_stage(const std::string& name) {
   state_["stage"] = name;
-  state_["iteration"] = state_["of"] = 0;
+  state_["iteration"] = state_["of"] = first_iteration_ = 0;
   stage_started_ = Clock::now();
 }
 
 void RefitJob::told(const FitProgress& progress) {
   const std::lock_guard lock(mutex_);
-  if (state_.value("stage", "") != progress.stage || progress.iteration <= 1)
-    stage_started_ = progress.iteration <= 1 ? Clock::now() : stage_started_;
-  state_["stage"] = progress.stage;
+  const std::string name = progress.stage == "final" ? "computing the final pictures and intervals"
+                                                     : "refitting, " + progress.stage;
+  if (state_.value("stage", "") != name || progress.iteration < state_.value("iteration", 0)) {
+    begin_stage(name);
+    first_iteration_ = progress.iteration;
+  }
   state_["iteration"] = progress.iteration;
   state_["of"] = progress.of;
   if (progress.chi > 0.0) state_["chi"] = progress.chi;
@@ -67,6 +74,7 @@ AddOptions RefitJob::options() {
   AddOptions out;
   out.fit.cancel = out.diagnosis.cancel = &cancel_;
   out.fit.progress = [this](const FitProgress& progress) { told(progress); };
+  out.doing = [this](const std::string& work) { stage(work); };
   return out;
 }
 
@@ -75,8 +83,10 @@ void RefitJob::refit(const AddRequest& request) {
   if (!bench_) bench_.emplace(open_capture(run.capture(), session_));
   AddOptions wanted = options();
   stage("evaluating the newest step");
-  const Step current = newest_step(run, *bench_, wanted.fit);
-  stage(request.take_back ? "refitting" : "diagnosing the newest step");
+  FitOptions quiet = wanted.fit;
+  quiet.progress = nullptr;  // no fit yet: its "final" would be taken for the end
+  Step current = newest_step(run, *bench_, quiet);
+  if (auto stored = stored_diagnosis(run, current.fitted)) current.diagnosis = std::move(*stored);
   Step step = next_step(*bench_, current, request, wanted);
   stage("writing the step");
   record(run, step,

@@ -33,6 +33,7 @@ class RefitJob {
   void refit(const AddRequest& request);
   void told(const FitProgress& progress);
   void stage(const std::string& name);
+  void begin_stage(const std::string& name);  ///< mutex_ is held
   void finish(const std::string& state, const std::string& message);
   AddOptions options();
 
@@ -43,6 +44,7 @@ class RefitJob {
   bool running_ = false;
   nlohmann::json state_ = {{"state", "idle"}};
   Clock::time_point started_, stage_started_;
+  int first_iteration_ = 0;  ///< of the stage, as the fit counts
   // Used by the thread alone: the capture stays open between refits.
   Session session_;
   std::optional<Bench> bench_;

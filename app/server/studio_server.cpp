@@ -1,11 +1,15 @@
 #include "app/server/studio_server.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
 #include <sys/file.h>
 #include <sys/random.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <thread>
 
 #include "app/interrupt.h"
@@ -69,10 +73,43 @@ class StudioLock {
   int handle_ = -1;
 };
 
+/// "any address of this machine", in whatever spelling the system takes.
+bool is_wildcard(const std::string& host) {
+  in_addr v4{};
+  in6_addr v6{};
+  if (host.empty()) return true;
+  if (::inet_aton(host.c_str(), &v4) != 0) return v4.s_addr == htonl(INADDR_ANY);
+  if (::inet_pton(AF_INET6, host.c_str(), &v6) != 1) return false;
+  const bool mapped = IN6_IS_ADDR_V4MAPPED(&v6) &&
+                      std::all_of(v6.s6_addr + 12, v6.s6_addr + 16, [](auto b) { return b == 0; });
+  return IN6_IS_ADDR_UNSPECIFIED(&v6) || mapped;
+}
+
+/// The studio answers under one name alone (guard()), so it must be told one.
+const std::string& one_address(const std::string& host) {
+  if (is_wildcard(host))
+    throw InputError({"--host " + host},
+                     "this stands for all addresses of the machine, but the studio answers under "
+                     "one, so that no other site can reach it by a name of its own",
+                     "tell the address or name that the browser will ask for: --host 192.168.1.5");
+  return host;
+}
+
+/// As it stands in an address: browsers send names in small letters, and IPv6 in brackets.
+std::string in_url(std::string host) {
+  std::transform(host.begin(), host.end(), host.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return host.find(':') == std::string::npos ? host : "[" + host + "]";
+}
+
 class Studio {
  public:
   Studio(const fs::path& run, const StudioOptions& options)
-      : lock_(run), view_(run), job_(run), token_(make_token()) {
+      : name_(in_url(one_address(options.host))),
+        lock_(run),
+        view_(run),
+        job_(run),
+        token_(make_token()) {
     make_page(view_.document());  // fails here, not at the first request, when there is no page
     guard();
     route();
@@ -84,7 +121,7 @@ class Studio {
     if (port_ < 0)
       throw InputError({options.host}, fmt::format("port {} cannot be used", options.port),
                        "choose another with --port, or leave it out");
-    host_ = fmt::format("{}:{}", options.host, port_);
+    host_ = fmt::format("{}:{}", name_, port_);
     lock_.tell(address());
   }
 
@@ -186,11 +223,19 @@ class Studio {
     const json wanted = json::parse(request.body, nullptr, false);
     if (!wanted.is_object() || !wanted.contains("effect") || !wanted["effect"].is_string())
       return refuse(response, 400, "tell the effect: {\"effect\": \"gravity\"}");
-    const AddRequest what{wanted["effect"], wanted.value("take_back", false)};
+    const json take_back = wanted.value("take_back", json(false));
+    if (!take_back.is_boolean())
+      return refuse(response, 400, "take_back is true or false, not " + take_back.dump());
+    const AddRequest what{wanted["effect"], take_back};
     try {
       check_effect(what.effect);
     } catch (const InputError& error) {
       return refuse(response, 400, error.what());
+    }
+    try {
+      check_stands(Run::open(view_.folder(), false), what);
+    } catch (const InputError& error) {
+      return refuse(response, 409, error.what());
     }
     if (!job_.start(what)) return refuse(response, 409, "a refit is running already");
     reply(response, job_state());
@@ -220,6 +265,7 @@ class Studio {
     });
   }
 
+  std::string name_;  ///< first: a host that cannot be is refused before anything is opened
   StudioLock lock_;
   RunView view_;
   RefitJob job_;

@@ -13,7 +13,8 @@ struct StudioOptions {
 };
 
 /// Serves the run until interrupted(). `ready` is told the address, which holds an unguessable
-/// token. Throws InputError when another studio is open on this run, or the port is taken.
+/// token. Throws InputError when another studio is open on this run, the port is taken, or the host
+/// stands for all addresses of the machine.
 void serve_studio(const std::filesystem::path& run, const StudioOptions& options,
                   const std::function<void(const std::string& address)>& ready);
 

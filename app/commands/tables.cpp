@@ -1,0 +1,83 @@
+#include "app/commands/tables.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "app/text.h"
+
+namespace hookeye {
+namespace {
+
+/// Names on one line of the last column, "+2" for those that have no room.
+std::string few(const std::vector<Confusion>& confused) {
+  constexpr size_t kRoom = 30;
+  std::string text;
+  for (size_t i = 0; i < confused.size(); ++i) {
+    const std::string& name = confused[i].effect;
+    if (!text.empty() && text.size() + 2 + name.size() > kRoom)
+      return text + fmt::format(" +{}", confused.size() - i);
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string parameter_table(const Fitted& fitted) {
+  std::vector<std::vector<std::string>> rows = {
+      {"parameter", "value", "95 % interval", "unit", ""}};
+  const auto parameters = fitted.form.parameters();
+  for (size_t i = 0; i < parameters.size(); ++i)
+    rows.push_back({parameters[i].name, fmt::format("{:.5g}", fitted.p[i]),
+                    fmt::format("{:.5g} .. {:.5g}", fitted.low[i], fitted.high[i]),
+                    parameters[i].unit, parameters[i].long_name.substr(0, 40)});
+  std::string text = table(rows);
+  for (const auto& sentence : fitted.undetermined) text += wrapped(sentence, 2);
+  return text;
+}
+
+std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
+  std::vector<std::vector<std::string>> rows = {
+      {"effect", "would remove", "evidence", "p", "dof", "easily taken for"}};
+  std::string sentences, untestable;
+  for (const auto& effect : diagnosis.effects) {
+    if (!effect.testable) {
+      untestable += wrapped(fmt::format("{}: {}", effect.effect, effect.why_not), 2);
+      continue;
+    }
+    if (rows.size() > most) continue;
+    rows.push_back({effect.effect, bar(effect.explains), fmt::format("{:.1f}", effect.evidence),
+                    fmt::format("{:.3f}", effect.p_value), fmt::format("{}", effect.dof),
+                    few(effect.confused_with)});
+    if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += wrapped(effect.why, 2);
+  }
+  return table(rows) +
+         fmt::format(
+             "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
+             std::max(diagnosis.gate, kNameable)) +
+         sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
+}
+
+std::string name_of(const Step& step) {
+  return step.dropped.empty()
+             ? step.name
+             : fmt::format("{}, without {}", step.name, fmt::join(step.dropped, ", "));
+}
+
+std::string steps_table(const Discovery& discovery) {
+  std::vector<std::vector<std::string>> rows = {
+      {"step", "chi fitted", "chi held out", "rms px", "over the floor"}};
+  const double top = discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
+  for (const auto& step : discovery.steps) {
+    const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
+    rows.push_back({name_of(step), fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
+                    fmt::format("{:.3f}", step.fitted.evaluation.chi(true)),
+                    fmt::format("{:.3f}", step.fitted.evaluation.rms_px(false)),
+                    fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
+  }
+  return table(rows);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,20 @@
+// What a fit, a diagnosis and a search say on a terminal, within 100 columns.
+#pragma once
+
+#include <string>
+
+#include "estimation/discover.h"
+
+namespace hookeye {
+
+std::string parameter_table(const Fitted& fitted);
+/// The leading `most` effects, one sentence on those that may be named, and why others were not
+/// tested.
+std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
+/// How the error fell.
+std::string steps_table(const Discovery& discovery);
+
+/// "gravity", "strain_stiffening, without softening".
+std::string name_of(const Step& step);
+
+}  // namespace hookeye

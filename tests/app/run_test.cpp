@@ -1,0 +1,217 @@
+// Commands on a run: what they say, what they write into run.json, what they make of a broken one.
+#include <gmock/gmock.h>
+
+#include "app/fitted_run.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::StartsWith;
+
+/// run/ with a base model and gravity added to it, as far as compare and report read it.
+class WrittenRun : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    write_cube("{z: 1}");
+    json timeline = {{"hookeye", 1},
+                     {"capture", (folder_ / "capture.yaml").string()},
+                     {"verdict", "explained"},
+                     {"sentence", "missing: gravity"},
+                     {"steps", json::array()}};
+    for (const std::string name : {"base", "gravity"}) {
+      write_step((name == "base" ? "00-" : "01-") + name);
+      timeline["steps"].push_back({{"name", name}, {"added", nullptr}, {"chi_fit", 22.0}});
+    }
+    write("run/run.json", timeline.dump(2));
+  }
+
+  void write_step(const std::string& name) const {
+    const std::string step = "run/steps/" + name + "/";
+    for (const char* sub : {"compare", "residuals", "page"})
+      fs::create_directories(folder_ / step / sub);
+    const std::string longish = "an_example_with_a_long_name_indeed";
+    json photos = json::array(), measured = json::array();
+    for (const double chi : {22.0, 11.0, 0.5})
+      photos.push_back({{"example", longish},
+                        {"camera", "the_camera_on_the_left"},
+                        {"use", "validate"},
+                        {"chi", chi},
+                        {"rms_px", 1.234},
+                        {"only_noise", false}});
+    measured.push_back({{"example", longish},
+                        {"kind", "position_of"},
+                        {"region", "a_region_with_a_long_name"},
+                        {"measured", {-1.2345e-5, 12.345, -123.45}},
+                        {"predicted", {-1.2345e-5, 12.345, -123.45}},
+                        {"over_sigma", {-1.2345e-5, 12.345, -123.45}}});
+    std::string sentence = "the photos leave open";
+    for (int i = 0; i < 30; ++i) sentence += " a word";
+    const json metrics = {{"chi_fit", 22.0},
+                          {"chi_validate", 0.0},
+                          {"rms_px_fit", 1.5},
+                          {"rms_px_validate", 0.0},
+                          {"converged", true},
+                          {"floor", {{"chi", 1.1}, {"source", "rest photos"}}},
+                          {"photos", photos},
+                          {"chi_by_example", {{longish + longish + longish, 22.0}}},
+                          {"chi_by_camera", {{"left", 11.0}}},
+                          {"measured", measured},
+                          {"undetermined", {sentence}}};
+    write(step + "metrics.json", metrics.dump(1));
+    write(step + "parameters.csv",
+          "name,unit,long_name,value,low,high\nmu,MPa,\"modulus, shear\",0.05,0.04,0.06\n");
+  }
+
+  /// The document inside the report of run/, and what the report says is wrong with the run. Null
+  /// where the program was built without Node.js.
+  json report() const {
+    const Result result = hookeye("report run -o page.html --json");
+    if (result.status != 0) {
+      EXPECT_THAT(result.err, HasSubstr("without its page"));
+      return {};
+    }
+    const std::string page = read(folder_ / "page.html"), open = "id=\"document\">";
+    const size_t begin = page.find(open) + open.size();
+    json document = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    document["faults"] = json::parse(result.out).at("faults");
+    return document;
+  }
+};
+
+TEST_F(WrittenRun, CompareFitsAHundredColumns) {
+  const Result result = hookeye("compare run");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(too_long(result.out), IsEmpty());
+  EXPECT_THAT(result.out, HasSubstr("-1.234e-05"));
+  EXPECT_THAT(result.out, HasSubstr("steps/01-gravity/compare\n"));
+}
+
+TEST_F(WrittenRun, CompareDrawsABarWithTheFloorForEveryPhoto) {
+  const Result result = hookeye("compare run");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("#|#############"));  // chi 22, the floor at 1.1
+  EXPECT_THAT(result.out, HasSubstr("#|######......."));  // 11
+  EXPECT_THAT(result.out, HasSubstr(".|............."));  // 0.5: below it
+}
+
+TEST_F(WrittenRun, CompareSaysWhereAFileIsDamaged) {
+  const fs::path file = folder_ / "run/steps/01-gravity/metrics.json";
+  fs::resize_file(file, 40);
+  const Result result = hookeye("compare run");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("metrics.json: the file is damaged (cut short at byte 40)"));
+  EXPECT_THAT(result.err, Not(HasSubstr("json.exception")));
+}
+
+TEST_F(WrittenRun, TheReportOfARunWithoutItsTimelineTellsOfItsSteps) {
+  const std::string whole = read(folder_ / "run/run.json");
+  for (const bool gone : {true, false}) {
+    if (gone)
+      fs::remove(folder_ / "run/run.json");
+    else
+      write("run/run.json", whole.substr(0, 50));
+    const json document = report();
+    if (document.is_null()) GTEST_SKIP() << "built without the page";
+    const json& timeline = document.at("timeline");
+    EXPECT_FALSE(timeline.contains("sentence"));
+    EXPECT_EQ(timeline.at("floor").at("chi"), 1.1);
+    ASSERT_EQ(timeline.at("steps").size(), 2U);
+    const json& step = timeline.at("steps").at(1);
+    EXPECT_EQ(step.at("name"), "gravity");
+    EXPECT_EQ(step.at("added"), "gravity");
+    EXPECT_EQ(step.at("chi_fit"), 22.0);
+    EXPECT_TRUE(step.at("chi_validate").is_null());
+    EXPECT_EQ(step.at("parameters").at(0).at("long_name"), "modulus, shear");
+    EXPECT_EQ(step.at("parameters").at(0).at("high"), 0.06);
+    EXPECT_THAT(document.at("faults").get<std::vector<std::string>>(),
+                Contains(StartsWith(gone ? "run.json is not there: steps"
+                                         : "run.json is damaged (cut short at byte 50): steps")));
+    EXPECT_EQ(fs::exists(folder_ / "run/run.json"), !gone) << "the report only reads";
+  }
+}
+
+TEST_F(WrittenRun, DamagedFilesAreNamedInWords) {
+  write("run/steps/00-base/page/body.json", "{\"nodes\": [1, 2");
+  write("run/steps/00-base/diagnosis.json", "");
+  write("run/steps/01-gravity/metrics.json", "{]");
+  const json document = report();
+  if (document.is_null()) GTEST_SKIP() << "built without the page";
+  const auto faults = document.at("faults").get<std::vector<std::string>>();
+  EXPECT_THAT(faults, Contains(StartsWith("field/00-base/body.json is damaged (cut short at byte "
+                                          "15): ")));
+  EXPECT_THAT(faults, Contains(StartsWith("00-base/diagnosis.json is damaged (cut short at byte "
+                                          "0): ")));
+  EXPECT_THAT(faults, Contains(StartsWith("01-gravity/metrics.json is damaged (not JSON from byte "
+                                          "2 on): ")));
+  EXPECT_THAT(faults, Not(Contains(HasSubstr("json.exception"))));
+}
+
+/// A verdict as discover writes it.
+class JudgedRun : public FittedRun {
+ protected:
+  void judge() const {
+    json changed = timeline();
+    changed["verdict"] = "explained";
+    changed["sentence"] = "missing: nothing";
+    changed["missing"] = changed["tie"] = json::array();
+    write("run/run.json", changed.dump(2));
+  }
+  void expect_unjudged() const {
+    for (const char* key : {"verdict", "sentence", "missing", "tie"})
+      EXPECT_FALSE(timeline().contains(key)) << key;
+  }
+};
+
+TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
+  judge();
+  ASSERT_EQ(hookeye("add run gravity").status, 0);
+  EXPECT_EQ(timeline().at("steps").size(), 2U);
+  expect_unjudged();
+  judge();
+  ASSERT_EQ(hookeye("add run gravity --take-back").status, 0);
+  EXPECT_EQ(timeline().at("steps").size(), 3U);
+  expect_unjudged();
+  const Result found = hookeye("discover capture -o run");  // goes on from the newest step
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(too_long(found.out), IsEmpty());
+  EXPECT_THAT(found.out, HasSubstr("/compare\n"));
+  const json judged = timeline();
+  for (const char* key : {"verdict", "sentence", "missing", "tie"})
+    EXPECT_TRUE(judged.contains(key)) << key;
+  // The same command on a finished run: no other step, the same verdict.
+  ASSERT_EQ(hookeye("discover capture -o run").status, 0);
+  EXPECT_EQ(timeline().at("steps").size(), judged.at("steps").size());
+  EXPECT_EQ(timeline().at("verdict"), judged.at("verdict"));
+}
+
+TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
+  const Result result = hookeye("diagnose run");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(too_long(result.out), IsEmpty());
+  EXPECT_THAT(result.out, HasSubstr("steps/00-base/compare\n"));
+  EXPECT_THAT(result.out, HasSubstr("steps/00-base/removed ("));
+  // What is on disk is not diagnosed again.
+  const Result added = hookeye("add run gravity");
+  ASSERT_EQ(added.status, 0) << added.err;
+  EXPECT_THAT(added.err, Not(HasSubstr("diagnosing")));
+  // 01-gravity has no diagnosis yet.
+  EXPECT_THAT(hookeye("add run swelling").err, HasSubstr("diagnosing the newest step"));
+}
+
+TEST_F(FittedRun, OnlyWhatStandsIsTakenBack) {
+  const Result none = hookeye("add run gravity --take-back");
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("it has none"));
+  ASSERT_EQ(hookeye("add run gravity").status, 0);
+  const Result other = hookeye("add run swelling --take-back");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("it has gravity: take back one of these"));
+}
+
+}  // namespace
+}  // namespace hookeye::test

@@ -1,0 +1,148 @@
+// The studio from outside: what it answers, and what it tells of a refit.
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/socket.h>
+
+#include <chrono>
+#include <thread>
+
+#include "app/fitted_run.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+/// `hookeye studio run`, ended with the object.
+class Studio {
+ public:
+  explicit Studio(const fs::path& folder) {
+    const fs::path out = folder / "studio.txt";
+    process_ = ::fork();
+    if (process_ == 0) {
+      if (::chdir(folder.c_str()) != 0 || !std::freopen(out.c_str(), "w", stdout) ||
+          !std::freopen("/dev/null", "w", stderr))
+        ::_exit(1);
+      ::execl(HOOKEYE_PROGRAM, HOOKEYE_PROGRAM, "studio", "run", nullptr);
+      ::_exit(1);
+    }
+    for (int i = 0; i < 600 && !ready(); ++i) {
+      const std::string said = read(out), scheme = "http://127.0.0.1:";
+      const size_t at = said.find(scheme), slash = said.find('/', at + scheme.size());
+      if (said.rfind("/\n") != std::string::npos && slash != std::string::npos) {
+        port_ = std::stoi(said.substr(at + scheme.size()));
+        root_ = said.substr(slash, said.find('\n', slash) - slash);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  }
+  ~Studio() {
+    ::kill(process_, SIGINT);
+    ::waitpid(process_, nullptr, 0);
+  }
+  bool ready() const { return port_ > 0; }
+
+  struct Answer {
+    int status = 0;
+    std::string body;
+  };
+  Answer get(const std::string& what) const { return ask("GET", what, ""); }
+  Answer post(const std::string& what, const std::string& body) const {
+    return ask("POST", what, body);
+  }
+
+ private:
+  Answer ask(const std::string& method, const std::string& what, const std::string& body) const {
+    const std::string host = "127.0.0.1:" + std::to_string(port_);
+    const std::string request =
+        method + " " + root_ + what + " HTTP/1.1\r\nHost: " + host + "\r\nOrigin: http://" + host +
+        "\r\nConnection: close\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" +
+        body;
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<uint16_t>(port_));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
+    std::string all;
+    if (::connect(connection, reinterpret_cast<sockaddr*>(&to), sizeof to) == 0 &&
+        ::send(connection, request.data(), request.size(), 0) ==
+            static_cast<ssize_t>(request.size())) {
+      char part[4096];
+      for (ssize_t n; (n = ::recv(connection, part, sizeof part, 0)) > 0;) all.append(part, n);
+    }
+    ::close(connection);
+    const size_t end = all.find("\r\n\r\n");
+    if (all.size() < 12 || end == std::string::npos) return {};
+    return {std::stoi(all.substr(9, 3)), all.substr(end + 4)};
+  }
+
+  pid_t process_ = -1;
+  int port_ = 0;
+  std::string root_;
+};
+
+TEST_F(Cli, AStudioForAllAddressesIsRefused) {
+  for (const std::string host : {"0.0.0.0", "0", "::", "::ffff:0.0.0.0", "''"}) {
+    const Result result = hookeye("studio . --host " + host);
+    EXPECT_EQ(result.status, 2) << host;
+    EXPECT_THAT(result.err, HasSubstr("all addresses of the machine")) << host;
+    EXPECT_EQ(result.out, "") << host;
+  }
+}
+
+/// Requests that cannot be are answered with what is wrong, before anything starts.
+TEST_F(Cli, TheStudioSaysWhatIsWrongWithARequest) {
+  write_cube("{z: 1}");
+  fs::create_directories(folder_ / "run/steps/00-base");
+  json timeline = {{"hookeye", 1},
+                   {"capture", (folder_ / "capture.yaml").string()},
+                   {"steps", {{{"name", "base"}, {"effects", {"swelling"}}}}}};
+  write("run/run.json", timeline.dump());
+  const Studio studio(folder_);
+  if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)
+    GTEST_SKIP() << "built without the page";
+  ASSERT_TRUE(studio.ready());
+  const auto type = studio.post("add", R"({"effect": "gravity", "take_back": "x"})");
+  EXPECT_EQ(type.status, 400);
+  EXPECT_EQ(type.body, "take_back is true or false, not \"x\"");
+  const auto other = studio.post("add", R"({"effect": "gravity", "take_back": true})");
+  EXPECT_EQ(other.status, 409);
+  EXPECT_THAT(other.body, HasSubstr("it has swelling"));
+  EXPECT_EQ(studio.post("add", R"({"effect": "gravvity"})").status, 400);
+  EXPECT_EQ(studio.post("add", "{").status, 400);
+  EXPECT_EQ(json::parse(studio.get("job").body).at("state"), "idle");
+}
+
+TEST_F(FittedRun, TheStudioTellsWhatARefitIsDoing) {
+  ASSERT_EQ(hookeye("diagnose run").status, 0);
+  const Studio studio(folder_);
+  if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)
+    GTEST_SKIP() << "built without the page";
+  ASSERT_TRUE(studio.ready());
+  ASSERT_EQ(studio.post("add", R"({"effect": "gravity"})").status, 200);
+  std::vector<std::string> stages;
+  json now;
+  for (int i = 0; i < 6000; ++i) {
+    now = json::parse(studio.get("job").body);
+    const std::string stage = now.value("stage", "");
+    if (stages.empty() || stages.back() != stage) stages.push_back(stage);
+    if (now.at("state") != "running") break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ASSERT_EQ(now.at("state"), "done") << now.dump();
+  // The diagnosis on disk is used, and the pictures of the old step are not the end of a fit.
+  EXPECT_THAT(stages, Not(Contains("diagnosing the newest step")));
+  const auto first = [&](const std::string& begin) {
+    return std::find_if(stages.begin(), stages.end(),
+                        [&](const std::string& stage) { return stage.rfind(begin, 0) == 0; });
+  };
+  EXPECT_NE(first("refitting, "), stages.end());
+  EXPECT_LE(first("refitting"), first("computing the final"));
+  EXPECT_EQ(timeline().at("steps").size(), 2U);
+}
+
+}  // namespace
+}  // namespace hookeye::test

@@ -1,0 +1,68 @@
+// What is said on a terminal of 100 columns.
+#include "app/text.h"
+
+#include <gmock/gmock.h>
+
+#include "app/cli.h"
+#include "app/commands/tables.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Text, AShortTableIsAlignedAndUnbroken) {
+  EXPECT_EQ(table({{"name", "chi"}, {"pull", "1.25"}, {"°", ""}}),
+            "  name  chi\n  pull  1.25\n  °\n");
+}
+
+TEST(Text, AWideTableGoesOnBelowAndLosesNothing) {
+  const std::string sentence =
+      "one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen "
+      "sixteen seventeen";
+  const std::string text = table({{"first", "second"}, {std::string(150, '@'), sentence}});
+  EXPECT_THAT(too_long(text), IsEmpty());
+  EXPECT_EQ(std::count(text.begin(), text.end(), '@'), 150);
+  std::istringstream words(sentence);
+  for (std::string word; words >> word;) EXPECT_THAT(text, HasSubstr(word));
+}
+
+TEST(Text, SentencesAreBrokenBetweenWordsAndIndented) {
+  EXPECT_EQ(wrapped("a short one", 2), "  a short one\n");
+  EXPECT_EQ(wrapped("alpha beta gamma", 2, 12), "  alpha\n    beta\n    gamma\n");
+  EXPECT_EQ(wrapped("see /a/path/that/is/long", 0, 12), "see\n  /a/path/that/is/long\n");
+}
+
+TEST(Text, ABarShowsWhereTheFloorIs) {
+  EXPECT_EQ(marked_bar(4.0, 1.0, 4.0, 8), "##|######");
+  EXPECT_EQ(marked_bar(1.0, 2.0, 4.0, 8), "##..|....");
+  EXPECT_EQ(marked_bar(0.0, 0.0, 0.0, 4), "|....");
+}
+
+TEST(Text, ADiagnosisFitsAHundredColumns) {
+  Diagnosis diagnosis;
+  for (const char* name : {"strain_stiffening", "tracked_positions", "stiffness_field"}) {
+    EffectScore score;
+    score.effect = name;
+    score.evidence = 100000.0;
+    score.explains = 0.9;
+    score.fall = 100.0;
+    score.p_value = 0.0;
+    score.confused_with = {{"directional_friction", 0.9},
+                           {"an_effect_with_a_long_name", 0.9},
+                           {"compressible_foam", 0.9},
+                           {"gravity", 0.9}};
+    for (int i = 0; i < 30; ++i) score.why += "a word or two ";
+    diagnosis.effects.push_back(score);
+  }
+  diagnosis.effects.back().testable = false;
+  diagnosis.effects.back().why_not = diagnosis.effects.back().why;
+  const std::string text = diagnosis_table(diagnosis);
+  EXPECT_THAT(too_long(text), IsEmpty());
+  EXPECT_THAT(text, HasSubstr("directional_friction +3"));
+  EXPECT_THAT(text, HasSubstr("a word or two"));
+}
+
+}  // namespace
+}  // namespace hookeye::test
