@@ -51,20 +51,41 @@ Cells lines_of(const std::string& text, size_t width, bool cut) {
   return lines;
 }
 
+size_t longest_word(const std::string& text) {
+  size_t longest = 0;
+  for (size_t at = 0; at < text.size();) {
+    const size_t end = std::min(text.find(' ', at), text.size());
+    longest = std::max(longest, columns_of(text.substr(at, end - at)));
+    at = end + 1;
+  }
+  return longest;
+}
+
+/// Takes from the widest column, but from none below its `least`.
+void shrink(std::vector<size_t>& widths, const std::vector<size_t>& least, size_t width) {
+  while (std::accumulate(widths.begin(), widths.end(), 2 * widths.size()) > width) {
+    size_t widest = widths.size();
+    for (size_t i = 0; i < widths.size(); ++i)
+      if (widths[i] > least[i] && (widest == widths.size() || widths[i] > widths[widest]))
+        widest = i;
+    if (widest == widths.size()) return;
+    --widths[widest];
+  }
+}
+
+/// Words stay whole, for names are there to be copied, unless the table cannot fit with them.
 std::vector<size_t> widths_within(const std::vector<Cells>& rows, size_t width) {
-  std::vector<size_t> widths;
+  std::vector<size_t> widths, words;
   for (const auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()), 0);
-    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], columns_of(row[i]));
+    words.resize(widths.size(), 0);
+    for (size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], columns_of(row[i]));
+      words[i] = std::max(words[i], longest_word(row[i]));
+    }
   }
-  const auto total = [&] {
-    return std::accumulate(widths.begin(), widths.end(), 2 * widths.size());
-  };
-  while (!widths.empty() && total() > width) {
-    const auto widest = std::max_element(widths.begin(), widths.end());
-    if (*widest <= kLeastWidth) break;
-    --*widest;
-  }
+  shrink(widths, words, width);
+  shrink(widths, std::vector<size_t>(widths.size(), kLeastWidth), width);
   return widths;
 }
 

@@ -10,13 +10,15 @@
 namespace hookeye {
 namespace {
 
-/// Names on one line of the last column, "+2" for those that have no room.
+/// Names that fit on one line of the last column, "+2" for those that do not. The longest effect's
+/// name fits in both of its columns.
 std::string few(const std::vector<Confusion>& confused) {
-  constexpr size_t kRoom = 30;
+  constexpr size_t kRoom = 29;
   std::string text;
   for (size_t i = 0; i < confused.size(); ++i) {
+    const size_t more = i + 1 < confused.size() ? 3 : 0;  // " +2"
     const std::string& name = confused[i].effect;
-    if (!text.empty() && text.size() + 2 + name.size() > kRoom)
+    if (!text.empty() && text.size() + 2 + name.size() + more > kRoom)
       return text + fmt::format(" +{}", confused.size() - i);
     text += (text.empty() ? "" : ", ") + name;
   }
@@ -48,7 +50,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
       continue;
     }
     if (rows.size() > most) continue;
-    rows.push_back({effect.effect, bar(effect.explains), fmt::format("{:.1f}", effect.evidence),
+    rows.push_back({effect.effect, bar(effect.explains, 7), fmt::format("{:.1f}", effect.evidence),
                     fmt::format("{:.3f}", effect.p_value), fmt::format("{}", effect.dof),
                     few(effect.confused_with)});
     if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += wrapped(effect.why, 2);

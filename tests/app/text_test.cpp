@@ -42,17 +42,19 @@ TEST(Text, ABarShowsWhereTheFloorIs) {
 
 TEST(Text, ADiagnosisFitsAHundredColumns) {
   Diagnosis diagnosis;
-  for (const char* name : {"strain_stiffening", "tracked_positions", "stiffness_field"}) {
+  for (const char* name :
+       {"tension_compression_asymmetry", "strain_stiffening", "stiffness_field"}) {
     EffectScore score;
     score.effect = name;
     score.evidence = 100000.0;
     score.explains = 0.9;
     score.fall = 100.0;
     score.p_value = 0.0;
-    score.confused_with = {{"directional_friction", 0.9},
-                           {"an_effect_with_a_long_name", 0.9},
-                           {"compressible_foam", 0.9},
-                           {"gravity", 0.9}};
+    score.confused_with = {
+        {diagnosis.effects.empty() ? "swelling" : "tension_compression_asymmetry", 0.9},
+        {"an_effect_with_a_long_name", 0.9},
+        {"compressible_foam", 0.9},
+        {"gravity", 0.9}};
     for (int i = 0; i < 30; ++i) score.why += "a word or two ";
     diagnosis.effects.push_back(score);
   }
@@ -60,7 +62,9 @@ TEST(Text, ADiagnosisFitsAHundredColumns) {
   diagnosis.effects.back().why_not = diagnosis.effects.back().why;
   const std::string text = diagnosis_table(diagnosis);
   EXPECT_THAT(too_long(text), IsEmpty());
-  EXPECT_THAT(text, HasSubstr("directional_friction +3"));
+  EXPECT_THAT(text, HasSubstr("swelling +3\n"));
+  EXPECT_THAT(text, HasSubstr("  tension_compression_asymmetry  "));
+  EXPECT_THAT(text, HasSubstr("  tension_compression_asymmetry\n"));
   EXPECT_THAT(text, HasSubstr("a word or two"));
 }
 
