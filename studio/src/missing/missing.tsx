@@ -106,8 +106,9 @@ export function Missing() {
       <div class="ranking" onMouseLeave={() => (previewed.value = '')}>
         <Outcome ranked={ranked} decision={decision} />
         <Wide label="Ranked effects">
-          <thead><tr><th>effect</th><th>would explain</th><th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th><th class="wide">dof<Ask word="dof" /></th>
-            <th class="wide">easily taken for <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th></tr></thead>
+          <thead><tr><th>effect <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th><th>would explain</th>
+            <th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th><th class="wide">dof<Ask word="dof" /></th>
+            <th class="wide">easily taken for</th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
               <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} />
