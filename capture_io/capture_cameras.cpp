@@ -83,6 +83,25 @@ Camera read_calibrated(const YamlNode& node, const std::string& name, const Capt
   }
 }
 
+/// Rays need the distortion undone; far from the centre a polynomial may fold the picture over.
+void check_lens(const Camera& camera, const Place& place, const std::string& what) {
+  constexpr double kOff = 0.1;  // px
+  constexpr int kSteps = 8;
+  if (camera.distortion.empty()) return;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j) {
+      const Eigen::Vector2d pixel((camera.width - 1.0) * i / kSteps,
+                                  (camera.height - 1.0) * j / kSteps);
+      const Ray ray = camera.ray(pixel);
+      if ((camera.project(ray.origin + ray.direction) - pixel).norm() < kOff) continue;  // NaN: no
+      throw InputError(
+          place,
+          fmt::format("the distortion of {} cannot be undone at pixel ({:.0f}, {:.0f})", what,
+                      pixel.x(), pixel.y()),
+          "look at its coefficients (OpenCV's order: k1, k2, p1, p2, k3 ...) and at fx");
+    }
+}
+
 Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
   const std::string what = fmt::format("camera `{}`", entry.key);
   const YamlSection section(entry.value, what,
@@ -117,6 +136,7 @@ Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
     read_pose(*pose, camera);
   else if (!has_pose)
     section.need("pose", "write `pose: {rotation: [...], translation: [...]}` (world to camera)");
+  check_lens(camera, entry.place, what);
   return camera;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "capture_io/input_error.h"
 #include "estimation/additive_material.h"
 #include "estimation/convex_fit.h"
 #include "estimation/normal_equations.h"
@@ -280,6 +281,8 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
     // positive parameters: the interval is symmetric in the logarithm
     out.low[i] = parameters[i].positive ? p[i] * std::exp(-half / p[i]) : p[i] - half;
     out.high[i] = parameters[i].positive ? p[i] * std::exp(half / p[i]) : p[i] + half;
+    // nothing in the data moves with it: anything may be
+    if (half == 0.0) out.low[i] = parameters[i].low, out.high[i] = parameters[i].high;
   }
   return out;
 }
@@ -304,6 +307,18 @@ std::vector<Stage> stages(const Scene& scene, bool coarse_to_fine) {
   return all;
 }
 
+/// Nothing seen and nothing measured would be fitted perfectly by any value.
+void check_data(const Scene& scene, const Look& seen) {
+  if (seen.count > 0.0) return;
+  for (const auto& example : scene.capture.examples)
+    if (!example.validate && !example.measured.empty()) return;
+  throw InputError({scene.capture.file.string()},
+                   "there is nothing to fit to: no pixel of a fitted example counts, and nothing "
+                   "is measured there",
+                   "look at masks, at where the cameras look and at `use:` (`hookeye check` tells "
+                   "what every photo shows)");
+}
+
 /// From coarse to full size within a scope.
 std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& start,
@@ -316,6 +331,7 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
       auto first = look(workspace, form, out.p, options, scope, stage.level);
       if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
       full_size = std::get<Look>(first);
+      if (!scope.held_out) check_data(workspace.scene(), *full_size);
     }
     const Look seen = *full_size;
     if (!stage.serves(seen.motion_px)) continue;

@@ -48,6 +48,10 @@ RawVolume read_text_mesh(const std::filesystem::path& file);
 /// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): fill.cpp.
 int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
 
+/// A point in every cavity: shells of the surface whose triangles are turned inwards, away from the
+/// material around them (cavities.cpp).
+std::vector<Vector3d> cavities(const SurfaceMesh& surface);
+
 /// Jacobian determinant of an element at barycentric coordinates (6 x volume when straight).
 double jacobian(const TetMesh& mesh, int element, const Eigen::Vector4d& barycentric);
 

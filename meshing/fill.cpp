@@ -222,6 +222,10 @@ TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place
       "q{:.3f}/{:.3f}a{:.17g}Q", options.radius_edge_ratio, options.min_dihedral_deg, volume);
   tetgenio in;
   hand_over(skin, in);
+  const std::vector<Vector3d> holes = detail::cavities(surface);
+  in.numberofholes = static_cast<int>(holes.size());
+  in.holelist = new REAL[3 * holes.size()];
+  for (size_t i = 0; i < holes.size(); ++i) Eigen::Map<Vector3d>(in.holelist + 3 * i) = holes[i];
   Filled out;
   if (!run_tetgen("pY" + quality_bounds, in, out)) {
     out = Filled();  // then with points on the boundary

@@ -1,5 +1,9 @@
 // The only file that touches VTK: ply and stl surfaces, vtu meshes and results.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -18,6 +22,9 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
+
+#include <cerrno>
+#include <csignal>
 
 #include "meshing/detail.h"
 
@@ -102,13 +109,46 @@ detail::TriangleSoup read_with(Reader* reader, const std::filesystem::path& file
   return soup_of(reader->GetOutput(), file);
 }
 
+/// Tries `read` in a process of its own. False: that ended by a signal or without memory.
+template <class Read>
+bool survives(const Read& read) {
+  const pid_t process = fork();
+  if (process < 0) return true;
+  if (process == 0) {
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    for (const int fault : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(fault, SIG_DFL);
+    const int nowhere = open("/dev/null", O_WRONLY);
+    dup2(nowhere, 1);
+    dup2(nowhere, 2);
+    try {
+      read();
+    } catch (const InputError&) {  // said by the parent
+    } catch (...) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  int status = -1;
+  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
 }  // namespace
 
 namespace detail {
 
 TriangleSoup read_ply(const std::filesystem::path& file) {
-  vtkNew<vtkPLYReader> reader;
-  return read_with(reader.Get(), file);
+  const auto read = [&] {
+    vtkNew<vtkPLYReader> reader;
+    return read_with(reader.Get(), file);
+  };
+  // VTK's reader believes the counts in the file: a file cut short ends the process.
+  if (!survives(read))
+    throw InputError({file.string()}, "the file is damaged: it does not hold what its header says",
+                     "a complete ply file of triangles");
+  return read();
 }
 
 TriangleSoup read_stl(const std::filesystem::path& file) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commands/add_step.h"
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "estimation/step_json.h"
@@ -44,6 +45,7 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
 }
 
 void run_discover(const DiscoverArguments& arguments, Session& session) {
+  for (const std::string& name : arguments.without) check_effect(name);
   Bench bench = open_capture(arguments.capture, session);
   Run run = Run::create(arguments.run, bench.scene->capture.file);
   DiscoverOptions options = discover_options();

@@ -51,10 +51,11 @@ bool Score::right_or_tie() const {
 
 bool Score::exact_set() const {
   const auto names = effects_of(hidden);
+  const std::set<std::string> asked(names.begin(), names.end());
   std::set<std::string> found;
   for (const std::string& name : added)
-    if (!numerical(name)) found.insert(name);
-  return found == std::set<std::string>(names.begin(), names.end());
+    if (!numerical(name) || asked.count(name)) found.insert(name);
+  return found == asked;
 }
 
 Score score(const json& run, const json& truth) {

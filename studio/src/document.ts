@@ -84,6 +84,7 @@ export interface Metrics {
   iterations: number;
   mesh: {nodes: number; elements: number; order: number; mean_edge: number};
   energy?: EnergyCurve[];
+  additive?: unknown;  // there: `energy` has the addends of an additive material
 }
 export interface EnergyCurve {
   name: string;

@@ -47,6 +47,9 @@ TEST_F(Cli, UsageErrorsAreBadInput) {
   EXPECT_THAT(option.err, HasSubstr("did you mean --json"));
   EXPECT_EQ(hookeye("simulate").status, 2);
   EXPECT_EQ(hookeye("mesh cube.obj -o b.vtu --edge -1").status, 2);
+  const Result without = hookeye("discover . -o run --without gravty");
+  EXPECT_EQ(without.status, 2);
+  EXPECT_THAT(without.err, HasSubstr("did you mean 'gravity'"));
   const Result asked = hookeye("check --json --frobnicate");
   EXPECT_EQ(asked.status, 2);
   EXPECT_EQ(json::parse(asked.out).at("exit"), 2);

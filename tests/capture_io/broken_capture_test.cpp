@@ -172,6 +172,9 @@ const BrokenCase broken_cases[] = {
     {"DistortionThree", swap("distortion: [0.1, 0, 0, 0, 0]", "distortion: [0.1, 0, 0]"),
      "capture.yaml:18:64: distortion of camera `front` has 3 numbers\n"
      "  0, 4, 5, 8, 12 or 14 are expected, in OpenCV's order"},
+    {"DistortionFolds", swap("distortion: [0.1, 0, 0, 0, 0]", "distortion: [-80, 0, 0, 0, 0]"),
+     "capture.yaml:15:3: the distortion of camera `front` cannot be undone at pixel (0, 1)\n"
+     "  look at its coefficients (OpenCV's order: k1, k2, p1, p2, k3 ...) and at fx"},
     {"RotationReflected", swap("[[1,0,0],[0,0,-1],[0,1,0]]", "[[1,0,0],[0,0,1],[0,1,0]]"),
      "capture.yaml:19:22: rotation of camera `front` is a reflection\n"
      "  a rotation has orthonormal rows and determinant +1 (within 1e-4)"},

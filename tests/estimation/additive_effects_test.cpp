@@ -158,6 +158,16 @@ TEST(EffectsOnAdditive, AnAddendsNameStandsForItsControlValues) {
   EXPECT_EQ(names, (std::vector<std::string>{"E33.1", "E33.2", "E33.3", "J.2"}));
 }
 
+TEST(Fit, WithoutAnythingToFitToIsAnError) {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  for (auto& photos : scene->photos) photos.clear();
+  for (ExampleSpec& example : scene->capture.examples)
+    example.photos.clear(), example.measured.clear();
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  EXPECT_THROW(fit(workspace, form, form.initial()), InputError);
+}
+
 TEST(NamedAddends, AFitStaysConvex) {
   auto scene = std::make_shared<Scene>(*additive_block({"E11_E33"}));
   for (auto& photos : scene->photos) photos.clear();

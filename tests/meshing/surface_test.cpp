@@ -94,6 +94,12 @@ TEST(ReadSurface, PlyAsciiAndItsFaults) {
               HasSubstr("face 0 has 4 corners"));
   EXPECT_THAT(refusal([&] { read_surface(scratch.write("c.ply", head + "3 0 1 7\n3 0 2 3\n")); }),
               HasSubstr("vertex 7"));
+  // What ends VTK's reader by a signal, or without memory, is told like any other fault.
+  EXPECT_THAT(refusal([&] { read_surface(scratch.write("e.ply", head + "200 0 2 3\n3 0 2 3\n")); }),
+              HasSubstr("e.ply"));
+  std::string claims = head;
+  claims.replace(claims.find("vertex 4"), 8, "vertex 8000000000");
+  EXPECT_THAT(refusal([&] { read_surface(scratch.write("f.ply", claims)); }), HasSubstr("f.ply"));
   EXPECT_THAT(refusal([&] { read_surface(scratch.write("d.ply", "nothing")); }),
               HasSubstr("d.ply"));
 }

@@ -67,6 +67,33 @@ TEST(Fill, BoundaryLiesOnTheTriangleItNames) {
   }
 }
 
+TEST(Fill, AShellTurnedInwardsIsACavity) {
+  SurfaceMesh s = box_surface({3, 2, 1}, 1);
+  SurfaceMesh inner = box_surface({1, 0.5, 0.4}, 1);
+  inner.X.colwise() += Vector3d(1.1, 0.7, 0.3);
+  const int before = static_cast<int>(s.X.cols()), outer = static_cast<int>(s.triangles.size());
+  Matrix3Xd X(3, s.X.cols() + inner.X.cols());
+  X << s.X, inner.X;
+  s.X = X;
+  for (const auto& t : inner.triangles)
+    s.triangles.push_back({t[0] + before, t[2] + before, t[1] + before});
+  s.uv.clear();
+  FillOptions options;
+  options.edge = 0.25;
+  const TetMesh mesh = fill(s, options, kPlace);
+  EXPECT_NEAR(quality(mesh).volume, 6.0 - 0.2, 1e-9);
+  double wall = 0.0;  // area of the cavity's boundary
+  for (Eigen::Index f = 0; f < mesh.boundary.cols(); ++f) {
+    if (mesh.boundary_parent[static_cast<size_t>(f)] < outer) continue;
+    const Vector3d a = mesh.X.col(mesh.boundary(0, f)), b = mesh.X.col(mesh.boundary(1, f)),
+                   c = mesh.X.col(mesh.boundary(2, f));
+    const Vector3d n = (b - a).cross(c - a);
+    EXPECT_LT(n.dot(a - Vector3d(1.6, 0.95, 0.5)), 0.0) << "turned into the material";
+    wall += 0.5 * n.norm();
+  }
+  EXPECT_NEAR(wall, 2 * (1 * 0.5 + 1 * 0.4 + 0.5 * 0.4), 1e-9);
+}
+
 TEST(Fill, BrokenSurfacesAreRefusedWithPlace) {
   SurfaceMesh open = box_surface({3, 2, 1}, 1);
   open.triangles.pop_back();
