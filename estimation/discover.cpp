@@ -267,6 +267,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
                                                         const DiscoverOptions& options,
                                                         const DiscoverEvents& events) {
   Discovery out;
+  out.tie = options.tie;
   const size_t base_ingredients =
       base_form(workspace.scene().shared_from_this()).ingredients.size();
   out.steps.push_back(std::move(first));

@@ -1,6 +1,7 @@
 #include "estimation/removed.h"
 
 #include <cmath>
+#include <map>
 
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
@@ -13,8 +14,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kCell = 8;            ///< [px]: finer than the cells that count, coarser than speckle
-constexpr double kUnit = 1.0 / 16;  ///< standard deviations of one level
+constexpr int kCell = 8;  ///< [px]: finer than the cells that count, coarser than speckle
+constexpr double kFinestUnit = 1.0 / 16;  ///< standard deviations of one level, at least
 
 /// The fitted form with the effect in it, and the values after the linear step.
 std::pair<ModelForm, VectorXd> after_step(const Fitted& fitted, const EffectScore& score) {
@@ -41,14 +42,11 @@ ExampleEvaluation state_of(int example, const VectorXd& q) {
   return out;
 }
 
+/// In standard deviations; NaN: does not count.
 struct Cells {
   int columns, rows;
-  std::vector<unsigned char> now, removed;
+  std::vector<double> now, removed;
 };
-
-unsigned char level(double sigmas, int zero) {
-  return static_cast<unsigned char>(std::clamp(std::lround(sigmas / kUnit) + zero, 1L, 255L));
-}
 
 Cells cells_of(const Image& before, const Image& after) {
   Cells out{(before.width + kCell - 1) / kCell, (before.height + kCell - 1) / kCell, {}, {}};
@@ -63,15 +61,32 @@ Cells cells_of(const Image& before, const Image& after) {
         }
       const bool counts = count > 0.25 * kCell * kCell;
       const double rms = std::sqrt(was / std::max(count, 1.0));
-      out.now.push_back(counts ? level(rms, 1) : 0);
-      out.removed.push_back(counts ? level(rms - std::sqrt(is / count), 128) : 0);
+      out.now.push_back(counts ? rms : std::nan(""));
+      out.removed.push_back(counts ? rms - std::sqrt(is / count) : std::nan(""));
     }
   return out;
 }
 
-json cells_json(const Cells& cells) {
-  std::vector<unsigned char> bytes = cells.now;
-  bytes.insert(bytes.end(), cells.removed.begin(), cells.removed.end());
+/// One level of all photos of an effect: nothing is cut off.
+double unit_of(const std::map<std::string, Cells>& photos) {
+  double unit = kFinestUnit;
+  for (const auto& [name, cells] : photos) {
+    for (double x : cells.now) unit = std::fmax(unit, x / 254.0);
+    for (double x : cells.removed) unit = std::fmax(unit, std::abs(x) / 127.0);
+  }
+  return unit;
+}
+
+/// `now` from 1 on, `removed` about 128; 0: does not count.
+json cells_json(const Cells& cells, double unit) {
+  std::vector<unsigned char> bytes;
+  const auto add = [&](double x, long zero) {
+    bytes.push_back(std::isnan(x) ? 0
+                                  : static_cast<unsigned char>(
+                                        std::clamp(std::lround(x / unit) + zero, 1L, 255L)));
+  };
+  for (double x : cells.now) add(x, 1);
+  for (double x : cells.removed) add(x, 128);
   return {{"columns", cells.columns},
           {"rows", cells.rows},
           {"bytes", base64(bytes.data(), bytes.size())}};
@@ -116,7 +131,7 @@ void write_removed(const std::filesystem::path& folder, const Step& step) {
     if (score.displaced.empty()) continue;
     const auto after = predicted_residuals(step.fitted, score);
     std::filesystem::create_directories(folder / score.effect);
-    json photos = json::object();
+    std::map<std::string, Cells> photos;
     size_t next = 0;
     for (const auto& example : step.fitted.evaluation.examples)
       for (const auto& photo : example.photos) {
@@ -125,9 +140,11 @@ void write_removed(const std::filesystem::path& folder, const Step& step) {
         const std::string name = photo_name(scene, photo);
         write_removed_picture(folder / score.effect / (name + ".png"), photo.residual,
                               predicted.residual, name, score.effect);
-        photos[name] = cells_json(cells_of(photo.residual, predicted.residual));
+        photos[name] = cells_of(photo.residual, predicted.residual);
       }
-    const json document = {{"cell_px", kCell}, {"unit", kUnit}, {"photos", std::move(photos)}};
+    const double unit = unit_of(photos);
+    json document = {{"cell_px", kCell}, {"unit", unit}, {"photos", json::object()}};
+    for (const auto& [name, cells] : photos) document["photos"][name] = cells_json(cells, unit);
     write_text(folder / (score.effect + ".json"), document.dump());
   }
 }

@@ -51,6 +51,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   DiscoverOptions options = discover_options();
   options.diagnosis.without = arguments.without;
   const bool resumed = !run.steps().empty();
+  for (const auto& step : run.timeline().value("steps", nlohmann::json::array()))
+    if (auto tied = tied_in(step); tied.size() > 1) options.tie = std::move(tied);
   const DiscoverEvents on = events(run, bench, resumed);
   const ModelForm form = base_form(bench.scene);
   const Discovery found =

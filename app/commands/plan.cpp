@@ -36,10 +36,7 @@ Question question_of(const json& timeline, const Diagnosis& newest,
   out.effects = confused_effects(newest);
   if (out.effects.size() > 1) return out;
   for (size_t i = steps.size() - 1; i > 0; --i) {
-    std::vector<std::string> tied;
-    for (const auto& rival : steps[i].value("rivals", json::array()))
-      if (rival.at("score").get<double>() > -kTie)
-        tied.push_back(rival.at("effect").get<std::string>());
+    const std::vector<std::string> tied = tied_in(steps[i]);
     if (tied.size() > 1) return {i - 1, tied};
   }
   return out;

@@ -54,6 +54,13 @@ FitOptions fit_options() {
   return options;
 }
 
+std::vector<std::string> tied_in(const nlohmann::json& step) {
+  std::vector<std::string> tied;
+  for (const auto& rival : step.value("rivals", nlohmann::json::array()))
+    if (rival.at("score").get<double>() > -kTie) tied.push_back(rival.at("effect"));
+  return tied;
+}
+
 DiscoverOptions discover_options() {
   DiscoverOptions options;
   options.fit = fit_options();

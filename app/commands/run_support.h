@@ -34,6 +34,10 @@ Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_o
 /// The newest step's diagnosis as written. Empty: there is none of this model.
 std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest);
 
+/// Effects that the refits of a step of `run.json` could not tell apart, the added one first; one
+/// alone is no tie.
+std::vector<std::string> tied_in(const nlohmann::json& step);
+
 DiscoverOptions discover_options();
 
 /// Writes the step's folder and the timeline's entry, which keeps the command that made it. The
