@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
 #include "capture_io/capture_reader.h"
@@ -54,6 +55,29 @@ void check_references(const Capture& capture) {
           body.texture_place,
           fmt::format("example `{}` has no photos to take the texture from", body.texture_example),
           "name an example with photos, usually the one at rest");
+    if (example->validate)
+      throw InputError(
+          body.texture_place,
+          fmt::format("example `{}` is held out: it cannot give the texture", body.texture_example),
+          "name a fitted example, usually the one at rest");
+  }
+}
+
+/// Results are files EXAMPLE-CAMERA and EXAMPLE_CAMERA.
+void check_file_names(const Capture& capture) {
+  for (const char* joint : {"-", "_"}) {
+    std::map<std::string, std::string> seen;
+    for (const ExampleSpec& example : capture.examples)
+      for (const PhotoSpec& photo : example.photos) {
+        const std::string file = example.name + joint + photo.camera;
+        const auto [other, fresh] = seen.emplace(file, example.name);
+        if (!fresh)
+          throw InputError(
+              photo.place,
+              fmt::format("results of example `{}` and of `{}` would both be called {}",
+                          other->second, example.name, file),
+              "rename an example or a camera");
+      }
   }
 }
 
@@ -125,6 +149,7 @@ Capture read_capture(const fs::path& path) {
       read_examples(top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`"),
                     capture, defaults, folder);
   check_references(capture);
+  check_file_names(capture);
   return capture;
 }
 

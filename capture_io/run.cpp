@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <system_error>
 
@@ -98,6 +99,26 @@ fs::path yaml_of(const fs::path& capture) {
   return fs::weakly_canonical(fs::is_directory(capture) ? capture / "capture.yaml" : capture);
 }
 
+/// Of the capture's text (FNV-1a, 64 bit); empty where the file cannot be read.
+std::string fingerprint(const fs::path& yaml) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(yaml, ignored)) return "";
+  uint64_t hash = 14695981039346656037u;
+  for (const unsigned char c : read_text(yaml)) hash = (hash ^ c) * 1099511628211u;
+  return fmt::format("{:016x}", hash);
+}
+
+/// Steps made from another text cannot stand beside those made from this one.
+void check_unchanged(const json& timeline, const fs::path& folder) {
+  const std::string now = fingerprint(timeline["capture"].get<std::string>());
+  const std::string then = timeline.value("capture_fingerprint", now);
+  if (now.empty() || then == now || timeline["steps"].empty()) return;
+  throw InputError(
+      {timeline["capture"].get<std::string>()},
+      fmt::format("the capture has changed since the run {} was made", folder.string()),
+      "name a new folder for the changed capture's run, or undo the change");
+}
+
 void check_name(const std::string& name) {
   if (name.empty() || name[0] == '.' || name.find('/') != std::string::npos ||
       name.find('\0') != std::string::npos)
@@ -162,6 +183,7 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
   fs::create_directories(impl->folder / "steps");
   impl->store({{"hookeye", 1},
                {"capture", yaml_of(capture).string()},
+               {"capture_fingerprint", fingerprint(yaml_of(capture))},
                {"verdict", "unexplained"},
                {"steps", json::array()}});
   return Run(std::move(impl));
@@ -175,6 +197,7 @@ Run Run::open(const fs::path& folder, bool write) {
   impl->folder = fs::canonical(folder);
   if (write) impl->lock = std::make_unique<Lock>(impl->folder);
   impl->timeline = read_timeline(impl->folder);
+  if (write) check_unchanged(impl->timeline, impl->folder);
   if (write) remove_leftovers(impl->folder);
   return Run(std::move(impl));
 }

@@ -1,6 +1,6 @@
 // What the data say of a material that is told by laws: its energy under a pull and under pressure,
 // with the band that the parameters' covariance gives, over the strains that the examples visit.
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -72,9 +72,9 @@ std::array<Visited, 2> visited(const Scene& scene, const Model& model, const Fit
       const Matrix3d F =
           g.size() ? Matrix3d(all[i] / g[static_cast<Eigen::Index>(i / points)]) : all[i];
       const double J = F.determinant();
-      const Eigen::Vector3d s = Eigen::JacobiSVD<Matrix3d>(F).singularValues() / std::cbrt(J);
-      longest.push_back(s[0]);
-      shortest.push_back(s[2]);
+      const Eigen::SelfAdjointEigenSolver<Matrix3d> C(F.transpose() * F, Eigen::EigenvaluesOnly);
+      longest.push_back(std::sqrt(C.eigenvalues()[2]) / std::cbrt(J));
+      shortest.push_back(std::sqrt(std::max(C.eigenvalues()[0], 0.0)) / std::cbrt(J));
       volume.push_back(J);
     }
   }

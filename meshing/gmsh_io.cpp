@@ -3,7 +3,9 @@
 #include <gmsh.h>
 
 #include <fstream>
+#include <map>
 #include <mutex>
+#include <set>
 #include <sstream>
 #include <unordered_map>
 
@@ -77,6 +79,56 @@ std::vector<std::string> groups_of(const Block& block) {
   return names;
 }
 
+/// In msh 2 a group belongs to the element, and gmsh gives it to all elements of the same
+/// elementary tag. What a text file says itself: groups by an element's corners, ascending. Empty:
+/// not told.
+class OwnGroups {
+ public:
+  explicit OwnGroups(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    std::string line;
+    double version = 0;
+    int binary = 0;
+    size_t count = 0;
+    while (std::getline(in, line) && line.rfind("$Elements", 0) != 0)
+      if (line.rfind("$MeshFormat", 0) == 0) in >> version >> binary;
+    if (version < 2 || version >= 3 || binary != 0 || !(in >> count)) return;
+    std::getline(in, line);
+    for (size_t i = 0; i < count && std::getline(in, line); ++i) add(line);
+  }
+  /// Of one element of a block.
+  std::vector<std::string> of(const Block& block, const std::size_t* nodes, size_t corners,
+                              const std::vector<std::string>& all) const {
+    if (all.size() < 2) return all;
+    const auto found = groups_.find(key(nodes, corners));
+    if (found == groups_.end()) return all;
+    std::vector<std::string> names;
+    for (int tag : found->second) names.push_back(group_name(block.dimension, tag));
+    return names;
+  }
+
+ private:
+  static Tags key(const std::size_t* nodes, size_t corners) {
+    Tags out(nodes, nodes + corners);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+  /// "number type count-of-tags group elementary ... nodes"
+  void add(const std::string& line) {
+    std::istringstream in(line);
+    size_t number = 0;
+    int type = 0, tags = 0, group = 0, other = 0;
+    in >> number >> type >> tags;
+    if (tags < 1 || !(in >> group) || group == 0) return;
+    for (int i = 1; i < tags; ++i) in >> other;
+    const size_t corners = type == 4 || type == 11 ? 4 : type == 2 || type == 9 ? 3 : 0;
+    Tags nodes(corners);
+    for (std::size_t& node : nodes) in >> node;
+    if (corners && in) groups_[key(nodes.data(), corners)].insert(std::abs(group));
+  }
+  std::map<Tags, std::set<int>> groups_;
+};
+
 /// Nodes a text msh announces (0: unknown): gmsh leaves out silently those of no element.
 int announced_nodes(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -114,7 +166,7 @@ std::unordered_map<std::size_t, int> read_nodes(RawVolume& raw) {
 
 /// gmsh's element types: 4 and 11 are tetrahedra, 2 and 9 triangles of order 1 and 2.
 void take_tetrahedra(RawVolume& raw, const std::unordered_map<std::size_t, int>& column_of,
-                     const std::filesystem::path& file) {
+                     const OwnGroups& own, const std::filesystem::path& file) {
   struct Tet {
     std::size_t tag;
     const std::size_t* nodes;
@@ -150,28 +202,29 @@ void take_tetrahedra(RawVolume& raw, const std::unordered_map<std::size_t, int>&
     }
     // gmsh's tet10 ends with the mids of 23 and 13, as ours does.
     raw.element_names.push_back(std::to_string(tets[e].tag));
-    for (const std::string& name : names[tets[e].block]) {
+    for (const std::string& name : own.of(*tets[e].block, tets[e].nodes, 4, names[tets[e].block])) {
       raw.volume_groups[name].push_back(static_cast<int>(e));
     }
   }
 }
 
-void take_triangles(RawVolume& raw, const std::unordered_map<std::size_t, int>& column_of) {
+void take_triangles(RawVolume& raw, const std::unordered_map<std::size_t, int>& column_of,
+                    const OwnGroups& own) {
   for (const Block& block : blocks(2)) {
     if (block.type != 2 && block.type != 9) continue;
     const size_t n = block.type == 2 ? 3 : 6;
-    for (const std::string& name : groups_of(block)) {
-      auto& faces = raw.face_groups[name];
-      for (size_t i = 0; i < block.elements.size(); ++i) {
-        std::array<int, 3> corners;
-        bool known = true;
-        for (size_t k = 0; k < 3; ++k) {
-          const auto it = column_of.find(block.nodes[n * i + k]);
-          known = known && it != column_of.end();
-          corners[k] = known ? it->second : -1;
-        }
-        if (known) faces.push_back(corners);
+    const std::vector<std::string> names = groups_of(block);
+    for (size_t i = 0; i < block.elements.size(); ++i) {
+      std::array<int, 3> corners;
+      bool known = true;
+      for (size_t k = 0; k < 3; ++k) {
+        const auto it = column_of.find(block.nodes[n * i + k]);
+        known = known && it != column_of.end();
+        corners[k] = known ? it->second : -1;
       }
+      if (!known) continue;
+      for (const std::string& name : own.of(block, block.nodes.data() + n * i, 3, names))
+        raw.face_groups[name].push_back(corners);
     }
   }
 }
@@ -199,8 +252,9 @@ RawVolume read_gmsh(const std::filesystem::path& file, const Place& place) {
   RawVolume raw;
   const auto column_of = read_nodes(raw);
   raw.lost = std::max(0, announced_nodes(file) - static_cast<int>(raw.X.cols()));
-  take_tetrahedra(raw, column_of, file);
-  take_triangles(raw, column_of);
+  const OwnGroups own(file);
+  take_tetrahedra(raw, column_of, own, file);
+  take_triangles(raw, column_of, own);
   return raw;
 }
 

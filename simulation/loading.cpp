@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <map>
 
+#include "capture_io/input_error.h"
 #include "simulation/rigid_modes.h"
 
 namespace hookeye {
@@ -69,6 +70,12 @@ Loading make_loading(const Capture&, const ExampleSpec& example, const TetMesh& 
   }
   for (const LoadSpec& load : example.loads) {
     const Region& region = regions.at(load.region);
+    if (!(region.area > 0.0))
+      throw InputError(
+          load.place,
+          fmt::format("the load of example `{}` acts on region `{}`, which has no area",
+                      example.name, load.region),
+          "a region that is a patch of the surface, not a point or a line of it");
     if (load.force) loading.forces.push_back(dead_force(region, *load.force));
     if (load.pressure) loading.forces.push_back(follower_pressure(region, *load.pressure));
   }

@@ -118,6 +118,23 @@ const BrokenCase broken_cases[] = {
     {"TextureFromUnknown", swap("{image: albedo.png, encoding: srgb}", "{from: rset}"),
      "capture.yaml:8:19: there is no example `rset` to take the texture from\n"
      "  did you mean `rest`?"},
+    {"TextureFromHeldOut",
+     [](CaptureFixture& c) {
+       c.replace("{image: albedo.png, encoding: srgb}", "{from: rest}");
+       c.replace("  rest:\n", "  rest:\n    use: validate\n");
+     },
+     "capture.yaml:8:19: example `rest` is held out: it cannot give the texture\n"
+     "  name a fitted example, usually the one at rest"},
+    {"ResultsOfOneName",
+     [](CaptureFixture& c) {
+       c.replace("  pull:\n", "  rest-left:\n");
+       c.replace("  left: {calibration", "  left-front: {calibration");
+       c.replace("left: photos/rest.png", "left-front: photos/rest.png");
+       c.replace("left: {file", "left-front: {file");
+     },
+     "capture.yaml:55:14: results of example `rest` and of `rest-left` would both be called "
+     "rest-left-front\n"
+     "  rename an example or a camera"},
     {"TextureFromNoPhotos", swap("{image: albedo.png, encoding: srgb}", "{from: held_out}"),
      "capture.yaml:8:19: example `held_out` has no photos to take the texture from\n"
      "  name an example with photos, usually the one at rest"},

@@ -1,6 +1,6 @@
 #include "capture_io/run.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -43,6 +43,19 @@ TEST(RunTest, StepsAreNumberedAndReopened) {
   EXPECT_EQ(run.timeline()["verdict"], "explained");
   EXPECT_EQ(run.timeline()["steps"][1]["name"], "gravity");
   EXPECT_EQ(run.timeline()["steps"][1]["chi_fit"], 1.1);
+}
+
+TEST(RunTest, AChangedCaptureNeedsANewRun) {
+  const TemporaryFolder folder;
+  write_text(folder / "capture.yaml", "mu: 1\n");
+  RunFolder::create(folder / "run", folder / "capture.yaml").add_step("base", {}, write_model);
+  write_text(folder / "capture.yaml", "mu: 2\n");
+  const auto again = [&] { RunFolder::create(folder / "run", folder / "capture.yaml"); };
+  EXPECT_THAT(complaint(again), testing::HasSubstr("has changed since the run"));
+  EXPECT_NE(complaint([&] { RunFolder::open(folder / "run", true); }), "");
+  EXPECT_EQ(complaint([&] { RunFolder::open(folder / "run", false); }), "");  // to look at
+  write_text(folder / "capture.yaml", "mu: 1\n");
+  EXPECT_EQ(complaint(again), "");
 }
 
 TEST(RunTest, AFailedStepLeavesNothing) {

@@ -207,6 +207,20 @@ TEST(ReadVolume, MshWithGroups) {
   for (int k = 0; k < 3; ++k) EXPECT_EQ(mesh.X(2, mesh.boundary(k, foot)), 0.0);
 }
 
+TEST(ReadVolume, GroupsOfMsh2BelongToTheElement) {
+  const Scratch scratch;
+  // Two triangles of two groups, of one elementary tag; and a third that is in both groups.
+  const TetMesh mesh = read_volume(
+      scratch.write("a.msh",
+                    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 2 \"FOOT\"\n"
+                    "2 3 \"SIDE\"\n$EndPhysicalNames\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n"
+                    "4 0 0 1\n$EndNodes\n$Elements\n5\n1 2 2 2 1 1 2 3\n2 2 2 3 1 1 2 4\n"
+                    "3 2 2 2 1 1 3 4\n4 2 2 3 1 1 3 4\n5 4 2 1 1 1 2 3 4\n$EndElements\n"),
+      kPlace);
+  EXPECT_EQ(mesh.boundary_groups.at("FOOT").size(), 2u);
+  EXPECT_EQ(mesh.boundary_groups.at("SIDE").size(), 2u);
+}
+
 TEST(ReadVolume, Msh41AndMedit) {
   const Scratch scratch;
   const TetMesh msh = read_volume(
