@@ -180,6 +180,8 @@ class Studio {
       } else {
         return httplib::Server::HandlerResponse::Unhandled;
       }
+      // Its body has not been read, and would be taken for the next request of this connection.
+      response.set_header("Connection", "close");
       return httplib::Server::HandlerResponse::Handled;
     });
     server_.set_exception_handler([](const Request&, Response& response, std::exception_ptr error) {
