@@ -52,6 +52,12 @@ int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const V
 /// material around them (cavities.cpp).
 std::vector<Vector3d> cavities(const SurfaceMesh& surface);
 
+// child.cpp: libraries that may end the process run in one of their own.
+/// In the child: no core file, no handlers of the parent, nothing printed.
+void die_quietly();
+/// In the parent: waits. False: ended by a signal or with a fault, or there is no such process.
+bool ended_well(int process);
+
 /// Jacobian determinant of an element at barycentric coordinates (6 x volume when straight).
 double jacobian(const TetMesh& mesh, int element, const Eigen::Vector4d& barycentric);
 

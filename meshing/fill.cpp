@@ -1,8 +1,5 @@
 // The only file that touches TetGen.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #define TETLIBRARY  // as the library was built: faults are thrown, not exits
 #include <tetgen.h>
@@ -10,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <map>
 
@@ -112,12 +108,7 @@ bool receive(int pipe, std::vector<T>& data) {
 
 /// In the child: mesh, send, end.
 [[noreturn]] void child(int pipe, std::string switches, tetgenio& in) {
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
-  for (const int fault : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(fault, SIG_DFL);
-  const int nowhere = open("/dev/null", O_WRONLY);
-  dup2(nowhere, 1);
-  dup2(nowhere, 2);
+  detail::die_quietly();
   tetgenio out;
   try {
     tetrahedralize(switches.data(), &in, &out);
@@ -147,10 +138,7 @@ bool run_tetgen(const std::string& switches, tetgenio& in, Filled& out) {
   const bool whole = process > 0 && receive(ends[0], out.points) && receive(ends[0], out.corners) &&
                      receive(ends[0], out.triangles) && receive(ends[0], out.markers);
   close(ends[0]);
-  int status = -1;
-  while (process > 0 && waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return whole && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return detail::ended_well(process) && whole;
 }
 
 TetMesh taken_back(const Filled& out) {

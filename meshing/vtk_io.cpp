@@ -1,8 +1,5 @@
 // The only file that touches VTK: ply and stl surfaces, vtu meshes and results.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
@@ -22,9 +19,6 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
-
-#include <cerrno>
-#include <csignal>
 
 #include "meshing/detail.h"
 
@@ -115,12 +109,7 @@ bool survives(const Read& read) {
   const pid_t process = fork();
   if (process < 0) return true;
   if (process == 0) {
-    const rlimit no_core{0, 0};
-    setrlimit(RLIMIT_CORE, &no_core);
-    for (const int fault : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(fault, SIG_DFL);
-    const int nowhere = open("/dev/null", O_WRONLY);
-    dup2(nowhere, 1);
-    dup2(nowhere, 2);
+    detail::die_quietly();
     try {
       read();
     } catch (const InputError&) {  // said by the parent
@@ -129,10 +118,7 @@ bool survives(const Read& read) {
     }
     _exit(0);
   }
-  int status = -1;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return detail::ended_well(process);
 }
 
 }  // namespace
