@@ -54,7 +54,12 @@ void rays_of_the_library(benchmark::State& s) {
   for_blocks(grid, [&](const Vector2d* h) {
     RayPacket& p = packets.emplace_back();
     p.reset(0, std::numeric_limits<float>::infinity());
-    for (int i = 0; i < 16; ++i) view.set_ray(p, i, h[i], scene.centre());
+    const Vector3d eye = view.eye - scene.centre();
+    for (int i = 0; i < kLanes; ++i) {
+      const Vector3d to = view.camera.R.transpose() * h[i].homogeneous();
+      p.org_x[i] = float(eye.x()), p.org_y[i] = float(eye.y()), p.org_z[i] = float(eye.z());
+      p.dir_x[i] = float(to.x()), p.dir_y[i] = float(to.y()), p.dir_z[i] = float(to.z());
+    }
   });
   alignas(64) int active[16];
   std::fill(active, active + 16, -1);
@@ -78,14 +83,15 @@ void rays_of_the_product(benchmark::State& s) {
   const RenderOptions options;
   PhotoState state = b.state;
   state.shaded = false;  // no shadow rays: the same rays as above
-  const Frame frame{b.surface, b.surface.X, view,      scene, normals,
-                    facets,    visibility,  b.texture, state, options};
+  const SurfaceState surface{b.surface, b.surface.X, normals, facets, visibility};
+  const TriangleTable table = triangle_table(surface, view, scene.centre(), b.texture);
+  const Frame frame{surface, view, scene, table, b.texture, state, options};
   int64_t blocks = 0;
   for (auto _ : s)
     for_blocks(grid, [&](const Vector2d* h) {
-      Sample out[16];
-      trace(frame, h, 16, out);
-      benchmark::DoNotOptimize(out[0].triangle);
+      Samples out;
+      trace(frame, h, kLanes, &out);
+      benchmark::DoNotOptimize(out.triangle[0]);
       ++blocks;
     });
   s.SetItemsProcessed(blocks * 16);
@@ -100,9 +106,7 @@ void one_view(benchmark::State& s) {
   options.visibility_rays = 0;
   options.threads = int(s.range(2));
   const Eigen::Index m = s.range(1), nv = 3 * b.surface.X.cols();
-  VertexSensitivity S{Eigen::MatrixXd::Random(nv, m),
-                      Eigen::MatrixXd::Random(nv, m),
-                      {},
+  VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m),
                       Eigen::MatrixXd::Random(kPhotoColumns, m)};
   double shift = 0;
   for (auto _ : s) {
@@ -111,8 +115,7 @@ void one_view(benchmark::State& s) {
     VectorXd residual(Eigen::Index(r.dI.pixel.size()));
     for (size_t i = 0; i < r.dI.pixel.size(); ++i) residual[i] = 0.5 - r.I.values[r.dI.pixel[i]];
     const VectorXd w = VectorXd::Ones(residual.size());
-    const auto sums =
-        NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, true, false);
+    const auto sums = NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, true);
     benchmark::DoNotOptimize(sums.reduce(S).r2);
     s.counters["active_px"] = double(residual.size());
   }

@@ -132,8 +132,8 @@ VertexSensitivity vertex_sensitivity(const Renderer& renderer, const RenderSurfa
   };
   VertexSensitivity out;
   out.position = on_vertices(S);
-  if (normals) out.normal = renderer.normal_derivative(x) * out.position;
-  if (S_reference) out.reference = on_vertices(*S_reference);
+  if (normals) out.second = renderer.normal_derivative(x) * out.position;
+  if (S_reference) out.second = on_vertices(*S_reference);
   return out;
 }
 
@@ -157,7 +157,7 @@ void add_reference_photo(const Camera& camera, const Matrix3Xd& x_reference,
     Vector3d zoom = Vector3d::Zero();
     zoom.head<2>() = by_point.leftCols<2>().inverse() * by_camera.col(6);
     for (int j = 0; j < d.cols(); ++j)
-      S->reference.block<3, 1>(3 * v, j) +=
+      S->second.block<3, 1>(3 * v, j) +=
           camera.R.transpose() *
           (d.block<3, 1>(kRotate, j).cross(p) + d.block<3, 1>(kMove, j) + d(kZoom, j) * zoom);
   }
@@ -217,7 +217,7 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
 /// Normal equations of the counted pixels; Huber weights by iteratively reweighted squares.
 NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
                              const SurfaceMesh& surface, double blur_variance, double huber,
-                             bool normals, bool reference) {
+                             bool second) {
   const auto& pixels = rendering.dI.pixel;
   VectorXd r = VectorXd::Zero(pixels.size()), w = r, Bt_r = r;
   Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
@@ -235,7 +235,7 @@ NodeNormalEquations condense(const Rendering& rendering, const Image& residuals,
     const Image spread = blur(adjoint, blur_variance);
     for (size_t k = 0; k < pixels.size(); ++k) Bt_r[k] = spread.values[pixels[k]];
   }
-  return NodeNormalEquations::accumulate(surface, rendering.dI, r, w, Bt_r, normals, reference);
+  return NodeNormalEquations::accumulate(surface, rendering.dI, r, w, Bt_r, second);
 }
 
 /// A photographed background: the part of the pixel that the body leaves free shows it.
@@ -284,7 +284,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
   if (columns)
     S = vertex_sensitivity(impl_->renderer, surface, x, example.S,
                            reference.state ? &reference.state->S : nullptr, has_light);
-  const Eigen::MatrixXd reference_on_vertices = S.reference;
+  const Eigen::MatrixXd second_on_vertices = S.second;
 
   for (size_t k = 0; k < scene.photos[e].size(); ++k)
     for (size_t plane = 0; plane < scene.photos[e][k].planes.size(); ++plane) {
@@ -329,7 +329,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
         S.photo = columns->dphoto[k];
         S.photo.row(kBlur) *= std::pow(0.25, options.level);  // px^2 of this level
         if (reference.columns && texture.source == Texture::Source::photo) {
-          S.reference = reference_on_vertices;
+          S.second = second_on_vertices;
           const int source =
               reference_photo(scene, reference.example, model.examples[e].photos[k].camera.name);
           add_reference_photo(texture.reference_camera, x_reference,
@@ -337,7 +337,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
         }
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
         one.sums = condense(rendering, residual, sigma, surface.mesh, state.blur_variance,
-                            options.huber, has_light, reference.state != nullptr)
+                            options.huber, S.second.size() > 0)
                        .reduce(S);
       }
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);

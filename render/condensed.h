@@ -10,10 +10,11 @@
 
 namespace hookeye {
 
-/// Sensitivity of the vertices of one example's surface: d(position), d(normal), d(reference) by
-/// the parameters, each 3nv x m (reference may be empty), and d(photo numbers): kPhotoColumns x m.
+/// Sensitivity of the vertices of one example's surface by the parameters: d(position) and, as
+/// DerivativeSegment::d_second, d(normal) or d(reference), each 3nv x m (the second may be empty),
+/// and d(photo numbers): kPhotoColumns x m.
 struct VertexSensitivity {
-  Eigen::MatrixXd position, normal, reference;
+  Eigen::MatrixXd position, second;
   Eigen::MatrixXd photo;
 };
 
@@ -30,10 +31,10 @@ struct CondensedPhoto {
 class NodeNormalEquations {
  public:
   /// `r` and `w` per active pixel of `dI` (same order). `Bt_r`: per active pixel, B^T(w r): the
-  /// blurred adjoint (equal to w*r where there is no blur).
+  /// blurred adjoint (equal to w*r where there is no blur). `second`: VertexSensitivity has it.
   static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
                                         const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
-                                        bool normals, bool reference);
+                                        bool second);
   CondensedPhoto reduce(const VertexSensitivity& S) const;
   NodeNormalEquations();
   ~NodeNormalEquations();

@@ -1,4 +1,4 @@
-// Everything that is fixed while one picture is made, and what one ray sees. Internal to render.
+// Everything that is fixed while one picture is made, and what its rays see. Internal to render.
 #pragma once
 
 #include <array>
@@ -6,18 +6,16 @@
 
 #include "render/renderer.h"
 #include "render/texture_lookup.h"
+#include "render/triangle_table.h"
 #include "render/view.h"
 
 namespace hookeye {
 
 struct Frame {
-  const SurfaceMesh& surface;
-  const Matrix3Xd& x;
+  const SurfaceState& state;
   const View& view;
   const RayScene& scene;
-  const Matrix3Xd& normals;               ///< unit vertex normals
-  const std::vector<Vector3d>& facets;    ///< unit normals of the triangles
-  const std::vector<double>& visibility;  ///< of the sky, per vertex
+  const TriangleTable& table;
   const Texture& texture;
   const PhotoState& photo;
   const RenderOptions& options;
@@ -28,28 +26,58 @@ struct Frame {
   const SplineImage* spline = nullptr;
 };
 
-/// What a ray hits. triangle < 0: the background.
-struct Sample {
-  int triangle = -1;
-  bool lit = false;  ///< the sun is not hidden by another part
-  float depth = 0;   ///< the ray's t
-  Vector2d h;
-  Vector3d bary;
+constexpr int kLanes = 16;
+using Lanes = float[kLanes];
+
+/// What up to 16 neighbouring rays hit.
+struct alignas(64) Samples {
+  Lanes bary[3];
+  Lanes h[2];     ///< of the ray, as View has it
+  Lanes zoom[2];  ///< RayGrid::zoom there
+  Lanes dh[2];    ///< h - h0 of the triangle
+  Lanes of_triangle[kTriangleFloats];
+  Lanes depth;           ///< the ray's t
+  int lit[kLanes];       ///< -1: turned to the sun, which no other part hides; 0: not
+  int triangle[kLanes];  ///< -1: the background
+  int texel[2][kLanes];  ///< of the triangle
+  int count = 0;
 };
+
+/// A number of the corners at the point that lane i hits, without the rounding of float.
+inline Vector3d interpolate(const Matrix3Xd& at, const std::array<int, 3>& t, const Samples& s,
+                            int i) {
+  const double b1 = s.bary[1][i], b2 = s.bary[2][i];
+  return (1 - b1 - b2) * at.col(t[0]) + b1 * at.col(t[1]) + b2 * at.col(t[2]);
+}
 
 /// Follows up to 16 neighbouring rays; shadows and the reference camera's view included.
-void trace(const Frame& frame, const Vector2d* h, int count, Sample* out);
+void trace(const Frame& frame, const Vector2d* h, int count, Samples* out);
 
-/// gain times the body's intensity under a ray, and its derivatives at the fixed ray.
-struct Shade {
-  double I = 0;
-  Vector3d by_motion;     ///< by the material point's displacement
-  Vector3d by_normal;     ///< by the interpolated (not normalised) vertex normals
-  Vector3d by_facet;      ///< by the triangle's own unit normal
-  Vector3d by_reference;  ///< by the point's reference position
-  Eigen::Matrix<double, kPhotoColumns, 1> photo;
+/// What a ray says of its pixel at the fixed ray, by the first index of each group. A product with
+/// `corners` stands for 3 x 3 numbers, corner k in column k: the derivative by the corner's number.
+/// The camera's motion is not here: it is that of all corners together (add_camera).
+enum RayFloat {
+  kByPosition = 0,  ///< 3 x 3 corners: by deformed positions, normals held
+  kBySecond = 9,  ///< 3 x 3 corners: by unit vertex normals; photo texture: by reference positions
+  kByFacet = 18,  ///< 3: by the triangle's own unit normal
+  kByLogGain = 21,  ///< the intensity itself
+  kByAmbient = 22,
+  kBySun = 23,  ///< 3
+  kBySpecular = 26,
+  kByTurn = 27,  ///< 3: by the camera's rotation, of the gloss alone
+  kByZoom = 30,
+  kRayFloats = 32
 };
-Shade shade(const Frame& frame, const Sample& sample, bool derivatives);
+struct alignas(64) RayRow {
+  float value[kRayFloats];
+};
+struct alignas(64) Shading {
+  Lanes I;  ///< gain times the body's intensity
+  RayRow ray[kLanes];
+};
+
+/// Lanes without a triangle are undefined; so is Shading::ray without derivatives.
+void shade(const Frame& frame, const Samples& samples, bool derivatives, Shading* out);
 
 /// Fraction of the sky that each vertex sees: fixed cosine-weighted directions. Held constant in
 /// all derivatives.

@@ -8,11 +8,15 @@
 
 namespace hookeye {
 
-/// Wanted pixels of consecutive rows with their interior derivatives, in ascending order.
-struct BandDerivative {
+/// Wanted pixels of a row with their interior derivatives, in ascending order.
+struct RowDerivative {
   std::vector<int> pixel, first;  ///< segments of pixel[i] end at first[i] (exclusive)
   std::vector<DerivativeSegment> segments;
   std::vector<Eigen::Matrix<float, kPhotoColumns, 1>> photo;
+};
+
+struct BandDerivative {
+  std::vector<RowDerivative> rows;
 };
 
 struct BandTask {

@@ -60,6 +60,15 @@ PixelFilter::PixelFilter(int rays_per_axis, double width_px) : n(rays_per_axis) 
   // Offsets of the first ray outside the pixel: (n+1)/2/n px, then one more ray each.
   while (blackman_harris(((n + 1) / 2.0 + margin) / n / width_px) > least) ++margin;
   weights_ = sampled(width_px);
+  widen(width_px);
+  rows_.assign(static_cast<size_t>(taps()) * padded(), 0.0f);
+  for (int j = 0; j < taps(); ++j)
+    for (int i = 0; i < taps(); ++i)
+      rows_[static_cast<size_t>(j) * padded() + i] = static_cast<float>(weight(i, j));
+}
+
+/// To the variance of a window of that width.
+void PixelFilter::widen(double width_px) {
   const double wanted = window_variance() * width_px * width_px;
   double narrow = width_px, wide = 2.0 * width_px;
   if (variance(sampled(wide)) < wanted) return;  // one ray, or a window narrower than its spacing

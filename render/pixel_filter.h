@@ -26,11 +26,17 @@ struct PixelFilter {
   }
   /// Weight of tap (i, j), sum 1; taps count from -margin.
   double weight(int i, int j) const { return weights_[static_cast<size_t>(j) * taps() + i]; }
+  /// Weights of the taps (0, j), (1, j), ..., then zeros up to a multiple of kPad.
+  const float* row(int j) const { return rows_.data() + static_cast<size_t>(j) * padded(); }
+  static constexpr int kPad = 16;
+  int padded() const { return (taps() + kPad - 1) / kPad * kPad; }
 
  private:
   std::vector<double> sampled(double width_px) const;         ///< weights of a window
   double variance(const std::vector<double>& weights) const;  ///< along an axis [px^2]
+  void widen(double width_px);
   std::vector<double> weights_;
+  std::vector<float> rows_;
 };
 
 /// Blackman-Harris window (Harris 1978, 4 terms), v in units of the width; 0 for |v| >= 1/2.

@@ -161,11 +161,14 @@ Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, con
   Impl& m = *impl_;
   if (x.cols() != m.surface.X.cols()) throw std::invalid_argument("render: wrong vertex count");
   const bool from_photo = texture.source == Texture::Source::photo;
+  if (from_photo && photo.shaded)
+    throw std::invalid_argument("render: a texture that is a photo has its light in it");
   m.set_state(x, photo.shaded ? options.visibility_rays : 0);
   const View view(photo.camera, x, m.surface.triangles);
   const PixelFilter filter(options.rays_per_axis, options.filter_width_px);
-  Frame frame{m.surface,         x,       view,  m.scene, m.seen_normals, m.seen_facets,
-              m.seen_visibility, texture, photo, options};
+  const SurfaceState state{m.surface, x, m.seen_normals, m.seen_facets, m.seen_visibility};
+  const TriangleTable table = triangle_table(state, view, m.scene.centre(), texture);
+  Frame frame{state, view, m.scene, table, texture, photo, options};
   std::optional<View> reference_view;
   if (from_photo) {
     if (!x_reference) throw std::invalid_argument("render: photo texture without reference state");

@@ -27,11 +27,12 @@ struct RenderOptions {
 
 /// Derivative of one pixel by the vertices of one triangle. A pixel's derivative is the sum of its
 /// segments (rays or silhouette edges on several triangles give several).
-/// For vertex k of the triangle: d_position.col(k) by its deformed position, d_normal.col(k) by its
-/// unit vertex normal, d_reference.col(k) by its reference position (Texture::Source::photo).
+/// For vertex k of the triangle: d_position.col(k) by its deformed position, d_second.col(k) by its
+/// unit vertex normal or, with Texture::Source::photo (which has no light), by its reference
+/// position.
 struct DerivativeSegment {
   int triangle;
-  Eigen::Matrix3f d_position, d_normal, d_reference;
+  Eigen::Matrix3f d_position, d_second;
 };
 
 /// Pixels that count, with their derivatives. Compressed rows: the segments of active pixel i are

@@ -1,172 +1,217 @@
-#include <cmath>
+// Highway compiles this file once for each instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/shade.cpp"
+#include <hwy/foreach_target.h>
 
-#include "render/frame.h"
+#include "render/albedo.h"
+#include "render/lanes.h"
 
+HWY_BEFORE_NAMESPACE();
+namespace hookeye::HWY_NAMESPACE {
+
+/// The shading normal: interpolated, or the triangle's own.
+struct Normal {
+  V3 n;       ///< unit
+  V inverse;  ///< of the interpolated normal's length
+};
+
+Normal shading_normal(const Frame& f, const Samples& s, const V* b, size_t at) {
+  if (!f.options.smooth_normals) return {load3(s.of_triangle + kFacet, at), set(1)};
+  const V3 sum = interpolate(b, s.of_triangle + kNormals, at);
+  const V inverse = inverse_norm(sum);
+  return {inverse * sum, inverse};
+}
+
+/// The part of the light that the surface mirrors, in lit lanes.
+struct Gloss {
+  V I, by_specular;
+  V3 by_n, by_sun;
+  V3 eye, by_eye;  ///< unit vector to the camera, in camera axes
+};
+
+Gloss gloss(const Frame& f, const Samples& s, V3 n, size_t at) {
+  const float strength = static_cast<float>(f.photo.sun.norm());
+  const Eigen::Matrix3f R = f.view.camera.R.cast<float>();
+  const V3 sun = set((f.photo.sun / f.photo.sun.norm()).cast<float>().eval());
+  Gloss out;
+  const V3 ray = f.view.perspective ? V3{load(s.h[0] + at), load(s.h[1] + at), set(1)}
+                                    : V3{set(0), set(0), set(1)};
+  out.eye = (set(0) - inverse_norm(ray)) * ray;
+  const V3 sum = sun + transform(R.transpose(), out.eye);
+  const V inverse = inverse_norm(sum);
+  const V3 half = inverse * sum;
+  const V c = dot(n, half);
+  const Mask there = hn::And(load_mask(s.lit + at), c > set(0));
+  alignas(64) Lanes power;
+  store(hn::IfThenElse(there, c, set(1)), power);
+  for (size_t i = 0; i < hn::Lanes(Tag()); ++i)
+    power[i] = std::pow(power[i], static_cast<float>(f.photo.shininess));
+  const V specular = set(static_cast<float>(f.photo.specular));
+  const V raised = only(there, load(power));
+  const V slope = only(there, specular * set(static_cast<float>(strength * f.photo.shininess)) *
+                                  raised / hn::IfThenElse(there, c, set(1)));
+  out.by_specular = set(strength) * raised;
+  out.I = specular * out.by_specular;
+  out.by_n = slope * half;
+  const V3 by_eye = (slope * inverse) * (n - c * half);
+  out.by_sun = (specular * raised) * sun + set(1 / strength) * (by_eye - dot(sun, by_eye) * sun);
+  out.by_eye = transform(R, by_eye);
+  return out;
+}
+
+/// I = gain (albedo diffuse + gloss).
+struct Light {
+  V diffuse, visibility, share;
+  Mask sunny;  ///< lit, and turned to the sun
+  Gloss gloss;
+  bool glossy;
+};
+
+Light light(const Frame& f, const Samples& s, const V* b, V3 n, bool derivatives, size_t at) {
+  Light out;
+  out.glossy = false;
+  out.diffuse = out.share = set(1);
+  if (!f.photo.shaded) return out;
+  const V3 visibility = load3(s.of_triangle + kVisibility, at);
+  out.visibility = b[0] * visibility.x + b[1] * visibility.y + b[2] * visibility.z;
+  // Of the hemisphere about the interpolated normal the part below the facet sends nothing:
+  // cosine-weighted, (1 + n.facet)/2 remains.
+  if (f.options.smooth_normals)
+    out.share = set(0.5f) * (set(1) + dot(n, load3(s.of_triangle + kFacet, at)));
+  const V cosine = dot(n, set(f.photo.sun.cast<float>().eval()));
+  out.sunny = hn::And(load_mask(s.lit + at), cosine > set(0));
+  out.diffuse = set(static_cast<float>(f.photo.ambient)) * out.visibility * out.share +
+                only(out.sunny, cosine);
+  out.glossy = !f.photo.sun.isZero(0.0) &&
+               (f.photo.specular != 0 || (derivatives && f.options.gloss_derivative));
+  if (out.glossy) out.gloss = gloss(f, s, n, at);
+  return out;
+}
+
+using Values = Lanes[kRayFloats];
+
+void store_products(V3 v, const V* b, int first, Values& out, size_t at) {
+  for (int k = 0; k < 3; ++k) {
+    store(v.x * b[k], out[first + 3 * k] + at);
+    store(v.y * b[k], out[first + 3 * k + 1] + at);
+    store(v.z * b[k], out[first + 3 * k + 2] + at);
+  }
+}
+
+void store3(V3 v, int first, Values& out, size_t at) {
+  store(v.x, out[first] + at);
+  store(v.y, out[first + 1] + at);
+  store(v.z, out[first + 2] + at);
+}
+
+/// Derivatives by light and, through the normals, by position; adds to by_bary.
+void differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const V* b,
+                         const Normal& normal, const Light& l, V* by_bary, Values& out, size_t at) {
+  const V gain = set(static_cast<float>(f.photo.gain)), albedo = load(a.value + at);
+  const V3 n = normal.n, sun = set(f.photo.sun.cast<float>().eval());
+  V3 by_n = only(l.sunny, (gain * albedo) * sun);
+  V3 by_sun = only(l.sunny, (gain * albedo) * n);
+  if (l.glossy) {
+    by_n = by_n + gain * l.gloss.by_n;
+    by_sun = by_sun + gain * l.gloss.by_sun;
+    store(gain * l.gloss.by_specular, out[kBySpecular] + at);
+  }
+  const V by_visibility = gain * albedo * set(static_cast<float>(f.photo.ambient));
+  for (int k = 0; k < 3; ++k)
+    by_bary[k] = by_bary[k] + by_visibility * l.share * load(s.of_triangle[kVisibility + k] + at);
+  if (f.options.smooth_normals) {
+    const V by_share = set(0.5f) * by_visibility * l.visibility;
+    by_n = by_n + by_share * load3(s.of_triangle + kFacet, at);
+    by_n = normal.inverse * (by_n - dot(n, by_n) * n);
+    for (int k = 0; k < 3; ++k)
+      by_bary[k] = by_bary[k] + dot(by_n, load3(s.of_triangle + kNormals + 3 * k, at));
+    store_products(by_n, b, kBySecond, out, at);
+    store3(by_share * n, kByFacet, out, at);
+  } else {
+    store3(by_n, kByFacet, out, at);
+  }
+  store(gain * albedo * l.visibility * l.share, out[kByAmbient] + at);
+  store3(by_sun, kBySun, out, at);
+}
+
+/// Under the fixed ray h, db = -(1 - b 1^T) Q dP b with P the corners in camera axes and Q its
+/// inverse: dI = g.dx of the material point, g = -Q^T (by_bary - by_bary.b), which is upright on
+/// the ray. Q_xy = A s0 (triangle_table.cpp).
+void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V* by_bary,
+                          const Light& l, Values& out, size_t at) {
+  const Lanes* A = s.of_triangle + kRayToBary;
+  const V mean = by_bary[0] * b[0] + by_bary[1] * b[1] + by_bary[2] * b[2];
+  const V3 slid = {by_bary[0] - mean, by_bary[1] - mean, by_bary[2] - mean};
+  const V3 ax = load3(A, at), ay = load3(A + 3, at), one = {set(1), set(1), set(1)};
+  const V s0 = set(0) - load(s.of_triangle[kInverseDepth] + at);
+  V3 g = {s0 * dot(ax, slid), s0 * dot(ay, slid), set(0)};
+  const V hx = load(s.h[0] + at), hy = load(s.h[1] + at);
+  const V zx = load(s.zoom[0] + at), zy = load(s.zoom[1] + at);
+  V depth = set(1);
+  if (f.view.perspective) {
+    g.z = set(0) - (hx * g.x + hy * g.y);
+    const V along = dot(ax, one) * load(s.dh[0] + at) + dot(ay, one) * load(s.dh[1] + at);
+    depth = set(-1) / (s0 * (set(1) + along));
+  }
+  const Eigen::Matrix3f R = f.view.camera.R.cast<float>();
+  store_products(transform(R.transpose(), g), b, kByPosition, out, at);
+  V by_zoom = depth * (zx * g.x + zy * g.y);
+  if (l.glossy && f.photo.specular != 0) {
+    // The camera turns, and the direction to it with it: d(to camera) = -w x (to camera).
+    const V gain = set(static_cast<float>(f.photo.gain));
+    const V3 eye = l.gloss.eye, by_eye = gain * l.gloss.by_eye;
+    store3(cross(by_eye, eye), kByTurn, out, at);
+    if (f.view.perspective) {
+      const V inverse = inverse_norm({hx, hy, set(1)});
+      const V3 turn = {inverse * zx, inverse * zy, set(0)};
+      by_zoom = by_zoom + dot(by_eye, turn - dot(eye, turn) * eye);
+    }
+  }
+  store(by_zoom, out[kByZoom] + at);
+}
+
+void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivatives,
+                 Shading* out) {
+  alignas(64) Values value;
+  const V gain = set(static_cast<float>(f.photo.gain));
+  for (size_t at = 0; at < kLanes; at += hn::Lanes(Tag())) {
+    const V b[3] = {load(s.bary[0] + at), load(s.bary[1] + at), load(s.bary[2] + at)};
+    const Normal normal = shading_normal(f, s, b, at);
+    const Light l = light(f, s, b, normal.n, derivatives, at);
+    V I = load(a.value + at) * l.diffuse;
+    if (l.glossy) I = I + l.gloss.I;
+    I = gain * I;
+    store(I, out->I + at);
+    if (!derivatives) continue;
+    for (int k = kBySecond; k < kRayFloats; ++k) store(set(0), value[k] + at);
+    store(I, value[kByLogGain] + at);
+    V by_bary[3];
+    for (int k = 0; k < 3; ++k) by_bary[k] = gain * l.diffuse * load(a.by_bary[k] + at);
+    if (f.photo.shaded)
+      differentiate_light(f, s, a, b, normal, l, by_bary, value, at);
+    else if (f.spline)
+      store_products((gain * l.diffuse) * load3(a.by_reference, at), b, kBySecond, value, at);
+    differentiate_motion(f, s, b, by_bary, l, value, at);
+  }
+  if (!derivatives) return;
+  float* rows[kLanes];
+  for (int i = 0; i < kLanes; ++i) rows[i] = out->ray[i].value;
+  to_rows(value, kRayFloats, rows);
+}
+
+}  // namespace hookeye::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace hookeye {
 
-namespace {
+HWY_EXPORT(shade_lanes);
 
-struct Albedo {
-  double value = 1;
-  Vector3d by_bary = Vector3d::Zero();
-  Vector3d by_reference = Vector3d::Zero();
-};
-
-Albedo albedo(const Frame& f, const Sample& s, bool derivatives) {
-  Albedo out;
-  const Texture& texture = f.texture;
-  if (texture.source == Texture::Source::uniform) {
-    out.value = texture.albedo;
-  } else if (texture.source == Texture::Source::image) {
-    const auto& uv = f.surface.uv[s.triangle];
-    const Lookup at =
-        sample_bilinear(*texture.image, s.bary[0] * uv[0] + s.bary[1] * uv[1] + s.bary[2] * uv[2]);
-    out.value = at.value;
-    for (int k = 0; k < 3; ++k) out.by_bary[k] = at.gradient.dot(uv[k]);
-  } else {
-    const auto& t = f.surface.triangles[s.triangle];
-    const View& view = *f.reference_view;
-    Vector3d p = Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) p += s.bary[k] * view.p.col(t[k]);
-    Camera::Jacobian3 by_point;
-    Camera::Jacobian7 by_camera;
-    const Vector2d px =
-        derivatives ? view.local.project(p, &by_point, &by_camera) : view.local.project(p);
-    const Lookup at = f.spline->at(px);
-    out.value = at.value / texture.reference_gain;
-    if (!derivatives) return out;
-    const Vector3d g = by_point.transpose() * at.gradient / texture.reference_gain;
-    for (int k = 0; k < 3; ++k) out.by_bary[k] = g.dot(view.p.col(t[k]));
-    out.by_reference = view.camera.R.transpose() * g;
-  }
-  return out;
-}
-
-/// Intensity before gain of a point with normal n (unit), and its derivatives at fixed albedo.
-struct Light {
-  double diffuse = 1, gloss = 0;  ///< I = albedo*diffuse + gloss
-  Vector3d diffuse_by_n = Vector3d::Zero(), gloss_by_n = Vector3d::Zero();
-  Vector3d diffuse_by_sun = Vector3d::Zero(), gloss_by_sun = Vector3d::Zero();
-  double gloss_by_specular = 0;
-  Vector3d gloss_by_eye = Vector3d::Zero();  ///< by the unit vector to the camera
-};
-
-Vector3d to_camera(const View& view, const Vector2d& h) {
-  if (!view.perspective) return -view.camera.R.row(2).transpose();
-  return -(view.camera.R.transpose() * h.homogeneous()).normalized();
-}
-
-void add_gloss(const Frame& f, const Sample& s, const Vector3d& n, Light* light) {
-  const double strength = f.photo.sun.norm();
-  const Vector3d sun = f.photo.sun / strength;
-  const Vector3d sum = sun + to_camera(f.view, s.h);
-  const double length = sum.norm();
-  if (length <= 0) return;
-  const Vector3d half = sum / length;
-  const double c = n.dot(half), e = f.photo.shininess;
-  if (c <= 0) return;
-  const double power = std::pow(c, e), slope = f.photo.specular * strength * e * power / c;
-  light->gloss_by_specular = strength * power;
-  light->gloss = f.photo.specular * strength * power;
-  light->gloss_by_n = slope * half;
-  light->gloss_by_eye = slope / length * (n - c * half);
-  light->gloss_by_sun = f.photo.specular * power * sun +
-                        (light->gloss_by_eye - sun * sun.dot(light->gloss_by_eye)) / strength;
-}
-
-Light light_of(const Frame& f, const Sample& s, const Vector3d& n, double visibility) {
-  Light out;
-  out.diffuse = f.photo.ambient * visibility;
-  const double cosine = n.dot(f.photo.sun);
-  if (!s.lit) return out;
-  if (cosine > 0) {
-    out.diffuse += cosine;
-    out.diffuse_by_n = f.photo.sun;
-    out.diffuse_by_sun = n;
-  }
-  if (f.photo.specular != 0 || (f.options.derivatives && f.options.gloss_derivative))
-    add_gloss(f, s, n, &out);
-  return out;
-}
-
-}  // namespace
-
-Shade shade(const Frame& f, const Sample& s, bool derivatives) {
-  const auto& t = f.surface.triangles[s.triangle];
-  const double gain = f.photo.gain;
-  const Albedo a = albedo(f, s, derivatives);
-  Shade out;
-  out.by_facet.setZero();
-  Light light;
-  Vector3d n = Vector3d::Zero();
-  double length = 1, visibility = 1, facet_share = 1;
-  const bool smooth = f.options.smooth_normals;
-  if (f.photo.shaded) {
-    if (smooth)
-      for (int k = 0; k < 3; ++k) n += s.bary[k] * f.normals.col(t[k]);
-    else
-      n = (f.x.col(t[1]) - f.x.col(t[0])).cross(f.x.col(t[2]) - f.x.col(t[0]));
-    length = n.norm();
-    if (length > 0) n /= length;
-    visibility = 0;
-    for (int k = 0; k < 3; ++k) visibility += s.bary[k] * f.visibility[t[k]];
-    // Of the hemisphere about the interpolated normal the part below the facet sends nothing:
-    // cosine-weighted, (1 + n.facet)/2 remains.
-    facet_share = (1 + n.dot(f.facets[s.triangle])) / 2;
-    light = light_of(f, s, n, visibility * facet_share);
-  }
-  out.I = gain * (a.value * light.diffuse + light.gloss);
-  if (!derivatives) return out;
-
-  Vector3d by_bary = gain * light.diffuse * a.by_bary;
-  Vector3d by_n = gain * (a.value * light.diffuse_by_n + light.gloss_by_n);
-  if (f.photo.shaded) {
-    const double by_visibility = gain * a.value * f.photo.ambient;
-    for (int k = 0; k < 3; ++k) by_bary[k] += by_visibility * facet_share * f.visibility[t[k]];
-    if (smooth) {
-      const double by_share = by_visibility * visibility / 2;
-      out.by_facet = by_share * n;
-      by_n += by_share * f.facets[s.triangle];
-      by_n = length > 0 ? Vector3d((by_n - n * n.dot(by_n)) / length) : Vector3d(Vector3d::Zero());
-      for (int k = 0; k < 3; ++k) by_bary[k] += by_n.dot(f.normals.col(t[k]));
-    }
-  }
-  if (smooth)
-    out.by_normal = by_n;
-  else
-    out.by_normal.setZero(), out.by_facet = by_n;
-  out.by_reference = gain * light.diffuse * a.by_reference;
-
-  // Under the fixed ray dbary = -(1 - bary 1^T) Q dP bary, with P the corners in camera axes.
-  const Vector3d slid = by_bary - Vector3d::Constant(by_bary.dot(s.bary));
-  Vector3d g = -(f.view.Q[s.triangle].transpose() * slid);
-  if (!f.view.perspective) g.z() = 0;
-  out.by_motion = f.view.camera.R.transpose() * g;
-
-  Vector3d p = Vector3d::Zero();
-  for (int k = 0; k < 3; ++k) p += s.bary[k] * f.view.p.col(t[k]);
-  const Vector2d zoom = f.view.zoom(s.h);
-  auto& d = out.photo;
-  d.setZero();
-  d.segment<3>(kRotate) = p.cross(g);
-  d.segment<3>(kMove) = g;
-  d[kZoom] = (f.view.perspective ? p.z() : 1.0) * zoom.dot(g.head<2>());
-  d[kLogGain] = out.I;
-  if (!f.photo.shaded) return out;
-  d[kAmbient] = gain * a.value * visibility * facet_share;
-  d.segment<3>(kSun) = gain * (a.value * light.diffuse_by_sun + light.gloss_by_sun);
-  d[kSpecular] = gain * light.gloss_by_specular;
-  if (f.photo.specular != 0 && s.lit) {
-    // The camera turns, and the direction to it with it: d(to camera) = -w x (to camera).
-    const Vector3d eye = f.view.camera.R * to_camera(f.view, s.h);
-    const Vector3d by_eye = gain * (f.view.camera.R * light.gloss_by_eye);
-    d.segment<3>(kRotate) -= eye.cross(by_eye);
-    if (f.view.perspective) {
-      const Vector3d turn = Vector3d(zoom.x(), zoom.y(), 0) / s.h.homogeneous().norm();
-      d[kZoom] += by_eye.dot(turn - eye * eye.dot(turn));
-    }
-  }
-  return out;
+void shade(const Frame& f, const Samples& s, bool derivatives, Shading* out) {
+  Albedo a;
+  albedo(f, s, derivatives, &a);
+  HWY_DYNAMIC_DISPATCH(shade_lanes)(f, s, a, derivatives, out);
 }
 
 }  // namespace hookeye
+#endif

@@ -58,7 +58,7 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
   if (high.x() < -2 || high.y() < -2 || low.x() > view.camera.width + 1 ||
       low.y() > view.camera.height + 1)
     return;
-  const auto& t = f.surface.triangles[inside];
+  const auto& t = f.state.surface.triangles[inside];
   const int apex = t[0] + t[1] + t[2] - edge.a - edge.b;
   const int count = static_cast<int>(std::ceil(length * per_px));
   double size = 0;
@@ -89,16 +89,12 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
   }
 }
 
-/// Inside minus outside; 0 where something lies in front of the edge.
-double contrast(const Frame& f, const EdgePoint& q, const Sample& inside, const Sample& outside) {
+/// What lane i sees; NaN where that lies in front of the edge.
+double beside(const Frame& f, const EdgePoint& q, const Samples& s, const Shading& shading, int i) {
+  if (s.triangle[i] < 0) return f.photo.background;
   // Beside a contour the surface is seen edge-on: within a facet's size nothing counts as in front
   // (and what lies there hides both sides alike, so that the contrast vanishes anyhow).
-  const double nearest = q.depth - q.facet_size;
-  if (inside.triangle >= 0 && inside.depth < nearest) return 0;
-  if (outside.triangle >= 0 && outside.depth < nearest) return 0;
-  const double I_in = inside.triangle < 0 ? f.photo.background : shade(f, inside, false).I;
-  const double I_out = outside.triangle < 0 ? f.photo.background : shade(f, outside, false).I;
-  return I_in - I_out;
+  return s.depth[i] < q.depth - q.facet_size ? std::nan("") : shading.I[i];
 }
 
 /// Adds to all pixels whose filter reaches the point. The filter is what the fixed rays amount to
@@ -115,7 +111,7 @@ void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, doubl
   const auto floor_div = [](int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); };
   EdgeSegment segment;
   segment.triangle = q.inside;
-  const auto& t = f.surface.triangles[q.inside];
+  const auto& t = f.state.surface.triangles[q.inside];
   const Vector3d by_point = f.view.camera.R.transpose() * q.n_by_point.transpose();
   segment.d_position.setZero();
   for (int k = 0; k < 3; ++k) {
@@ -156,17 +152,20 @@ void silhouette_segments(const Frame& f, const PixelFilter& filter,
   }
   for (size_t begin = 0; begin < points.size(); begin += 8) {
     const int count = static_cast<int>(std::min<size_t>(8, points.size() - begin));
-    Vector2d h[16];
-    Sample sample[16];
+    Vector2d h[kLanes];
+    Samples samples;
+    Shading shading;
     for (int i = 0; i < count; ++i) {
       h[2 * i] = points[begin + i].h - points[begin + i].step_h;
       h[2 * i + 1] = points[begin + i].h + points[begin + i].step_h;
     }
-    trace(f, h, 2 * count, sample);
+    trace(f, h, 2 * count, &samples);
+    shade(f, samples, false, &shading);
     for (int i = 0; i < count; ++i) {
       const EdgePoint& q = points[begin + i];
-      const double jump = contrast(f, q, sample[2 * i], sample[2 * i + 1]);
-      if (jump != 0) spread(f, filter, q, jump * q.length_px, out);
+      const double jump =
+          beside(f, q, samples, shading, 2 * i) - beside(f, q, samples, shading, 2 * i + 1);
+      if (jump != 0 && !std::isnan(jump)) spread(f, filter, q, jump * q.length_px, out);
     }
   }
 }

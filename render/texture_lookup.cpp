@@ -7,19 +7,6 @@ namespace hookeye {
 
 using Eigen::Vector2d;
 
-Lookup sample_bilinear(const Image& image, const Vector2d& uv) {
-  const int w = image.width, h = image.height;
-  const double x = uv.x() * w - 0.5, y = (1 - uv.y()) * h - 0.5;
-  const double fx = std::floor(x), fy = std::floor(y), a = x - fx, b = y - fy;
-  const int x0 = std::clamp(static_cast<int>(fx), 0, w - 1), x1 = std::clamp(int(fx) + 1, 0, w - 1);
-  const int y0 = std::clamp(static_cast<int>(fy), 0, h - 1), y1 = std::clamp(int(fy) + 1, 0, h - 1);
-  const double p00 = image.at(x0, y0), p10 = image.at(x1, y0), p01 = image.at(x0, y1),
-               p11 = image.at(x1, y1);
-  const double top = p00 + a * (p10 - p00), bottom = p01 + a * (p11 - p01);
-  return {top + b * (bottom - top),
-          {w * ((1 - b) * (p10 - p00) + b * (p11 - p01)), -h * (bottom - top)}};
-}
-
 namespace {
 
 /// In-place B-spline prefilter along a line (pole sqrt(3) - 2, mirror border).

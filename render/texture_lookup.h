@@ -14,9 +14,6 @@ struct Lookup {
   Eigen::Vector2d gradient;  ///< by the coordinates that were asked for
 };
 
-/// Bilinear in (u, v), v up, texel centres at (i + 0.5)/width; the border is repeated outwards.
-Lookup sample_bilinear(const Image& image, const Eigen::Vector2d& uv);
-
 /// Cubic B-spline through the pixels of a picture (Unser 1999), mirrored at the border.
 class SplineImage {
  public:

@@ -1,18 +1,16 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "render/frame.h"
+#include "render/hits.h"
 
 namespace hookeye {
 
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-
-Vector3d interpolate(const Matrix3Xd& at, const std::array<int, 3>& t, const Vector3d& bary) {
-  return bary[0] * at.col(t[0]) + bary[1] * at.col(t[1]) + bary[2] * at.col(t[2]);
-}
 
 void set_lane(RayPacket& rays, int lane, const Vector3d& from, const Vector3d& direction) {
   rays.org_x[lane] = float(from.x());
@@ -23,74 +21,62 @@ void set_lane(RayPacket& rays, int lane, const Vector3d& from, const Vector3d& d
   rays.dir_z[lane] = float(direction.z());
 }
 
-/// Where the shadow ray of a point of the faceted surface starts. Interpolated normals belong to a
-/// curved surface; near the terminator the point is lifted onto it (Hanika 2021, Hacking the shadow
-/// terminator), fully where the facet turns away from the sun, not at all above 0.1 of cosine.
-Vector3d shadow_origin(const Frame& f, const Sample& s, const Vector3d& facet,
-                       const Vector3d& sun) {
-  const auto& t = f.surface.triangles[s.triangle];
-  const Vector3d point = interpolate(f.x, t, s.bary);
-  const double cosine = facet.dot(sun), margin = 10 * f.scene.epsilon();
-  const double amount = f.options.smooth_normals ? std::clamp(1 - cosine / 0.1, 0.0, 1.0) : 0.0;
-  if (amount == 0) return point + margin * facet;
-  Vector3d lift = Vector3d::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const Vector3d n = f.normals.col(t[k]);
-    lift -= s.bary[k] * std::min(0.0, n.dot(point - f.x.col(t[k]))) * n;
-  }
-  return point + amount * lift + margin * interpolate(f.normals, t, s.bary).normalized();
+/// Perspective: from the eye along R^T (h,1). Orthographic: from R^T ((h,start) - t) along R^T z.
+void set_rays(const Frame& f, const Samples& s, RayPacket* rays) {
+  const View& view = f.view;
+  const Eigen::Matrix3f Rt = view.camera.R.transpose().cast<float>();
+  const Vector3d start = view.camera.R.transpose() * (Vector3d(0, 0, view.start) - view.camera.t);
+  const Eigen::Vector3f from =
+      ((view.perspective ? view.eye : start) - f.scene.centre()).cast<float>();
+  float* origin[3] = {rays->org_x, rays->org_y, rays->org_z};
+  float* direction[3] = {rays->dir_x, rays->dir_y, rays->dir_z};
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < kLanes; ++i) {
+      const float across = Rt(c, 0) * s.h[0][i] + Rt(c, 1) * s.h[1][i];
+      origin[c][i] = view.perspective ? from[c] : from[c] + across;
+      direction[c][i] = view.perspective ? across + Rt(c, 2) : Rt(c, 2);
+    }
 }
 
-void cast_shadows(const Frame& f, int count, Sample* samples) {
+void cast_shadows(const Frame& f, Samples* s) {
   const double strength = f.photo.sun.norm();
   if (!f.photo.shaded || strength <= 0) return;
-  const Vector3d sun = f.photo.sun / strength;
-  alignas(64) int active[16] = {};
   RayPacket rays;
+  rays.reset(0, kFar);
+  shadow_rays(f, s, &rays);
+  if (!f.options.cast_shadows) return;
   bool any = false;
-  for (int i = 0; i < count; ++i) {
-    Sample& s = samples[i];
-    if (s.triangle < 0) continue;
-    const auto& t = f.surface.triangles[s.triangle];
-    const Vector3d& facet = f.facets[s.triangle];
-    s.lit = (f.options.smooth_normals ? interpolate(f.normals, t, s.bary) : facet).dot(sun) > 0;
-    if (!s.lit || !f.options.cast_shadows) continue;
-    if (!any) rays.reset(0, kFar);
-    any = true;
-    active[i] = -1;
-    set_lane(rays, i, shadow_origin(f, s, facet, sun) - f.scene.centre(), sun);
-  }
+  for (int i = 0; i < s->count; ++i) any |= s->lit[i] != 0;
   if (!any) return;
-  f.scene.occluded(rays, active);
-  for (int i = 0; i < count; ++i)
-    if (active[i]) samples[i].lit = rays.tfar[i] >= 0;
+  f.scene.occluded(rays, s->lit);
+  for (int i = 0; i < s->count; ++i)
+    if (rays.tfar[i] < 0) s->lit[i] = 0;
 }
 
 /// Points that the reference camera does not see have no colour: taken out of the picture.
-void drop_unseen(const Frame& f, int count, Sample* samples) {
+void drop_unseen(const Frame& f, Samples* s) {
   const View& view = *f.reference_view;
   const Image& photo = *f.texture.photo;
   const auto* valid = f.texture.photo_valid.get();
-  alignas(64) int active[16] = {};
+  alignas(64) int active[kLanes] = {};
   RayPacket rays;
   rays.reset(0, 1);
   bool any = false;
-  for (int i = 0; i < count; ++i) {
-    Sample& s = samples[i];
-    if (s.triangle < 0) continue;
-    const auto& t = f.surface.triangles[s.triangle];
-    const Vector3d p = interpolate(view.p, t, s.bary);
+  for (int i = 0; i < s->count; ++i) {
+    if (s->triangle[i] < 0) continue;
+    const auto& t = f.state.surface.triangles[s->triangle[i]];
+    const Vector3d p = interpolate(view.p, t, *s, i);
     const Vector2d px = view.local.project(p);
     const bool inside = px.x() >= 0 && px.y() >= 0 && px.x() <= photo.width - 1 &&
                         px.y() <= photo.height - 1;  // false for NaN
-    if (!inside || view.front[s.triangle] <= 0 ||
+    if (!inside || view.front[s->triangle[i]] <= 0 ||
         (valid &&
          !(*valid)[static_cast<size_t>(std::lround(px.y())) * photo.width + std::lround(px.x())])) {
-      s.triangle = -1;
+      s->triangle[i] = -1;
       continue;
     }
     const RayScene& scene = *f.reference_scene;
-    const Vector3d from = interpolate(*f.x_reference, t, s.bary) - scene.centre();
+    const Vector3d from = interpolate(*f.x_reference, t, *s, i) - scene.centre();
     const Vector3d back = -view.camera.R.row(2).transpose();
     const Vector3d to = view.perspective ? Vector3d(view.eye - scene.centre())
                                          : Vector3d(from + (p.z() - view.start) * back);
@@ -102,35 +88,37 @@ void drop_unseen(const Frame& f, int count, Sample* samples) {
   }
   if (!any) return;
   f.reference_scene->occluded(rays, active);
-  for (int i = 0; i < count; ++i)
-    if (active[i] && rays.tfar[i] < 0) samples[i].triangle = -1;
+  for (int i = 0; i < s->count; ++i)
+    if (active[i] && rays.tfar[i] < 0) s->triangle[i] = -1;
 }
 
 }  // namespace
 
-void trace(const Frame& f, const Vector2d* h, int count, Sample* out) {
-  alignas(64) int active[16] = {};
+void trace(const Frame& f, const Vector2d* h, int count, Samples* s) {
+  alignas(64) int active[kLanes];
   RayPacket rays;
   rays.reset(0, kFar);
-  for (int i = 0; i < count; ++i) {
-    active[i] = -1;
-    f.view.set_ray(rays, i, h[i], f.scene.centre());
+  s->count = count;
+  for (int i = 0; i < kLanes; ++i) {
+    active[i] = i < count ? -1 : 0;
+    for (int c = 0; c < 2; ++c)
+      s->h[c][i] = s->zoom[c][i] = static_cast<float>(h[std::min(i, count - 1)][c]);
   }
+  set_rays(f, *s, &rays);
   f.scene.intersect(rays, active);
   bool any = false;
-  for (int i = 0; i < count; ++i) {
-    out[i].h = h[i];
-    out[i].lit = false;
-    out[i].depth = rays.tfar[i];
-    out[i].triangle =
-        rays.triangle[i] == RayPacket::kNoTriangle ? -1 : static_cast<int>(rays.triangle[i]);
-    if (out[i].triangle < 0) continue;
-    any = true;
-    out[i].bary = f.view.barycentric(out[i].triangle, h[i]);
+  for (int i = 0; i < kLanes; ++i) {
+    s->lit[i] = 0;
+    s->depth[i] = rays.tfar[i];
+    s->triangle[i] = i >= count || rays.triangle[i] == RayPacket::kNoTriangle
+                         ? -1
+                         : static_cast<int>(rays.triangle[i]);
+    any |= s->triangle[i] >= 0;
   }
   if (!any) return;
-  if (f.reference_scene) drop_unseen(f, count, out);
-  cast_shadows(f, count, out);
+  meet_triangles(f, h, s);
+  if (f.reference_scene) drop_unseen(f, s);
+  cast_shadows(f, s);
 }
 
 namespace {

@@ -27,16 +27,33 @@ RayGrid::RayGrid(const Camera& camera, const PixelFilter& filter)
       n_(filter.n),
       margin_(filter.margin),
       columns_(camera.width * filter.n + 2 * filter.margin) {
-  if (!is_distorted(camera)) return;
   const int rows = camera.height * n_ + 2 * margin_;
+  const auto centred = [&](int i) { return (i - margin_ - (n_ - 1) / 2.0) / n_; };
+  const auto shift = [&](int i) { return PixelFilter::shift(i - margin_, n_) / n_; };
+  for (int i = 0; i < columns_; ++i) {
+    x_.push_back((centred(i) - camera_.cx) / camera_.fx);
+    y_shift_.push_back(shift(i) / camera_.fy);
+  }
+  for (int i = 0; i < rows; ++i) {
+    y_.push_back((centred(i) - camera_.cy) / camera_.fy);
+    x_shift_.push_back(shift(i) / camera_.fx);
+  }
+  if (!is_distorted(camera)) return;
   undone_.resize(static_cast<size_t>(rows) * columns_);
+  zoom_.resize(undone_.size());
   for (int iy = 0; iy < rows; ++iy)
     for (int ix = 0; ix < columns_; ++ix) {
-      const Ray ray = camera_.ray({px(ix - margin_, iy - margin_), px(iy - margin_, ix - margin_)});
+      const Ray ray = camera_.ray({centred(ix) + shift(iy), centred(iy) + shift(ix)});
       const Vector2d h = camera.projection == Camera::Projection::perspective
                              ? Vector2d(ray.direction.head<2>() / ray.direction.z())
                              : Vector2d(ray.origin.head<2>());
-      undone_[static_cast<size_t>(iy) * columns_ + ix] = h.cast<float>();
+      const size_t at = static_cast<size_t>(iy) * columns_ + ix;
+      undone_[at] = h.cast<float>();
+      Camera::Jacobian3 by_point;
+      Camera::Jacobian7 by_camera;
+      camera_.project(h.homogeneous(), &by_point, &by_camera);
+      const Eigen::Matrix2d by_h = by_point.leftCols<2>();
+      zoom_[at] = Vector2d(by_h.inverse() * by_camera.col(6)).cast<float>();
     }
 }
 
@@ -56,7 +73,6 @@ View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int
       p((c.R * x).colwise() + c.t) {
   start = p.row(2).minCoeff();
   start -= 0.01 * (p.row(2).maxCoeff() - start) + 1e-6;
-  Q.resize(triangles.size());
   front.resize(triangles.size());
   for (size_t f = 0; f < triangles.size(); ++f) {
     Matrix3d corners;
@@ -65,7 +81,6 @@ View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int
     const double det = corners.determinant();
     // Normals point outwards: seen from the front, the corners turn clockwise in image axes.
     front[f] = det < 0 ? 1 : det > 0 ? -1 : 0;
-    Q[f] = det != 0 ? Matrix3d(corners.inverse()) : Matrix3d(Matrix3d::Zero());
   }
   Vector2d low(1e30, 1e30), high = -low;
   for (int v = 0; v < p.cols(); ++v) {
@@ -81,43 +96,6 @@ View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int
   y0 = static_cast<int>(std::clamp(std::floor(low.y() - pad), 0.0, double(c.height)));
   x1 = static_cast<int>(std::clamp(std::ceil(high.x() + pad + 1), double(x0), double(c.width)));
   y1 = static_cast<int>(std::clamp(std::ceil(high.y() + pad + 1), double(y0), double(c.height)));
-}
-
-Vector3d View::barycentric(int triangle, const Vector2d& h) const {
-  Vector3d b = Q[triangle] * h.homogeneous();
-  b /= b.sum();
-  if (b.minCoeff() >= 0) return b;
-  if (!b.allFinite()) return Vector3d::Constant(1.0 / 3);
-  // Embree decides in float which triangle is hit; stay on it.
-  b = b.cwiseMax(0.0);
-  return b / b.sum();
-}
-
-void View::set_ray(RayPacket& rays, int lane, const Vector2d& h,
-                   const Vector3d& scene_centre) const {
-  Vector3d origin, direction;
-  if (perspective) {
-    origin = eye - scene_centre;
-    direction = camera.R.transpose() * h.homogeneous();
-  } else {
-    origin = camera.R.transpose() * (Vector3d(h.x(), h.y(), start) - camera.t) - scene_centre;
-    direction = camera.R.row(2).transpose();
-  }
-  rays.org_x[lane] = float(origin.x());
-  rays.org_y[lane] = float(origin.y());
-  rays.org_z[lane] = float(origin.z());
-  rays.dir_x[lane] = float(direction.x());
-  rays.dir_y[lane] = float(direction.y());
-  rays.dir_z[lane] = float(direction.z());
-}
-
-Vector2d View::zoom(const Vector2d& h) const {
-  if (!distorted) return h;
-  Camera::Jacobian3 by_point;
-  Camera::Jacobian7 by_camera;
-  local.project(h.homogeneous(), &by_point, &by_camera);
-  const Eigen::Matrix2d by_h = by_point.leftCols<2>();
-  return by_h.inverse() * by_camera.col(6);
 }
 
 }  // namespace hookeye

@@ -1,4 +1,4 @@
-// One camera looking at one state of the surface: rays, projections, barycentric coordinates.
+// One camera looking at one state of the surface: rays and projections.
 // Internal to render.
 #pragma once
 
@@ -27,19 +27,23 @@ class RayGrid {
   bool serves(const Camera& camera, const PixelFilter& filter) const;
   /// Ray (ix, iy) of the lattice of pixel_filter.h; -margin <= ix < width n + margin.
   Vector2d h(int ix, int iy) const {
-    if (!undone_.empty())
-      return undone_[static_cast<size_t>(iy + margin_) * columns_ + ix + margin_].cast<double>();
-    return {(px(ix, iy) - camera_.cx) / camera_.fx, (px(iy, ix) - camera_.cy) / camera_.fy};
+    if (!undone_.empty()) return at(undone_, ix, iy);
+    return {x_[ix + margin_] + x_shift_[iy + margin_], y_[iy + margin_] + y_shift_[ix + margin_]};
   }
-  /// Coordinate of ray i along one axis, `other` its index along the other [px].
-  double px(int i, int other) const {
-    return (i - (n_ - 1) / 2.0 + PixelFilter::shift(other, n_)) / n_;
-  }
+  /// dh/d(log focal length) of a point that stays at its pixel, negated: the surface seems to move
+  /// by it (times depth).
+  Vector2d zoom(int ix, int iy) const { return undone_.empty() ? h(ix, iy) : at(zoom_, ix, iy); }
+  bool distorted() const { return !undone_.empty(); }
 
  private:
+  using Field = std::vector<Eigen::Vector2f>;
+  Vector2d at(const Field& field, int ix, int iy) const {
+    return field[static_cast<size_t>(iy + margin_) * columns_ + ix + margin_].cast<double>();
+  }
   Camera camera_;
   int n_, margin_, columns_;
-  std::vector<Eigen::Vector2f> undone_;
+  Field undone_, zoom_;
+  std::vector<double> x_, y_, x_shift_, y_shift_;  ///< h without distortion, in two parts
 };
 
 struct View {
@@ -47,21 +51,11 @@ struct View {
 
   Camera camera, local;  ///< local: the same camera at the origin
   bool perspective, distorted;
-  Vector3d eye;      ///< perspective [length]
-  double start = 0;  ///< orthographic: depth where rays start
-  Matrix3Xd p;       ///< vertices in camera axes
-  /// Barycentric coordinates under the ray h are Q (h,1)/sum: Q inverts the corners' matrix (with
-  /// an orthographic camera their third row is 1).
-  std::vector<Matrix3d> Q;
+  Vector3d eye;                    ///< perspective [length]
+  double start = 0;                ///< orthographic: depth where rays start
+  Matrix3Xd p;                     ///< vertices in camera axes
   std::vector<signed char> front;  ///< triangle turned to the camera: 1, away: -1, edge-on: 0
   int x0, y0, x1, y1;              ///< pixels [x0, x1) x [y0, y1) that the body may touch
-
-  Vector3d barycentric(int triangle, const Vector2d& h) const;
-  /// Depth-like parameter of the ray at a point in camera axes.
-  void set_ray(RayPacket& rays, int lane, const Vector2d& h, const Vector3d& scene_centre) const;
-  /// dh/d(log focal length) of a point that stays at its pixel, negated: the surface seems to move
-  /// by it (times depth).
-  Vector2d zoom(const Vector2d& h) const;
 };
 
 }  // namespace hookeye

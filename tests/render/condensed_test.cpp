@@ -2,6 +2,7 @@
 #include "render/condensed.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include "scene.h"
 
@@ -19,6 +20,7 @@ TEST(condensed, equals_explicit_rows) {
       texture.source = Texture::Source::photo;
       texture.photo = test::waves(state.camera.width, state.camera.height, 3);
       texture.reference_camera = state.camera;
+      state.shaded = false;
     }
     const Matrix3Xd x = surface.X + 0.1 * test::field(surface.X, 0.2);
     const Rendering out = renderer.render(x, &surface.X, texture, state, {}, true);
@@ -26,8 +28,7 @@ TEST(condensed, equals_explicit_rows) {
     srand(1);
     VertexSensitivity S;
     S.position = Eigen::MatrixXd::Random(nv, m);
-    S.normal = Eigen::MatrixXd::Random(nv, m);
-    if (from_photo) S.reference = Eigen::MatrixXd::Random(nv, m);
+    S.second = Eigen::MatrixXd::Random(nv, m);
     S.photo = Eigen::MatrixXd::Random(kPhotoColumns, m);
     const VectorXd r = VectorXd::Random(n), w = VectorXd::Random(n).array() + 1.5;
     const VectorXd Bt_r = w.cwiseProduct(r);
@@ -38,14 +39,10 @@ TEST(condensed, equals_explicit_rows) {
           const DerivativeSegment& g = out.dI.segments[s];
           const int v = 3 * surface.triangles[g.triangle][k];
           J.row(i) += g.d_position.col(k).cast<double>().transpose() * S.position.middleRows(v, 3);
-          J.row(i) += g.d_normal.col(k).cast<double>().transpose() * S.normal.middleRows(v, 3);
-          if (from_photo)
-            J.row(i) +=
-                g.d_reference.col(k).cast<double>().transpose() * S.reference.middleRows(v, 3);
+          J.row(i) += g.d_second.col(k).cast<double>().transpose() * S.second.middleRows(v, 3);
         }
     J = (w.asDiagonal() * J).eval();
-    const auto sums =
-        NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, true, from_photo);
+    const auto sums = NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, true);
     const CondensedPhoto c = sums.reduce(S);
     EXPECT_LT((c.JtJ - J.transpose() * J).norm(), 1e-5 * c.JtJ.norm());
     EXPECT_LT((c.Jtr - J.transpose() * r).norm(), 1e-5 * c.Jtr.norm());
@@ -69,6 +66,34 @@ TEST(renderer, threads_agree_bit_by_bit) {
   ASSERT_EQ(a.dI.segments.size(), b.dI.segments.size());
   for (size_t i = 0; i < a.dI.segments.size(); ++i)
     ASSERT_TRUE(a.dI.segments[i].d_position == b.dI.segments[i].d_position);
+}
+
+// The program runs on whatever the processor has; the pictures may not depend on it.
+TEST(renderer, instruction_sets_agree) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
+  Texture texture;
+  texture.source = Texture::Source::image;
+  texture.image = test::waves(256, 256, 4);
+  const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  const auto picture = [&](int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    return Renderer(surface).render(surface.X, nullptr, texture, state, {}, true);
+  };
+  const Rendering best = picture(0);
+  const std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  for (int64_t target : targets) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const Rendering other = picture(target);
+    ASSERT_EQ(other.dI.pixel, best.dI.pixel);
+    ASSERT_EQ(other.dI.segments.size(), best.dI.segments.size());
+    EXPECT_LT((other.dI.d_photo - best.dI.d_photo).norm(), 1e-5f * best.dI.d_photo.norm());
+    for (size_t i = 0; i < best.I.values.size(); ++i)
+      ASSERT_NEAR(other.I.values[i], best.I.values[i], 1e-6f);
+    for (size_t i = 0; i < best.dI.segments.size(); ++i)
+      ASSERT_LT((other.dI.segments[i].d_position - best.dI.segments[i].d_position).norm(),
+                1e-4f + 1e-4f * best.dI.segments[i].d_position.norm());
+  }
+  hwy::SetSupportedTargetsForTest(0);
 }
 
 }  // namespace

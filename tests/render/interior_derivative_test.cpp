@@ -76,9 +76,14 @@ class Interior : public testing::TestWithParam<Setting> {
     return out;
   }
 
+  /// No motion of the reference state, where there is one.
+  const Matrix3Xd* still() const {
+    return GetParam().source == Source::photo ? &no_motion : nullptr;
+  }
+
   SurfaceMesh surface;
   Renderer renderer;
-  Matrix3Xd x, x_reference;
+  Matrix3Xd x, x_reference, no_motion = Matrix3Xd::Zero(3, surface.X.cols());
   PhotoState state;
   Texture texture;
   RenderOptions options;
@@ -96,7 +101,7 @@ TEST_P(SmoothInterior, positions) {
   for (double phase : {0.0, 1.3}) {
     const Matrix3Xd u = test::field(surface.X, phase);
     const VectorXd analytic =
-        pick(test::directional(renderer, r, x, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
+        pick(test::directional(renderer, r, x, &u, still(), VectorXd::Zero(kPhotoColumns)));
     expect_derivative(
         [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); }, analytic,
         0.004, 1e-3, "positions");
@@ -112,7 +117,7 @@ TEST_P(Interior, positions_where_facets_matter) {
   choose_pixels(r);
   const Matrix3Xd u = test::field(surface.X, 0.5);
   const VectorXd analytic =
-      pick(test::directional(renderer, r, x, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
+      pick(test::directional(renderer, r, x, &u, still(), VectorXd::Zero(kPhotoColumns)));
   const auto f = [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); };
   const VectorXd numeric = (f(1e-3) - f(-1e-3)) / 2e-3;
   ASSERT_GT(numeric.cwiseAbs().mean(), 0);

@@ -111,7 +111,8 @@ inline PhotoState state(const Camera& camera) {
 }
 
 /// dI of every pixel for changes of positions (and by them normals), reference and photo numbers;
-/// pixels without derivative: NaN.
+/// `dx_reference` belongs to photo textures and has to be told with them. Pixels without
+/// derivative: NaN.
 inline VectorXd directional(const Renderer& renderer, const Rendering& r, const Matrix3Xd& x,
                             const Matrix3Xd* dx, const Matrix3Xd* dx_reference,
                             const VectorXd& d_photo) {
@@ -125,8 +126,8 @@ inline VectorXd directional(const Renderer& renderer, const Rendering& r, const 
       for (int k = 0; k < 3; ++k) {
         const int v = renderer.surface().triangles[g.triangle][k];
         if (dx) d += g.d_position.col(k).cast<double>().dot(dx->col(v));
-        if (dx) d += g.d_normal.col(k).cast<double>().dot(dn.col(v));
-        if (dx_reference) d += g.d_reference.col(k).cast<double>().dot(dx_reference->col(v));
+        const Matrix3Xd* second = dx_reference ? dx_reference : dx ? &dn : nullptr;
+        if (second) d += g.d_second.col(k).cast<double>().dot(second->col(v));
       }
     }
     out[r.dI.pixel[i]] = d;
