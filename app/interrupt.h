@@ -3,6 +3,8 @@
 
 #include <atomic>
 
+#include "capture_io/interrupted.h"
+
 namespace hookeye {
 
 /// Set by SIGINT and SIGTERM; every long loop polls it (EquilibriumOptions, FitOptions ...).
@@ -10,6 +12,5 @@ const std::atomic<bool>& interrupted();
 void watch_interrupts();
 
 /// Thrown by commands when they stopped because of it; exit status 130.
-struct Interrupted {};
 
 }  // namespace hookeye

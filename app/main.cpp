@@ -73,6 +73,15 @@ int report_failure(const Session& session, const NumericalFailure& failure) {
                  {"reason", failure.reason}});
 }
 
+int report_input(const Session& session, const InputError& error) {
+  return report(session, kBadInput, "bad input", error.what(),
+                {{"file", error.place().file},
+                 {"line", error.place().line},
+                 {"column", error.place().column},
+                 {"wrong", error.wrong()},
+                 {"right", error.right()}});
+}
+
 int run(const CommandBody& body, Session& session) {
   try {
     body(session);
@@ -80,16 +89,14 @@ int run(const CommandBody& body, Session& session) {
     if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write stdout");
     return kDone;
   } catch (const InputError& error) {
-    return report(session, kBadInput, "bad input", error.what(),
-                  {{"file", error.place().file},
-                   {"line", error.place().line},
-                   {"column", error.place().column},
-                   {"wrong", error.wrong()},
-                   {"right", error.right()}});
+    return report_input(session, error);
   } catch (const Failed& failed) {
     return report_failure(session, failed.failure);
   } catch (const Interrupted&) {
     return report(session, kInterrupted, "interrupted", "stopped");
+  } catch (const std::filesystem::filesystem_error& error) {
+    const InputError told = cannot_write(error.path1().string(), error.code().message());
+    return report_input(session, told);
   } catch (const std::exception& error) {
     const std::string context = Scope::take_context();
     return report(session, kInternal, "internal error",

@@ -227,7 +227,7 @@ void write_image(const fs::path& file, const Image& image, Encoding encoding) {
   const auto fail = [&](const std::string& why) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
-    throw std::runtime_error(fmt::format("cannot write {}: {}", file.string(), one_line(why)));
+    throw cannot_write(file.string(), one_line(why));
   };
   std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(temporary.string());
   if (!output) fail(OIIO::geterror());

@@ -41,6 +41,12 @@ std::string lower_case(std::string text) {
 
 }  // namespace
 
+InputError cannot_write(const std::string& file, const std::string& why) {
+  return {{file},
+          why.empty() ? "cannot be written" : "cannot be written: " + why,
+          "choose a folder that is there and writable, on a disk with room"};
+}
+
 std::string Place::str() const {
   if (line <= 0) return file;
   if (column <= 0) return fmt::format("{}:{}", file, line);

@@ -30,6 +30,9 @@ class InputError : public std::runtime_error {
   std::string right_;
 };
 
+/// Of a result that cannot be written; `why` may be empty.
+InputError cannot_write(const std::string& file, const std::string& why = "");
+
 /// The entry of `known` nearest to `word` (edit distance without regard to case, at most a third of
 /// its length), or "".
 template <class Strings>

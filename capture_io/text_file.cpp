@@ -12,35 +12,45 @@
 namespace hookeye {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
-  throw std::system_error(errno, std::generic_category(),
-                          fmt::format("cannot {} {}", what, file.string()));
+/// Returns why not, or "".
+std::string write_and_close(int handle, const std::string& text) {
+  if (handle < 0) return std::strerror(errno);
+  int why = 0;
+  for (size_t done = 0; done < text.size() && !why;) {
+    const ssize_t n = ::write(handle, text.data() + done, text.size() - done);
+    if (n >= 0)
+      done += static_cast<size_t>(n);
+    else if (errno != EINTR)
+      why = errno;
+  }
+  // Without the sync a power cut after the rename could leave an empty file under the final name.
+  ::fsync(handle);
+  if (::close(handle) != 0 && !why) why = errno;
+  return why ? std::strerror(why) : "";
 }
 
 }  // namespace
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
+  std::error_code failed;
+  const auto status = std::filesystem::status(file, failed);
+  // A pipe or a device is written to; a rename would take its place.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    const std::string why = write_and_close(::open(file.c_str(), O_WRONLY | O_CLOEXEC), text);
+    if (!why.empty()) throw cannot_write(file.string(), why);
+    return;
+  }
   const std::filesystem::path temporary =
       file.parent_path() / fmt::format(".tmp-{}-{}", ::getpid(), file.filename().string());
   const int handle = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (handle < 0) fail(temporary, "write");
-  size_t done = 0;
-  while (done < text.size()) {
-    const ssize_t n = ::write(handle, text.data() + done, text.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int why = errno;
-      ::close(handle);
-      ::unlink(temporary.c_str());
-      errno = why;
-      fail(file, "write");
-    }
-    done += static_cast<size_t>(n);
+  std::string why = write_and_close(handle, text);
+  if (why.empty()) {
+    std::filesystem::rename(temporary, file, failed);
+    if (failed) why = failed.message();
   }
-  // Without the sync a power cut after the rename could leave an empty file under the final name.
-  ::fsync(handle);
-  ::close(handle);
-  std::filesystem::rename(temporary, file);
+  if (why.empty()) return;
+  std::filesystem::remove(temporary, failed);
+  throw cannot_write(file.string(), why);
 }
 
 std::string read_text(const std::filesystem::path& file) {

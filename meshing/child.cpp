@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -6,6 +7,7 @@
 #include <cerrno>
 #include <csignal>
 
+#include "capture_io/interrupted.h"
 #include "meshing/detail.h"
 
 namespace hookeye::detail {
@@ -13,7 +15,9 @@ namespace hookeye::detail {
 void die_quietly() {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  for (const int fault : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE}) std::signal(fault, SIG_DFL);
+  for (const int fault : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGINT, SIGTERM})
+    std::signal(fault, SIG_DFL);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int nowhere = open("/dev/null", O_WRONLY);
   dup2(nowhere, 1);
   dup2(nowhere, 2);
@@ -23,6 +27,10 @@ bool ended_well(int process) {
   int status = -1;
   while (process > 0 && waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
+  // Ctrl-C goes to both processes; the parent's handler only took note of it.
+  if (process > 0 && WIFSIGNALED(status) &&
+      (WTERMSIG(status) == SIGINT || WTERMSIG(status) == SIGTERM))
+    throw Interrupted();
   return process > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 

@@ -53,9 +53,10 @@ int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const V
 std::vector<Vector3d> cavities(const SurfaceMesh& surface);
 
 // child.cpp: libraries that may end the process run in one of their own.
-/// In the child: no core file, no handlers of the parent, nothing printed.
+/// In the child: no core file, no handlers of the parent, nothing printed, no life without it.
 void die_quietly();
 /// In the parent: waits. False: ended by a signal or with a fault, or there is no such process.
+/// Throws Interrupted where Ctrl-C ended it.
 bool ended_well(int process);
 
 /// Jacobian determinant of an element at barycentric coordinates (6 x volume when straight).

@@ -186,6 +186,22 @@ std::map<std::array<int, 3>, int> markers(const Filled& out) {
   return marker_of;
 }
 
+/// Beyond that a factorization takes tens of GB.
+constexpr double kMostTetrahedra = 1e6;
+
+void refuse_too_fine(const SurfaceMesh& surface, double edge, const Place& place) {
+  double enclosed = 0;
+  for (const auto& t : surface.triangles)
+    enclosed += surface.X.col(t[0]).dot(surface.X.col(t[1]).cross(surface.X.col(t[2]))) / 6.0;
+  const double count = enclosed / (edge * edge * edge / (6.0 * std::sqrt(2.0)));
+  if (count <= kMostTetrahedra) return;
+  throw InputError(
+      place,
+      fmt::format("an edge of {:.4g} would take about {:.2g} million tetrahedra", edge,
+                  count / 1e6),
+      fmt::format("an edge of at least {:.2g}", 1.05 * edge * std::cbrt(count / kMostTetrahedra)));
+}
+
 }  // namespace
 
 TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place) {
@@ -199,6 +215,7 @@ TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place
                      "a closed surface without self-intersections, triangles turned outwards");
   }
   const double edge = options.edge > 0 ? options.edge : detail::diagonal(surface.X) / 12.0;
+  refuse_too_fine(surface, edge, place);
   // TetGen refines a boundary by bisecting every segment of it until quality is met, which makes
   // five to ten times more elements than asked for. So the surface is cut to the target edge here
   // and kept (-Y). Edges come out at 0.7 to 1.4 of the target, their mean near it.

@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "capture_io/run.h"
 #include "meshing/detail.h"
 #include "meshing/surface_mesh.h"
 
@@ -225,16 +226,7 @@ void write_surface_obj(const std::filesystem::path& file, const SurfaceMesh& sur
     }
     fmt::format_to(out, "\n");
   }
-  std::filesystem::path partial = file;
-  partial += ".part";
-  {
-    std::ofstream stream(partial, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) {
-      throw InputError({file.string()}, "cannot be written", "a writable folder with space left");
-    }
-  }
-  std::filesystem::rename(partial, file);
+  write_text(file, text);
 }
 
 }  // namespace hookeye

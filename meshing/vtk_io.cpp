@@ -258,7 +258,7 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh,
   if (written) std::filesystem::rename(partial, file, failed);
   if (!written || failed) {
     std::filesystem::remove(partial, failed);
-    throw InputError({file.string()}, "cannot be written", "a writable folder with space left");
+    throw cannot_write(file.string());
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
+#include "app/commands/run_support.h"
 #include "capture_io/scope.h"
 #include "estimation/model.h"
 
@@ -227,7 +228,7 @@ void run_check(const std::string& path, Session& session) {
   const auto scene = load_scene(capture);
   const ModelForm form = base_form(scene);
   const Model model = form.realise(form.initial());
-  for (const auto& said : scene->body->said) session.warn(said);
+  warn_of_doubts(*scene, session);
   d["body"] = describe_mesh(scene->body->mesh);
   d["body"]["surface_triangles"] = scene->body->surface.mesh.triangles.size();
   for (const char* key : {"parameters", "cameras", "regions", "examples"}) d[key] = Json::array();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/commands/commands.h"
+#include "app/commands/run_support.h"
 #include "app/commands/solve.h"
 #include "app/interrupt.h"
 #include "capture_io/scope.h"
@@ -60,7 +61,7 @@ void run_render(const RenderCommand& options, Session& session) {
   const bool from_photos = capture.body.texture == BodySpec::Texture::rest;
   if (!from_photos) look_with_all_cameras(capture);
   const auto scene = load_scene(capture, from_photos);
-  for (const auto& said : scene->body->said) session.warn(said);
+  warn_of_doubts(*scene, session);
   const Model model = realise_model(options.model, scene);
 
   std::vector<VectorXd> q(capture.examples.size());

@@ -4,15 +4,21 @@
 
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "estimation/doubts.h"
 #include "estimation/removed.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
 
+void warn_of_doubts(const Scene& scene, Session& session) {
+  for (const auto& said : scene.body->said) session.warn(said);
+  for (const auto& said : doubts(scene)) session.warn(said);
+}
+
 Bench open_capture(const std::filesystem::path& capture_path, Session& session) {
   const Capture capture = read_capture(capture_path);
   auto scene = load_scene(capture);
-  for (const auto& said : scene->body->said) session.warn(said);
+  warn_of_doubts(*scene, session);
   return {scene, Workspace(scene)};
 }
 

@@ -17,6 +17,9 @@ struct Bench {
   std::shared_ptr<const Scene> scene;
   Workspace workspace;
 };
+/// What reading mended, and what is most likely not meant.
+void warn_of_doubts(const Scene& scene, Session& session);
+
 Bench open_capture(const std::filesystem::path& capture, Session& session);
 
 /// Throws Interrupted or Failed where there is a failure instead of a value.

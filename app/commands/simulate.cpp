@@ -3,6 +3,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
+#include "app/commands/run_support.h"
 #include "app/commands/solve.h"
 
 namespace hookeye {
@@ -79,7 +80,7 @@ void say_states(Session& session, const Json& examples, const Units& units) {
 void run_simulate(const SimulateOptions& options, Session& session) {
   const Capture capture = read_capture(options.capture);
   const auto scene = load_scene(capture, false);
-  for (const auto& said : scene->body->said) session.warn(said);
+  warn_of_doubts(*scene, session);
   const Model model = realise_model(options.model, scene);
   const std::filesystem::path out = options.out;
   std::filesystem::create_directories(out / "deformed");

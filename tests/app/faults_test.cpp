@@ -1,0 +1,73 @@
+// What is most likely not meant is said; what cannot be done ends in one sentence and exit 2.
+#include <gmock/gmock.h>
+
+#include "app/cli.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Faults : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    write_cube("{x: 0, y: 0, z: 1}");
+  }
+  /// The cube's capture with `what` replaced, or with lines more at its end.
+  void change(const std::string& what, const std::string& by) const {
+    std::string text = read(folder_ / "capture.yaml");
+    ASSERT_NE(text.find(what), std::string::npos);
+    write("capture.yaml", text.replace(text.find(what), what.size(), by));
+  }
+  void add(const std::string& lines) const {
+    write("capture.yaml", read(folder_ / "capture.yaml") + lines);
+  }
+};
+
+TEST_F(Faults, ResultsThatCannotBeWrittenAreNoInternalErrors) {
+  write("file", "not a folder");
+  for (const std::string arguments :
+       {"simulate . -o file/out", "mesh cube.obj -o file/body.vtu",
+        "synth " HOOKEYE_SOURCE_DIR "/sample_scenes/sample.yaml -o file/out"}) {
+    const Result result = hookeye(arguments);
+    EXPECT_EQ(result.status, 2) << arguments << "\n" << result.err;
+    EXPECT_THAT(result.err, AllOf(HasSubstr("file"), HasSubstr("cannot be written"),
+                                  Not(HasSubstr("internal error"))))
+        << arguments;
+  }
+}
+
+TEST_F(Faults, SupportsThatContradictEachOtherAreTold) {
+  EXPECT_THAT(hookeye("check .").err, Not(HasSubstr("share")));
+  change("top: {box: [[-1, -1, 9.9]", "top: {box: [[-1, -1, -0.1]");
+  const Result result = hookeye("check .");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("example pull: the supports `base` and `top` share"));
+}
+
+TEST_F(Faults, MeasurementsOffTheBodyOrItsSupportsAreTold) {
+  change("  top: {box", "  side: {box: [[9.9, 1, 1], [10.1, 9, 9]]}\n  top: {box");
+  add("    measured:\n"
+      "      - {position_of: [5, 5, 10.01], value: [5, 5, 11], sigma: 0.01}\n"
+      "      - {force_on: top, value: [0, 0, 1], sigma: 0.01}\n");
+  EXPECT_EQ(hookeye("check .").err.find("measured"), std::string::npos);
+  add("      - {position_of: [5, 5, 100], value: [5, 5, 11], sigma: 0.01}\n"
+      "      - {force_on: side, value: [0, 0, 1], sigma: 0.01}\n");
+  const Result result = hookeye("check .");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("lies 90 mm off the body"),
+                                HasSubstr("a force is measured on `side`")));
+}
+
+TEST_F(Faults, AMeshFarTooFineIsRefusedAtOnce) {
+  const Result result = hookeye("mesh cube.obj -o body.vtu --edge 0.01");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("million tetrahedra"), HasSubstr("edge of at least")));
+  EXPECT_FALSE(fs::exists(folder_ / "body.vtu"));
+}
+
+}  // namespace
+}  // namespace hookeye::test
