@@ -23,6 +23,9 @@ TruthSolver::TruthSolver(std::shared_ptr<const Scene> scene, const std::atomic<b
 std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::solve(
     const Model& model) {
   EquilibriumOptions options;
+  // Those that stand take some ten to forty; a drawn load under which the body snaps through can be
+  // sought for thousands, and is drawn smaller when it has none.
+  options.most_iterations = 300;
   if (cancel_) options.cancelled = [this] { return cancel_->load(); };
   std::vector<State> states(solvers_.size());
   std::optional<NumericalFailure> failed;

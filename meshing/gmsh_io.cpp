@@ -147,6 +147,21 @@ int announced_nodes(const std::filesystem::path& file) {
   return version >= 4 && in >> second ? second : first;
 }
 
+/// gmsh takes a medit file for whole wherever it ends: what it announces has to be there.
+void expect_all_tetrahedra(const std::filesystem::path& file, Eigen::Index held,
+                           const Place& place) {
+  if (file.extension() != ".mesh") return;
+  std::ifstream in(file);
+  Eigen::Index announced = 0;
+  for (std::string word; in >> word;)
+    if (word.starts_with("Tetrahedra") && in >> announced) break;
+  if (announced > held)
+    throw InputError(
+        place,
+        fmt::format("{} announces {} tetrahedra and holds {}", file.string(), announced, held),
+        "the whole file");
+}
+
 /// Node tags ascending: node i of a file numbered without gaps becomes column i-1.
 std::unordered_map<std::size_t, int> read_nodes(RawVolume& raw) {
   Tags tags;
@@ -255,6 +270,7 @@ RawVolume read_gmsh(const std::filesystem::path& file, const Place& place) {
   const OwnGroups own(file);
   take_tetrahedra(raw, column_of, own, file);
   take_triangles(raw, column_of, own);
+  expect_all_tetrahedra(file, raw.elements.cols(), place);
   return raw;
 }
 

@@ -41,6 +41,10 @@ void read_numbers(const std::filesystem::path& file, std::vector<Vector3d>& poin
   std::ifstream in(file);
   std::string line, field;
   for (int number = 1; std::getline(in, line); ++number) {
+    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte order mark
+    if (line.find('\0') != std::string::npos)
+      throw InputError({file.string(), number}, "there is a zero byte: this is no text",
+                       "the file as it was written, in ASCII or UTF-8");
     std::istringstream fields(line);
     if (!(fields >> field) || (field != "v" && field != "vt")) continue;
     const int needed = field == "v" ? 3 : 2;

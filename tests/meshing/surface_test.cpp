@@ -58,6 +58,9 @@ TEST(ReadSurface, ObjFaultsHaveTheirLine) {
   EXPECT_THAT(fault("v 0 0 0\nv 1 zero 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("bad.obj:2: 'zero'"));
   EXPECT_THAT(fault("v 0 0 0\nv 1 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("bad.obj:2: fewer"));
   EXPECT_THAT(fault(points + "vt 0 0\nf 1/1 2/1 3/1\nf 1 3 4\n"), HasSubstr("bad.obj:7: face 1"));
+  EXPECT_THAT(fault(points + std::string("f 1 2\0 3\n", 9)),
+              HasSubstr("bad.obj:5: there is a zero"));
+  EXPECT_NO_THROW(read_surface(scratch.write("mark.obj", "\xEF\xBB\xBF" + points + "f 1 2 4\n")));
   EXPECT_THAT(fault(points), HasSubstr("holds no triangles"));
   EXPECT_THAT(fault(""), HasSubstr("holds no triangles"));
   EXPECT_THAT(refusal([&] { read_surface(scratch / "none.obj"); }), HasSubstr("no such file"));

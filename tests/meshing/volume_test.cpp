@@ -240,6 +240,16 @@ TEST(ReadVolume, Msh41AndMedit) {
   EXPECT_EQ(medit.elements, msh.elements);
 }
 
+TEST(ReadVolume, AMeditFileThatEndsEarlyIsNoSmallerBody) {
+  const Scratch scratch;
+  const auto cut = scratch.write(
+      "cut.mesh",
+      "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n0 1 0 1\n0 0 1 1\n"
+      "1 1 1 1\nTetrahedra\n2\n1 2 3 4 1\n");
+  EXPECT_THAT(refusal([&] { read_volume(cut, kPlace); }),
+              HasSubstr("announces 2 tetrahedra and holds 1"));
+}
+
 TEST(ReadVolume, MshFaults) {
   const Scratch scratch;
   const auto fault = [&](const std::string& text) {
