@@ -77,7 +77,7 @@ constexpr double kNameable = 5.0;
 constexpr double kTie = 3.0;
 
 /// So many leading effects have pictures of what they would remove (removed.h).
-constexpr int kPictured = 3;
+constexpr int kPictured = 5;
 
 /// Fall of chi^2 below which an effect is not named although noise alone would not give it: a tenth
 /// of what the rest photos keep over their noise after alignment (texture and shading that the

@@ -1,7 +1,10 @@
 #include "estimation/removed.h"
 
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <map>
+#include <mutex>
 
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
@@ -92,32 +95,56 @@ json cells_json(const Cells& cells, double unit) {
           {"bytes", base64(bytes.data(), bytes.size())}};
 }
 
-}  // namespace
+/// The model after an effect's linear step, everywhere but in the mechanics: those are in
+/// EffectScore::displaced.
+struct Prediction {
+  const EffectScore* score;
+  Model model;
+  int reference = -1;  ///< example that the texture is a photo of
+  ExampleEvaluation reference_state;
+};
 
-std::vector<PhotoEvaluation> predicted_residuals(const Fitted& fitted, const EffectScore& score) {
-  std::vector<PhotoEvaluation> out;
-  if (score.displaced.empty()) return out;
-  const auto scene = fitted.form.scene;
-  const auto [form, p] = after_step(fitted, score);
-  const Model model = form.realise(p);
-  const int index = scene->capture.body.texture == BodySpec::Texture::rest
-                        ? scene->example_index(scene->capture.body.texture_example)
+std::vector<Prediction> predictions(const Step& step) {
+  const Scene& scene = *step.fitted.form.scene;
+  const int index = scene.capture.body.texture == BodySpec::Texture::rest
+                        ? scene.example_index(scene.capture.body.texture_example)
                         : -1;
-  ExampleEvaluation reference;
-  if (index >= 0 && !score.displaced.count(index)) return out;
-  if (index >= 0) reference = state_of(index, score.displaced.at(index));
-  EvaluationOptions options;
-  options.residuals = true;
-  for (const auto& example : fitted.evaluation.examples) {
-    const auto state = score.displaced.find(example.example);
-    if (state == score.displaced.end()) continue;
-    auto photos = PhotoComparer(scene, example.example)
-                      .compare(model, state_of(example.example, state->second),
-                               {index, index >= 0 ? &reference : nullptr}, nullptr, options);
-    for (auto& photo : photos) out.push_back(std::move(photo));
+  std::vector<Prediction> out;
+  for (const auto& score : step.diagnosis.effects) {
+    if (score.displaced.empty() || (index >= 0 && !score.displaced.count(index))) continue;
+    const auto [form, p] = after_step(step.fitted, score);
+    out.push_back({&score, form.realise(p), index, {}});
+    if (index >= 0) out.back().reference_state = state_of(index, score.displaced.at(index));
   }
   return out;
 }
+
+/// Pictures of one example after the step; its cells by photo.
+std::map<std::string, Cells> write_example(const std::filesystem::path& folder,
+                                           const Prediction& prediction,
+                                           const ExampleEvaluation& example,
+                                           PhotoComparer& comparer) {
+  std::map<std::string, Cells> out;
+  const Model& model = prediction.model;
+  const auto state = prediction.score->displaced.find(example.example);
+  if (state == prediction.score->displaced.end()) return out;
+  EvaluationOptions options;
+  options.residuals = true;
+  const int index = prediction.reference;
+  const auto after = comparer.compare(model, state_of(example.example, state->second),
+                                      {index, index >= 0 ? &prediction.reference_state : nullptr},
+                                      nullptr, options);
+  for (size_t k = 0; k < std::min(after.size(), example.photos.size()); ++k) {
+    const PhotoEvaluation& photo = example.photos[k];
+    const std::string name = photo_name(*model.scene, photo), &effect = prediction.score->effect;
+    write_removed_picture(folder / effect / (name + ".png"), photo.residual, after[k].residual,
+                          name, effect);
+    out[name] = cells_of(photo.residual, after[k].residual);
+  }
+  return out;
+}
+
+}  // namespace
 
 bool has_pictures(const Diagnosis& diagnosis) {
   for (const auto& score : diagnosis.effects)
@@ -126,26 +153,24 @@ bool has_pictures(const Diagnosis& diagnosis) {
 }
 
 void write_removed(const std::filesystem::path& folder, const Step& step) {
-  const Scene& scene = *step.fitted.form.scene;
-  for (const auto& score : step.diagnosis.effects) {
-    if (score.displaced.empty()) continue;
-    const auto after = predicted_residuals(step.fitted, score);
-    std::filesystem::create_directories(folder / score.effect);
-    std::map<std::string, Cells> photos;
-    size_t next = 0;
-    for (const auto& example : step.fitted.evaluation.examples)
-      for (const auto& photo : example.photos) {
-        if (next >= after.size()) break;
-        const PhotoEvaluation& predicted = after[next++];
-        const std::string name = photo_name(scene, photo);
-        write_removed_picture(folder / score.effect / (name + ".png"), photo.residual,
-                              predicted.residual, name, score.effect);
-        photos[name] = cells_of(photo.residual, predicted.residual);
-      }
-    const double unit = unit_of(photos);
+  const std::vector<Prediction> all = predictions(step);
+  for (const Prediction& one : all) std::filesystem::create_directories(folder / one.score->effect);
+  std::vector<std::map<std::string, Cells>> cells(all.size());
+  std::mutex mutex;
+  const auto& examples = step.fitted.evaluation.examples;
+  tbb::parallel_for(size_t{0}, examples.size(), [&](size_t e) {
+    PhotoComparer comparer(step.fitted.form.scene, examples[e].example);
+    for (size_t i = 0; i < all.size(); ++i) {
+      auto photos = write_example(folder, all[i], examples[e], comparer);
+      const std::lock_guard lock(mutex);
+      cells[i].merge(photos);
+    }
+  });
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double unit = unit_of(cells[i]);
     json document = {{"cell_px", kCell}, {"unit", unit}, {"photos", json::object()}};
-    for (const auto& [name, cells] : photos) document["photos"][name] = cells_json(cells, unit);
-    write_text(folder / (score.effect + ".json"), document.dump());
+    for (const auto& [name, photo] : cells[i]) document["photos"][name] = cells_json(photo, unit);
+    write_text(folder / (all[i].score->effect + ".json"), document.dump());
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using PhotoRow = Eigen::Matrix<float, kPhotoColumns, 1>;
 
-constexpr int kTileColumns = 48;  ///< pixels; the rays of a tile stay in the second-level cache
+constexpr int kTileRays = 144;  ///< along a row; the rays of a tile stay in the second-level cache
 
 /// The rays of a rectangle of pixels and of the margin that their filter reaches.
 class Tile {
@@ -207,8 +207,9 @@ void render_band(const BandTask& task, int row, int last_row, Rendering* out,
                  BandDerivative* derivative) {
   const View& view = task.frame.view;
   derivative->rows.resize(last_row - row);
-  for (int x0 = view.x0; x0 < view.x1; x0 += kTileColumns) {
-    const int x1 = std::min(x0 + kTileColumns, view.x1);
+  const int columns = std::max(8, kTileRays / task.filter.n);
+  for (int x0 = view.x0; x0 < view.x1; x0 += columns) {
+    const int x1 = std::min(x0 + columns, view.x1);
     const Tile tile(task, x0, x1, row, last_row);
     PixelSum sum(task, tile);
     for (int y = row; y < last_row; ++y) {
