@@ -185,7 +185,9 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
                      [](const Racer& a, const Racer& b) { return a.chi() < b.chi(); });
   };
   sort();
-  for (size_t i = 0; racers.size() > 1 && i < std::min(kSecondRound, racers.size()); ++i) {
+  for (size_t i = 0; racers.size() > 1 && i < racers.size(); ++i) {
+    // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
+    if (i >= kSecondRound && racers[i].effect != diagnosis.effects.front().effect) continue;
     auto result = try_step(workspace, racers[i].form, racers[i].trial.p,
                            std::get<TrialScale>(scale), options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
