@@ -95,7 +95,9 @@ int run(const CommandBody& body, Session& session) {
   } catch (const Interrupted&) {
     return report(session, kInterrupted, "interrupted", "stopped");
   } catch (const std::filesystem::filesystem_error& error) {
-    const InputError told = cannot_write(error.path1().string(), error.code().message());
+    // Of reading or of writing: the library does not say.
+    const InputError told({error.path1().string()}, error.code().message(),
+                          "a place that is there and open to you, on a disk with room");
     return report_input(session, told);
   } catch (const std::exception& error) {
     const std::string context = Scope::take_context();

@@ -77,15 +77,17 @@ void look_at_measurements(const Scene& scene, const ExampleSpec& example, Senten
   }
 }
 
-/// With the body at rest; loads rarely bring it into a picture that it was far from.
+/// The picture meets the rectangle about the body at rest; loads rarely bring it into a picture
+/// that it was far from.
 bool sees(const Camera& camera, const Matrix3Xd& X) {
+  Vector2d low(1e30, 1e30), high = -low;
   for (Eigen::Index v = 0; v < X.cols(); ++v) {
     const Vector2d px = camera.project(X.col(v));
-    if (px.x() > -0.5 && px.y() > -0.5 && px.x() < camera.width - 0.5 &&
-        px.y() < camera.height - 0.5)
-      return true;
+    if (!px.allFinite()) continue;  // behind the camera
+    low = low.cwiseMin(px), high = high.cwiseMax(px);
   }
-  return false;
+  return high.x() > -0.5 && high.y() > -0.5 && low.x() < camera.width - 0.5 &&
+         low.y() < camera.height - 0.5;
 }
 
 void look_at_photos(const Scene& scene, Sentences* out) {

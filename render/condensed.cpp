@@ -66,7 +66,7 @@ void NodeNormalEquations::Impl::take_photo_sums() {
 
 namespace {
 
-/// The vertices of one pixel's triangles; neighbouring pixels mostly have the same.
+/// The vertices of one pixel's triangles; neighbouring pixels often have the same.
 struct Footprint {
   std::vector<int> triangles;
   std::vector<int> slots;     ///< ascending

@@ -29,7 +29,7 @@ class Tile {
     for (int y = 0; y < rows_; y += 4)
       for (int x = 0; x < columns_; x += 4) follow_block(x, y);
   }
-  /// First tap of a pixel; the next of its row follow, those of the next row `columns` later.
+  /// First tap of a pixel; the next of its row follow, those of the next row `stride` later.
   Taps at(int x, int y) const {
     const int n = task_.filter.n;
     const size_t first = static_cast<size_t>((y - row_) * n) * columns_ + (x - column_) * n;
