@@ -385,9 +385,13 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
     return std::pair(a.testable, a.evidence) > std::pair(b.testable, b.evidence);
   });
-  for (int i = 0; i < kPictured && i < static_cast<int>(out.effects.size()); ++i)
-    if (out.effects[i].testable)
-      displace(evaluation, projected[best[out.effects[i].effect]], out.effects[i]);
+  for (size_t i = 0; i < out.effects.size(); ++i) {
+    EffectScore& score = out.effects[i];
+    score.pictured = score.testable && i < kPictured;
+    const bool speaks =
+        score.testable && score.evidence >= kNameable && !sensors_alone(*score.best);
+    if (score.pictured || speaks) displace(evaluation, projected[best[score.effect]], score);
+  }
   out.effects.insert(out.effects.end(), idle.begin(), idle.end());
   return out;
 }

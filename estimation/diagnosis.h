@@ -34,9 +34,11 @@ struct EffectScore {
   double p_value = 1.0;  ///< of the largest evidence in the catalogue under the simulated null
   double weight = 0.0;   ///< evidence among the tested effects, summing to one
   std::vector<Confusion> confused_with;
-  /// Where the linear step takes the examples (3n each), for the kPictured leading effects.
+  /// Where the linear step takes the examples (3n each): of the leading effects and of all with
+  /// evidence enough to be named.
   std::map<int, VectorXd> displaced;
-  std::string why;  ///< one plain sentence
+  bool pictured = false;  ///< one of the kPictured leading effects
+  std::string why;        ///< one plain sentence
   /// Another form of the effect that explains more of the held-out photos, though the fitted ones
   /// speak for `best` (one load turned instead of all): a trial decides. Null: there is none.
   std::shared_ptr<const EffectScore> other_form;
@@ -76,7 +78,7 @@ void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis);
 constexpr double kNameable = 5.0;
 constexpr double kTie = 3.0;
 
-/// So many leading effects have pictures of what they would remove (removed.h).
+/// Of so many leading effects what they would remove is drawn at full size (removed.h).
 constexpr int kPictured = 5;
 
 /// Fall of chi^2 below which an effect is not named although noise alone would not give it: a tenth

@@ -31,7 +31,7 @@ json effect_json(const EffectScore& score) {
     out["confusion"].push_back({{"effect", other.effect}, {"cosine", other.cosine}});
   }
   out["why"] = score.why;
-  if (!score.displaced.empty()) out["pictures"] = "removed/" + score.effect;
+  if (score.pictured) out["pictures"] = "removed/" + score.effect;
   const VectorXd low = score.values - kNormal95 * score.standard_error;
   const VectorXd high = score.values + kNormal95 * score.standard_error;
   out["predicted"] = parameters_json(score.best->parameters(), score.values, &low, &high);

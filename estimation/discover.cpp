@@ -159,16 +159,23 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
   racers = std::move(kept);
 }
 
+struct Contest {
+  std::vector<Raced> raced;
+  std::vector<Refit> refits;  ///< best first
+};
+
 /// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
-/// of the best of them. Best first.
-std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& workspace,
-                                                                 const Step& step,
-                                                                 const DiscoverOptions& options,
-                                                                 const DiscoverEvents& events) {
-  std::vector<Refit> refits;
+/// of the best of them.
+std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
+                                                      const DiscoverOptions& options,
+                                                      const DiscoverEvents& events) {
+  Contest out;
+  auto& refits = out.refits;
   auto raced = race(workspace, step.fitted, step.diagnosis, options.fit, events.tried);
   if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
   auto& racers = std::get<std::vector<Racer>>(raced);
+  for (const Racer& racer : racers)
+    out.raced.push_back({racer.effect, racer.trial.chi_fit, racer.trial.chi_validate});
   keep_leaders(racers, step.diagnosis, options.leaders);
   for (const Racer& racer : racers) {
     // Nothing can do better than the floor; once it is reached only a tie is of use.
@@ -184,7 +191,7 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
     if (events.refitted) events.refitted(racer.effect, std::get<Fitted>(result));
     refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
   }
-  if (refits.empty()) return refits;
+  if (refits.empty()) return out;
   auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
   const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
     return total_chi(a.fitted) < total_chi(b.fitted);
@@ -194,7 +201,7 @@ std::variant<std::vector<Refit>, NumericalFailure> refit_leaders(Workspace& work
     refit.score = refit_score(refit.fitted, reference, step.diagnosis.floor);
   std::stable_sort(refits.begin(), refits.end(),
                    [](auto& a, auto& b) { return a.score > b.score; });
-  return refits;
+  return out;
 }
 
 /// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
@@ -280,9 +287,9 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     out.floor = step.diagnosis.floor;
     if (events.step) events.step(step);
     if (added >= options.max_effects || only_numerical_left(step.fitted, step.diagnosis)) break;
-    auto refits = refit_leaders(workspace, step, options, events);
-    if (auto* failure = std::get_if<NumericalFailure>(&refits)) return *failure;
-    auto& ranked = std::get<std::vector<Refit>>(refits);
+    auto contest = refit_leaders(workspace, step, options, events);
+    if (auto* failure = std::get_if<NumericalFailure>(&contest)) return *failure;
+    auto& [raced, ranked] = std::get<Contest>(contest);
     if (ranked.empty()) break;
     Refit& winner = ranked.front();
     const double before = refit_score(step.fitted, winner.fitted, step.diagnosis.floor);
@@ -295,8 +302,11 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
       break;
     Step next;
     next.name = next.added = winner.effect;
+    next.raced = std::move(raced);
     for (const auto& rival : ranked) {
-      next.rivals.push_back({rival.effect, rival.score - winner.score});
+      const Evaluation& left = rival.fitted.evaluation;
+      next.rivals.push_back(
+          {rival.effect, rival.score - winner.score, left.chi(false), left.chi(true)});
       if (&rival != &winner && rival.score > winner.score - kTie) {
         if (out.tie.empty()) out.tie.push_back(winner.effect);
         out.tie.push_back(rival.effect);

@@ -30,6 +30,13 @@ struct DiscoverOptions {
   const std::atomic<bool>* cancel = nullptr;
 };
 
+/// A leader of the race, refitted to the end.
+struct Rival {
+  std::string effect;
+  double score = 0.0;  ///< refit_score minus the winner's
+  double chi_fit = 0.0, chi_validate = 0.0;
+};
+
 /// One step of a run.
 struct Step {
   std::string name;   ///< "base" or the added effect
@@ -37,8 +44,9 @@ struct Step {
   /// Effects of earlier steps that the added one made idle: not in this step's model any more.
   std::vector<std::string> dropped;
   Fitted fitted;
-  Diagnosis diagnosis;                                 ///< of this step's model
-  std::vector<std::pair<std::string, double>> rivals;  ///< refitted, with score minus the winner's
+  Diagnosis diagnosis;        ///< of this step's model
+  std::vector<Raced> raced;   ///< all that the added effect was chosen from, best first
+  std::vector<Rival> rivals;  ///< those of them that were refitted, the added one among them
 };
 
 /// Names of what stands in `form` beyond the capture's own model, in order.

@@ -27,6 +27,12 @@ struct Racer {
   double structured() const;
 };
 
+/// What an effect left of the misfit, with chi of half-size photos after the steps of a race.
+struct Raced {
+  std::string effect;
+  double chi_fit = 0.0, chi_validate = 0.0;
+};
+
 /// All nameable effects, each given one Gauss-Newton step from its linear step and the first four
 /// another, by falling success on fitted and held-out photos together. The linear score knows a
 /// model's first step only: an effect that needs three (stiffening, a clamp) loses there to a field

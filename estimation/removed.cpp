@@ -17,7 +17,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr int kCell = 8;  ///< [px]: finer than the cells that count, coarser than speckle
+constexpr int kFinestCell = 8;   ///< [px]: finer than the cells that count, coarser than speckle
+constexpr int kMostCells = 100;  ///< along a photo: what a page has room for
 constexpr double kFinestUnit = 1.0 / 16;  ///< standard deviations of one level, at least
 
 /// The fitted form with the effect in it, and the values after the linear step.
@@ -51,18 +52,27 @@ struct Cells {
   std::vector<double> now, removed;
 };
 
-Cells cells_of(const Image& before, const Image& after) {
-  Cells out{(before.width + kCell - 1) / kCell, (before.height + kCell - 1) / kCell, {}, {}};
+/// Edge of a cell [px], one for all photos.
+int cell_edge(const Evaluation& evaluation) {
+  int longest = 0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& photo : example.photos)
+      longest = std::max({longest, photo.residual.width, photo.residual.height});
+  return kFinestCell * std::max(1, (longest - 1) / (kFinestCell * kMostCells) + 1);
+}
+
+Cells cells_of(const Image& before, const Image& after, int edge) {
+  Cells out{(before.width + edge - 1) / edge, (before.height + edge - 1) / edge, {}, {}};
   for (int row = 0; row < out.rows; ++row)
     for (int column = 0; column < out.columns; ++column) {
       double was = 0.0, is = 0.0, count = 0.0;
-      for (int y = row * kCell; y < std::min(before.height, (row + 1) * kCell); ++y)
-        for (int x = column * kCell; x < std::min(before.width, (column + 1) * kCell); ++x) {
+      for (int y = row * edge; y < std::min(before.height, (row + 1) * edge); ++y)
+        for (int x = column * edge; x < std::min(before.width, (column + 1) * edge); ++x) {
           const double a = before.at(x, y), b = after.at(x, y);
           if (std::isnan(a) || std::isnan(b)) continue;
           was += a * a, is += b * b, count += 1.0;
         }
-      const bool counts = count > 0.25 * kCell * kCell;
+      const bool counts = count > 0.25 * edge * edge;
       const double rms = std::sqrt(was / std::max(count, 1.0));
       out.now.push_back(counts ? rms : std::nan(""));
       out.removed.push_back(counts ? rms - std::sqrt(is / count) : std::nan(""));
@@ -123,7 +133,7 @@ std::vector<Prediction> predictions(const Step& step) {
 std::map<std::string, Cells> write_example(const std::filesystem::path& folder,
                                            const Prediction& prediction,
                                            const ExampleEvaluation& example,
-                                           PhotoComparer& comparer) {
+                                           PhotoComparer& comparer, int edge) {
   std::map<std::string, Cells> out;
   const Model& model = prediction.model;
   const auto state = prediction.score->displaced.find(example.example);
@@ -137,9 +147,10 @@ std::map<std::string, Cells> write_example(const std::filesystem::path& folder,
   for (size_t k = 0; k < std::min(after.size(), example.photos.size()); ++k) {
     const PhotoEvaluation& photo = example.photos[k];
     const std::string name = photo_name(*model.scene, photo), &effect = prediction.score->effect;
-    write_removed_picture(folder / effect / (name + ".png"), photo.residual, after[k].residual,
-                          name, effect);
-    out[name] = cells_of(photo.residual, after[k].residual);
+    if (prediction.score->pictured)
+      write_removed_picture(folder / effect / (name + ".png"), photo.residual, after[k].residual,
+                            name, effect);
+    out[name] = cells_of(photo.residual, after[k].residual, edge);
   }
   return out;
 }
@@ -154,21 +165,23 @@ bool has_pictures(const Diagnosis& diagnosis) {
 
 void write_removed(const std::filesystem::path& folder, const Step& step) {
   const std::vector<Prediction> all = predictions(step);
-  for (const Prediction& one : all) std::filesystem::create_directories(folder / one.score->effect);
+  for (const Prediction& one : all)
+    if (one.score->pictured) std::filesystem::create_directories(folder / one.score->effect);
+  const int edge = cell_edge(step.fitted.evaluation);
   std::vector<std::map<std::string, Cells>> cells(all.size());
   std::mutex mutex;
   const auto& examples = step.fitted.evaluation.examples;
   tbb::parallel_for(size_t{0}, examples.size(), [&](size_t e) {
     PhotoComparer comparer(step.fitted.form.scene, examples[e].example);
     for (size_t i = 0; i < all.size(); ++i) {
-      auto photos = write_example(folder, all[i], examples[e], comparer);
+      auto photos = write_example(folder, all[i], examples[e], comparer, edge);
       const std::lock_guard lock(mutex);
       cells[i].merge(photos);
     }
   });
   for (size_t i = 0; i < all.size(); ++i) {
     const double unit = unit_of(cells[i]);
-    json document = {{"cell_px", kCell}, {"unit", unit}, {"photos", json::object()}};
+    json document = {{"cell_px", edge}, {"unit", unit}, {"photos", json::object()}};
     for (const auto& [name, photo] : cells[i]) document["photos"][name] = cells_json(photo, unit);
     write_text(folder / (all[i].score->effect + ".json"), document.dump());
   }

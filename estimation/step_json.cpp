@@ -59,8 +59,16 @@ json timeline_entry(const Step& step) {
     entry["gate"] = diagnosis["gate"];
     entry["diagnosis"] = diagnosis["effects"];
   }
-  for (const auto& [effect, score] : step.rivals)
-    entry["rivals"].push_back({{"effect", effect}, {"score", score}});
+  const auto left = [](const auto& one) -> json {
+    return {{"effect", one.effect},
+            {"chi_fit", one.chi_fit},
+            {"chi_validate", one.chi_validate > 0.0 ? json(one.chi_validate) : json()}};
+  };
+  for (const Raced& raced : step.raced) entry["raced"].push_back(left(raced));
+  for (const Rival& rival : step.rivals) {
+    entry["rivals"].push_back(left(rival));
+    entry["rivals"].back()["score"] = rival.score;
+  }
   return entry;
 }
 

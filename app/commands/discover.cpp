@@ -66,7 +66,10 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     timeline["floor"] = to_json(found.floor);
   });
   session.document = run.timeline();
-  session.say("{}\n{}", steps_table(found), parameter_table(found.steps.back().fitted));
+  session.say("{}", steps_table(found));
+  for (size_t i = 1; i < found.steps.size(); ++i)
+    session.say("{}", choice_table(found.steps[i - 1], found.steps[i]));
+  session.say("\n{}", parameter_table(found.steps.back().fitted));
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));
   session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));

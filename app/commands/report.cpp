@@ -22,11 +22,13 @@ constexpr size_t kMostBytes = 30'000'000;
 struct Reduction {
   int earlier, newest;  ///< by how much the pictures of earlier steps, and all others, are shrunk
   bool volumes;         ///< whether the deformed bodies (.vtu) are in the page
+  bool all_effects;     ///< whether what effects that do not lead would change is drawn too
   bool between;         ///< whether the steps between the first and the newest are drawn as bodies
 };
-constexpr Reduction kReductions[] = {
-    {1, 1, true, true},   {1, 1, false, true},  {2, 1, false, true},   {2, 2, false, false},
-    {4, 4, false, false}, {8, 8, false, false}, {16, 16, false, false}};
+constexpr Reduction kReductions[] = {{1, 1, true, true, true},    {1, 1, false, true, true},
+                                     {1, 1, false, false, true},  {2, 1, false, false, true},
+                                     {2, 2, false, false, false}, {4, 4, false, false, false},
+                                     {8, 8, false, false, false}, {16, 16, false, false, false}};
 
 std::string said(const Reduction& reduction, size_t steps, size_t left_out) {
   std::vector<std::string> parts;
@@ -35,6 +37,8 @@ std::string said(const Reduction& reduction, size_t steps, size_t left_out) {
   else if (reduction.earlier > 1)
     parts.push_back("residuals of earlier steps are at half size");
   if (!reduction.volumes) parts.push_back(".vtu files are left out");
+  if (!reduction.all_effects)
+    parts.push_back("what an effect would change is drawn for the leading ones only");
   if (!reduction.between && steps > 2)
     parts.push_back("steps between the first and the newest come without body and arrows");
   if (left_out > 0) parts.push_back(fmt::format("{} pictures or bodies are left out", left_out));
@@ -43,11 +47,20 @@ std::string said(const Reduction& reduction, size_t steps, size_t left_out) {
                      kMostBytes / 1'000'000, fmt::join(parts, "; "));
 }
 
+/// Fields of what an effect would change, but for the effects with pictures at full size.
+void keep_leading(nlohmann::json& step) {
+  const nlohmann::json& diagnosis = step["diagnosis"];
+  if (!diagnosis.is_object() || !diagnosis.contains("effects")) return;
+  for (const auto& effect : diagnosis["effects"])
+    if (!effect.contains("pictures")) step["fields"].erase("removes-" + effect.value("effect", ""));
+}
+
 nlohmann::json reduced_document(RunView& run, const Reduction& reduction) {
   nlohmann::json document = run.document(reduction.earlier, reduction.newest);
   auto& steps = document["steps"];
   for (size_t i = 0; i < steps.size(); ++i) {
     if (!reduction.volumes) steps[i]["deformed"] = nlohmann::json::array();
+    if (!reduction.all_effects) keep_leading(steps[i]);
     if (!reduction.between && i > 0 && i + 1 < steps.size())
       steps[i]["fields"] = nlohmann::json::object();
   }

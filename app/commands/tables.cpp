@@ -82,4 +82,30 @@ std::string steps_table(const Discovery& discovery) {
   return table(rows);
 }
 
+std::string choice_table(const Step& before, const Step& step) {
+  constexpr size_t kMost = 6;
+  if (step.raced.size() < 2) return "";
+  std::vector<std::vector<std::string>> rows = {
+      {"effect", "evidence", "tried: chi fitted", "held out", "refitted: chi fitted", "held out"}};
+  const auto chi = [](double value) { return value > 0.0 ? fmt::format("{:.2f}", value) : "-"; };
+  for (const Raced& raced : step.raced) {
+    const auto same = [&](const auto& one) { return one.effect == raced.effect; };
+    const auto& scores = before.diagnosis.effects;
+    const auto score = std::find_if(scores.begin(), scores.end(), same);
+    const auto refit = std::find_if(step.rivals.begin(), step.rivals.end(), same);
+    const bool refitted = refit != step.rivals.end();
+    if (rows.size() > kMost && !refitted) continue;
+    rows.push_back({raced.effect,
+                    score == scores.end() ? "-" : fmt::format("{:.1f}", score->evidence),
+                    chi(raced.chi_fit), chi(raced.chi_validate),
+                    refitted ? chi(refit->chi_fit) : "", refitted ? chi(refit->chi_validate) : ""});
+  }
+  return "\n" +
+         wrapped(
+             fmt::format("why {}: what each of the {} effects that stood out leaves (tried: after "
+                         "two steps of its refit, half-size photos)",
+                         step.added, step.raced.size())) +
+         table(rows);
+}
+
 }  // namespace hookeye

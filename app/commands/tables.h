@@ -13,6 +13,8 @@ std::string parameter_table(const Fitted& fitted);
 std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
 /// How the error fell.
 std::string steps_table(const Discovery& discovery);
+/// What the effect that was added to `before` was chosen from. Empty: nothing else stood out.
+std::string choice_table(const Step& before, const Step& step);
 
 /// "gravity", "strain_stiffening, without softening".
 std::string name_of(const Step& step);

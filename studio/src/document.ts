@@ -65,7 +65,7 @@ export interface Metrics {
   chi_validate: number;
   rms_px_fit: number;
   rms_px_validate: number;
-  floor: {chi: number; source: string};
+  floor: {chi: number; source: string; per_px2?: number};
   photos: PhotoFigures[];
   chi_by_example: Record<string, number>;
   chi_by_camera: Record<string, number>;
@@ -114,8 +114,10 @@ export interface TimelineStep {
   parameters: ParameterValue[];
   diagnosis: EffectScore[];
   gate?: number;
-  /** Refits that the added effect was chosen from: their score less the winner's. */
-  rivals?: {effect: string; score: number}[];
+  /** What the added effect was chosen from, best first: left after two steps of a refit, at half size. */
+  raced?: {effect: string; chi_fit: number; chi_validate: number | null}[];
+  /** Those of them that were refitted to the end: their score less the winner's. */
+  rivals?: {effect: string; score: number; chi_fit?: number; chi_validate?: number | null}[];
   command?: string;
   made_by?: Record<string, string>;
 }
@@ -156,7 +158,7 @@ export interface PageDocument {
     verdict?: string;
     sentence?: string;
     tie?: string[];
-    floor?: {chi: number; source: string};
+    floor?: {chi: number; source: string; per_px2?: number};
     steps: TimelineStep[];
     capture?: string;
   };

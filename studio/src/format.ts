@@ -27,6 +27,10 @@ export function around(value: number, low?: number, high?: number): {value: stri
   const few = Math.min(8, Math.max(4, digits));
   return {value: figure(value, few), interval: `${figure(low, few)} .. ${figure(high, few)}`};
 }
+/** A path as one word of a command. */
+export function forShell(path: string): string {
+  return /^[\w@%+=:,./-]+$/.test(path) ? path : `'${path.replaceAll("'", "'\\''")}'`;
+}
 /** "a, b and c". */
 export function listed(words: string[]): string {
   return words.length < 2 ? words.join('') : `${words.slice(0, -1).join(', ')} and ${words[words.length - 1]}`;

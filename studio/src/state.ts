@@ -80,9 +80,11 @@ export function isNamed(effect: EffectScore, entry: StepEntry | undefined): bool
 }
 /** Of the catalogue's group `numerical`: they tell of the model's mesh, not of the body. */
 export const isNumerical = (effect: string): boolean => effect === 'mesh_resolution';
-/** What was added to a step, and by how much its refit beat the best of the others that were tried. */
+/** What was added to a step, and by how much its refit beat the best of the others that were refitted. */
 export interface Decision {
   added: string;
+  /** All that were tried, best first: chi of fitted and held-out photos, at half size, after two steps of a refit. */
+  tried: {effect: string; fitted: number; heldOut: number | null}[];
   refitted: string[];
   margin?: number;
 }
@@ -91,7 +93,8 @@ export function decisionAfter(entry: StepEntry | undefined): Decision | undefine
   const next = told && run.value.timeline.steps[run.value.timeline.steps.indexOf(told) + 1];
   if (!next?.added || next.name.startsWith('without-')) return undefined;
   const others = (next.rivals ?? []).filter((r) => r.effect !== next.added).sort((a, b) => b.score - a.score);
-  return {added: next.added, refitted: others.map((r) => r.effect), margin: others.length ? -others[0].score : undefined};
+  const tried = (next.raced ?? []).map((r) => ({effect: r.effect, fitted: r.chi_fit, heldOut: r.chi_validate}));
+  return {added: next.added, tried, refitted: others.map((r) => r.effect), margin: others.length ? -others[0].score : undefined};
 }
 export function figuresOf(entry: StepEntry | undefined, photo: PhotoEntry): PhotoFigures | undefined {
   return entry?.metrics?.photos.find((f) => f.example === photo.example && f.camera === photo.camera);

@@ -1,7 +1,7 @@
 // The run in six short sentences with figures, for someone who has never seen it.
 import type {EffectScore, ParameterValue, StepEntry} from './document';
 import {around, figure, listed, logEvidence, percent, spaced} from './format';
-import {decisionAfter, effectsOf, figuresOf, floor, gateOf, isNamed, isNumerical, run, timelineOf, units, wasTested, worstPhoto, type Verb} from './state';
+import {decisionAfter, effectsOf, figuresOf, floor, gateOf, isNamed, isNumerical, run, timelineOf, units, wasTested, worstPhoto, type Decision, type Verb} from './state';
 
 export interface Told {
   /** In large letters. */
@@ -57,13 +57,25 @@ export function decidedBy(added: string, others: string[], margin: number): stri
   return `refits of ${all} decided for ${spaced(added)} over ${spaced(others[0])}, by ${figure(margin, 4)}`;
 }
 
+/** "0.23 / 0.21": fitted / held out. */
+export function bothOf(tried: Decision['tried'][number]): string {
+  return figure(tried.fitted, 2) + (tried.heldOut === null ? '' : ` / ${figure(tried.heldOut, 2)}`);
+}
+
+/** What the first steps of a refit came to, where more than one effect was tried. */
+export function triedBy({added, tried}: Decision): string {
+  const own = tried.find((t) => t.effect === added);
+  const next = tried.find((t) => t.effect !== added);
+  return own && next ? `tried for two steps it leaves χ ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)}` : '';
+}
+
 function sureness(effect: EffectScore, before: StepEntry): string {
   const next = effectsOf(before).filter((e) => wasTested(e) && e.effect !== effect.effect)
     .sort((a, b) => (b.evidence ?? 0) - (a.evidence ?? 0))[0];
   const decision = decisionAfter(before);
-  const rest = decision?.added === effect.effect && decision.margin !== undefined
-    ? decidedBy(decision.added, decision.refitted, decision.margin)
-    : next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
+  const own = decision?.added === effect.effect ? decision : undefined;
+  const rest = own?.margin !== undefined ? decidedBy(own.added, own.refitted, own.margin)
+    : (own && triedBy(own)) || next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
   return `would remove ${percent(effect.explains)} of the misfit; log evidence ${logEvidence(effect.evidence)} ` +
     `where ${figure(gateOf(before), 2)} is enough` + (rest ? `; ${rest}` : '');
 }
@@ -106,13 +118,15 @@ function missing(): Told {
     `has log evidence ${logEvidence(first.evidence)}, ${why}`};
 }
 
-/** An effect's own parameters: the largest with its interval, of the others as many as a tab has room for. */
-function valuesOf(effect: string, all: ParameterValue[]): string {
-  if (isNumerical(effect)) return `${spaced(effect)}: the mesh, not the material`;
+/** An effect's own parameters: the largest with its interval, of the others as many as a tab has room for
+ *  when it stands `alone`. */
+function valuesOf(effect: string, all: ParameterValue[], alone: boolean): string {
+  if (isNumerical(effect)) return 'a finer mesh';
   const [main, ...others] = all.filter((p) => p.name === effect || p.name.startsWith(effect + '.'))
     .sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
   if (!main) return `${spaced(effect)}: no parameter of its own`;
   const {value, interval} = around(main.value, main.low, main.high);
+  if (!alone) return `${main.name} ${value} ${main.unit}`;
   const short = others.slice(0, 2).map((p) => `, ${p.name.slice(effect.length + 1)} ${around(p.value, p.low, p.high).value} ${p.unit}`);
   return `${main.name} ${value} ${main.unit}, 95 % interval ${interval}${short.join('')}` +
     (others.length > 2 ? ` and ${others.length - 2} more` : '');
@@ -124,7 +138,8 @@ function refitted(newest: StepEntry): Told {
     return {headline: 'no effect yet', sentence: 'adding one refits the model with it, from where this fit ended'};
   const takenBack = told.name.startsWith('without-');
   const standing = told.effects ?? (takenBack ? [] : [told.added]);
-  const values = standing.map((effect) => valuesOf(effect, told.parameters)).join('; ');
+  const alone = standing.filter((effect) => !isNumerical(effect)).length < 2;
+  const values = standing.map((effect) => valuesOf(effect, told.parameters, alone)).join('; ');
   return {
     headline: takenBack ? `− ${spaced(told.added)}` : standing.map((effect) => `+ ${spaced(effect)}`).join(' '),
     sentence: values ? `refitted from the photos: ${values}` : 'no added effect is left',

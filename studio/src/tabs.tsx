@@ -1,20 +1,7 @@
 // The five verbs and the facts as tabs; each tells in figures what its view holds.
-import {useEffect, useState} from 'preact/hooks';
-import {field} from './parts';
-import {run, verb, verbNames, verbs, worstPhoto, type Verb} from './state';
+import {useLengthPerPx} from './length_per_px';
+import {verb, verbNames, verbs, type Verb} from './state';
 import {story} from './story';
-
-/** Length of a pixel at the worst photo of the base step; NaN until it is known. */
-function useLengthPerPx(): number {
-  const [length, setLength] = useState(NaN);
-  const base = run.value.steps[0];
-  const worst = run.value.photos[worstPhoto(base)];
-  const part = worst && base?.fields[`photo-${worst.name}`];
-  useEffect(() => {
-    if (part) void field<{length_per_px: number}>(part).then((f) => setLength(f.length_per_px), () => undefined);
-  }, [part]);
-  return length;
-}
 
 function choose(next: Verb): void {
   verb.value = next;

@@ -9,7 +9,7 @@ import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {launch} from './browser.mjs';
 import {broken, lost, withoutSteps} from './damaged.mjs';
-import {hoverIsNoChoice, removedIsDrawn} from './missing.mjs';
+import {choiceIsTold, hoverIsNoChoice, removedIsDrawn} from './missing.mjs';
 import {smallCapture} from './small_capture.mjs';
 
 const hookeye = process.argv[2];
@@ -300,6 +300,25 @@ async function retold() {
   say('the finished report tells its run, and holds run.json and the deformed bodies');
 }
 
+/** A run whose step was chosen by `discover`, which writes what it was chosen from. */
+async function chosen() {
+  const folderOfRun = join(folder, 'chosen');
+  cpSync(run, folderOfRun, {recursive: true});
+  const document = runJson();
+  const stoodOut = document.steps[0].diagnosis.filter((e) => e.named).map((e) => e.effect);
+  document.steps[1].raced = ['gravity', ...stoodOut.filter((e) => e !== 'gravity')]
+    .map((effect, i) => ({effect, chi_fit: 0.3 + i, chi_validate: 0.4 + i}));
+  writeFileSync(join(folderOfRun, 'run.json'), JSON.stringify(document));
+  const html = join(folder, 'chosen.html');
+  tell('report', folderOfRun, '-o', html);
+  const {page, faults, close} = await open('file://' + html);
+  await choiceIsTold(page);
+  await accessible(page);
+  assert.deepEqual(faults, []);
+  await close();
+  say('what was added tells what it was chosen from');
+}
+
 /** Names as long as people give them do not make any view wider than a phone. */
 async function longNames() {
   const long = join(folder, 'long');
@@ -356,6 +375,7 @@ try {
   await report();
   await studio();
   await retold();
+  await chosen();
   await longNames();
   await large();
   for (const tried of [broken, lost, withoutSteps]) say(await tried({folder, run, tell, open, walk, until}));

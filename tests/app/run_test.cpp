@@ -181,6 +181,16 @@ TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
   EXPECT_THAT(too_long(found.out), IsEmpty());
   EXPECT_THAT(found.out, HasSubstr("/compare\n"));
   const json judged = timeline();
+  // What was added is told beside what it was chosen from.
+  const json& chosen = judged.at("steps").back();
+  const std::string added = chosen.at("added");
+  std::vector<std::string> raced;
+  for (const json& one : chosen.at("raced")) raced.push_back(one.at("effect"));
+  EXPECT_GT(raced.size(), 1U);
+  EXPECT_THAT(raced, Contains(added));
+  EXPECT_EQ(chosen.at("rivals").at(0).at("effect"), added);
+  EXPECT_EQ(chosen.at("rivals")[0].at("chi_fit"), chosen.at("chi_fit"));
+  EXPECT_THAT(found.out, HasSubstr("why " + added + ": what each of "));
   for (const char* key : {"verdict", "sentence", "missing", "tie"})
     EXPECT_TRUE(judged.contains(key)) << key;
   // The same command on a finished run: no other step, the same verdict.

@@ -1,9 +1,10 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
 import {useState} from 'preact/hooks';
-import {figure, duration, listed, logEvidence, spaced} from '../format';
-import {chosenStep, effectsOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
+import {figure, duration, forShell, listed, logEvidence, spaced} from '../format';
+import {chosenStep, effectsOf, gateOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
 import {Ask} from '../facts/glossary';
 import {Share, Wide} from '../widgets';
+import {tooLittle} from '../story';
 import {add, stop} from './job';
 
 /** `named`: where it may stand beside another effect's name. */
@@ -113,9 +114,10 @@ export function Add() {
     <div class="add columns">
       <section>
         <h3>Add an effect to {newest?.folder ?? 'the newest step'}</h3>
-        {!run.value.live && <p class="note">This is a report. To add with one click, run <code>hookeye studio {run.value.run}</code>; or copy a command.</p>}
+        {!run.value.live && <p class="note">This is a report. To add with one click, run <code>hookeye studio {forShell(run.value.run)}</code>; or copy a command.</p>}
         {offered.length === 0 && <p class="empty">The newest step has not been diagnosed yet.</p>}
-        {offered.length > 0 && !standsOut && <p>Nothing stands out any more: chance alone would do as well as any of these.</p>}
+        {offered.length > 0 && !standsOut && <p>Nothing stands out any more: {(offered[0].evidence ?? 0) < gateOf(newest)
+          ? 'chance alone would do as well as any of these' : tooLittle}.</p>}
         <ul class="offers">
           {offered.map((e) => (
             <li key={e.effect}>
@@ -123,7 +125,7 @@ export function Add() {
               <Share of={e.explains} />
               <span class="value">evidence {logEvidence(e.evidence)}</span>
               {run.value.live ? <AddButton effect={e.effect} /> : (
-                <CopyCommand text={`hookeye add ${run.value.run} ${e.effect}`} />
+                <CopyCommand text={`hookeye add ${forShell(run.value.run)} ${e.effect}`} />
               )}
             </li>
           ))}

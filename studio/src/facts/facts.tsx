@@ -1,16 +1,28 @@
 // The reporting table, the capture's facts, and what made the run.
 import {save, saveCsv} from '../download';
 import {figure} from '../format';
+import {useLengthPerPx} from '../length_per_px';
 import {bytesOf} from '../parts';
-import {floor, run, step, stepIndex, timelineOf} from '../state';
+import {floor, run, step, stepIndex, timelineOf, units} from '../state';
 import {Wide} from '../widgets';
 import {Glossary} from './glossary';
 
-function practiceRows(): [string, string][] {
+/** One component of the displacement of a cell of 16 px, from what noise and gradients leave open. */
+function displacementResolution(perPx: number): [string, string][] {
+  const {chi, per_px2: information} = {...step.value?.metrics?.floor, ...run.value.timeline.floor};
+  if (!information || chi === undefined) return [];
+  const px = chi / Math.sqrt(256 * information);
+  const length = Number.isFinite(perPx) ? ` = ${figure(px * perPx, 2)} ${units.value.length}` : '';
+  return [['Displacement resolution',
+    `${figure(px, 2)} px${length}: standard deviation of one component in a cell of 16 px, from noise floor and texture`]];
+}
+
+function practiceRows(perPx: number): [string, string][] {
   const metrics = step.value?.metrics;
   const rows: [string, string][] = [
     ['Noise floor', `χ = ${figure(floor.value.chi, 4)}, from ${floor.value.source}`],
     ...run.value.practice.map((r): [string, string] => [r.name, r.value]),
+    ...displacementResolution(perPx),
   ];
   if (metrics)
     rows.push(['Spatial resolution',
@@ -49,7 +61,7 @@ function Files() {
 }
 
 export function Facts() {
-  const rows = practiceRows();
+  const rows = practiceRows(useLengthPerPx());
   const capture = run.value.capture;
   const told = timelineOf(step.value);
   return (

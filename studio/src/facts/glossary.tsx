@@ -12,6 +12,7 @@ const words = {
   weight: ['weight', 'share of an effect when one of those listed must be the cause; refits decide between close ones'],
   dof: ['dof', 'how many numbers the effect could choose freely; more fit more of the noise, which its evidence pays for'],
   heldOut: ['held out', 'photos that no fit has seen: an effect that is real helps there too'],
+  tried: ['tried χ', 'misfit of fitted / held-out photos, at half size, after two steps of a refit with the effect: those that get farthest are refitted to the end'],
   refit: ['refit', 'the whole model fitted again with the effect in it; its score, not the estimate, decides'],
 } satisfies Record<string, [string, string]>;
 export type Word = keyof typeof words;

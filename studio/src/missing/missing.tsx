@@ -6,7 +6,7 @@ import {figure, listed, logEvidence, percent, spaced} from '../format';
 import {chosenEffect, decisionAfter, effectsOf, gateOf, isNamed, step, wasTested, type Decision} from '../state';
 import {AddButton} from '../add/add';
 import {Ask} from '../facts/glossary';
-import {decidedBy, tooLittle} from '../story';
+import {bothOf, decidedBy, tooLittle, triedBy} from '../story';
 import {Confusion} from './confusion';
 import {Removed} from './removed';
 import {Share, Wide} from '../widgets';
@@ -38,17 +38,19 @@ function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
   );
 }
 
-function rankingCsv(all: EffectScore[]): void {
+function rankingCsv(all: EffectScore[], tried: Decision['tried']): void {
   saveCsv('effects.csv', [
-    ['effect', 'testable', 'explains', 'explains_held_out', 'evidence', 'weight', 'p_value', 'dof', 'confused_with', 'why'],
+    ['effect', 'testable', 'explains', 'explains_held_out', 'evidence', 'weight', 'p_value', 'dof', 'tried_chi_fit', 'tried_chi_validate', 'confused_with', 'why'],
     ...all.map((e) => [e.effect, wasTested(e), e.explains, e.explains_held_out, e.evidence, e.weight, e.p_value, e.dof,
+      tried.find((t) => t.effect === e.effect)?.fitted, tried.find((t) => t.effect === e.effect)?.heldOut,
       (e.confused_with ?? []).join(' '), e.why ?? e.why_not])]);
 }
 
 /** One effect of the ranking; what could not be tested is greyed and says why. */
-function Row(props: {effect: EffectScore; pinned: boolean; named: boolean}) {
+function Row(props: {effect: EffectScore; pinned: boolean; named: boolean; tried: Decision['tried']}) {
   const e = props.effect;
   const taken = e.confused_with ?? [];
+  const own = props.tried.find((t) => t.effect === e.effect);
   const choose = (): void => {
     chosenEffect.value = e.effect;
   };
@@ -58,22 +60,26 @@ function Row(props: {effect: EffectScore; pinned: boolean; named: boolean}) {
       <td><button class="link" onFocus={choose}>{spaced(e.effect)}</button></td>
       {wasTested(e) ? <>
         <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
-        <td>{logEvidence(e.evidence)}</td><td>{percent(e.weight)}</td><td class="wide">{e.dof}</td>
-        <td class="wide">{taken.slice(0, 2).map(spaced).join(', ')}{taken.length > 2 && ` and ${taken.length - 2} more`}</td>
-      </> : <td colSpan={5}>not tested: {e.why_not}</td>}
+        <td>{logEvidence(e.evidence)}</td><td>{percent(e.weight)}</td>
+        {props.tried.length > 0 && <td>{own ? bothOf(own) : '–'}</td>}
+        <td class="wide">{e.dof}</td>
+        <td class="wide">{taken.slice(0, 1).map(spaced).join(', ')}{taken.length > 1 && ` and ${taken.length - 1} more`}</td>
+      </> : <td colSpan={6}>not tested: {e.why_not}</td>}
     </tr>
   );
 }
 
 /** What was added next, and why that one: the evidence is an estimate, refits decide. */
 function Decided(props: {ranked: EffectScore[]; decision: Decision; folder: string | undefined}) {
-  const {ranked, decision: {added, refitted, margin}, folder} = props;
+  const {ranked, decision, folder} = props;
+  const {added, refitted, margin} = decision;
   const own = ranked.find((e) => e.effect === added);
   const next = ranked.find((e) => e !== own);
   return <p><b>{spaced(added)}</b> was added to step {folder}
     {own && `: log evidence ${logEvidence(own.evidence)}`}
     {own && next && `, ${next === ranked[0] ? 'behind' : 'before'} ${spaced(next.effect)} with ${logEvidence(next.evidence)}`}
-    {margin !== undefined && `; ${decidedBy(added, refitted, margin)}`}{margin !== undefined && <Ask word="refit" />}.</p>;
+    {triedBy(decision) && <>; {triedBy(decision)}<Ask word="tried" /></>}
+    {margin !== undefined && <>; {decidedBy(added, refitted, margin)}<Ask word="refit" /></>}.</p>;
 }
 
 /** What the ranking comes to, in one sentence. */
@@ -99,6 +105,7 @@ export function Missing() {
   if (!all.length)
     return <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
   const decision = decisionAfter(step.value);
+  const tried = decision?.tried ?? [];
   const byName = (name: string | undefined): EffectScore | undefined => all.find((e) => e.effect === name);
   const pinned = byName(chosenEffect.value) ?? byName(decision?.added) ?? ranked[0] ?? all[0];
   return (
@@ -106,12 +113,13 @@ export function Missing() {
       <div class="ranking" onMouseLeave={() => (previewed.value = '')}>
         <Outcome ranked={ranked} decision={decision} />
         <Wide label="Ranked effects">
-          <thead><tr><th>effect <button class="quiet" onClick={() => rankingCsv(all)}>CSV</button></th><th>would explain</th>
-            <th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th><th class="wide">dof<Ask word="dof" /></th>
+          <thead><tr><th>effect <button class="quiet" onClick={() => rankingCsv(all, tried)}>CSV</button></th><th>would explain</th>
+            <th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th>
+            {tried.length > 0 && <th>tried χ<Ask word="tried" /></th>}<th class="wide">dof<Ask word="dof" /></th>
             <th class="wide">easily taken for</th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
-              <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} />
+              <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} tried={tried} />
             ))}
           </tbody>
         </Wide>

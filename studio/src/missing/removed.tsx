@@ -23,16 +23,11 @@ function boxOf(cells: Cells, now: Uint8Array): {left: number; top: number; colum
   return {left, top, columns: right - left + 1, rows: bottom - top + 1};
 }
 
-/** One scale for what there is and for what the effect changes [sigma]: the 99 % point of what there is,
- *  so that neither saturates while the other is pale. Where a byte was too small for the change
- *  (`cut`), both end where the bytes do. */
-function scaleOf(cells: Cells, unit: number): {scale: number; cut: boolean} {
-  const bytes = fromBase64(cells.bytes);
-  const count = cells.columns * cells.rows;
-  const there = bytes.slice(0, count).filter((code) => code > 0).sort();
-  const cut = bytes.subarray(count).some((code, i) => bytes[i] > 0 && (code <= 1 || code === 255));
-  const codes = cut ? 127 : (there[Math.floor(0.99 * (there.length - 1))] ?? 1) - 1;
-  return {scale: Math.max(1, codes * unit), cut};
+/** One scale for what there is and for what the effect changes [sigma]: the 90 % point of what there is.
+ *  The few cells along an edge that a body has left would make all others pale. */
+function scaleOf(cells: Cells, unit: number): number {
+  const there = fromBase64(cells.bytes).slice(0, cells.columns * cells.rows).filter((code) => code > 0).sort();
+  return Math.max(1, ((there[Math.floor(0.9 * (there.length - 1))] ?? 1) - 1) * unit);
 }
 
 type Layer = 'now' | 'removed';
@@ -117,10 +112,10 @@ export function Removed(props: {effect: string}) {
   const photos = run.value.photos.filter((p) => prediction?.photos[p.name]);
   const wanted = run.value.photos[chosenPhoto.value]?.name;
   const entry = photos.find((p) => p.name === wanted) ?? photos[0];
-  if (!part) return <p class="note">Its residual is drawn for the leading effects only.</p>;
+  if (!part) return <p class="note">What it would change is not drawn: too little speaks for it.</p>;
   if (!prediction || !entry) return null;
   const says = `what ${spaced(props.effect)} would change`;
-  const {scale, cut} = scaleOf(prediction.photos[entry.name], prediction.unit);
+  const scale = scaleOf(prediction.photos[entry.name], prediction.unit);
   const ramps = rampsOf(scale);
   return (
     <figure class="removed" ref={box}>
@@ -144,7 +139,7 @@ export function Removed(props: {effect: string}) {
                 says={`${says}, on the body in ${entry.example}`} />
       </div>
       <div class="legends">{ramps.map((ramp) => <Legend key={ramp.title} ramp={ramp} />)}</div>
-      <p class="note">Both scales are the same: {cut ? 'what changes is stored no further.' : '99 % of the residual there is lies within.'}</p>
+      <p class="note">Both scales are the same: nine tenths of the residual there is lie within.</p>
     </figure>
   );
 }
