@@ -1,9 +1,12 @@
 // Draws one addend of every kind from the law itself: bench_addends > docs/images/addends.svg
 // Blue: energy; red: its slope, the stress; dots: control points. Each scaled to its own panel.
+// Where energies are compared, the second is green and the mean of both dashed.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 
 #include "simulation/additive.h"
@@ -36,12 +39,29 @@ std::vector<Panel> panels() {
       one("shear: an even function", "E12", {0, 0.15, 0.3}, {0.5, 1, 3}, -0.4, 0.4),
       one("rubber that softens, then stiffens", "I1bar", {0, 0.6, 1.5}, {1, 0.5, 1.5}, 0, 1.8),
       one("volume: J - 1", "J", {-0.3, 0, 0.3}, {5, 2, 1}, -0.5, 0.5),
+      one("sum of the stretches: trE", "trE", {-0.2, 0, 0.2}, {4, 2, 1}, -0.4, 0.4),
+      one("fibres that pull and do not push", "fibre1", {-0.02, 0.02, 0.3}, {0, 1, 4}, -0.4, 0.4),
       one("a limit: wall from 0.2 over 0.05", "E11", {0}, {1}, -0.4, 0.4)};
   AdditiveModel& wall = all.back().model;
   add_addend(wall, "E11", {0.2, 0.25}, {}, Eigen::Vector2d(0, 30));
   wall.addends.back().name = "E11.wall";
   wall.addends.back().fixed = true;
   return all;
+}
+
+/// Two energies in one panel: along two axes, or at two ends of a body.
+struct Comparison {
+  std::string title, axis, first_name, second_name;
+  AdditiveModel first, second;
+  bool blended;  ///< whether their mean is an energy that the body has halfway
+};
+
+std::vector<Comparison> comparisons() {
+  return {{"anisotropy: each axis its own", "E11, E22", "E11", "E22",
+           one("", "E11", {-0.1, 0.1, 0.3}, {0.5, 2, 5}, 0, 0).model,
+           one("", "E22", {-0.1, 0.1, 0.3}, {0.5, 1, 1.5}, 0, 0).model, false},
+          {"blend: stiffer from foot to head", "E11", "head", "foot",
+           one("", "E11", {0}, {3}, 0, 0).model, one("", "E11", {0}, {1}, 0, 0).model, true}};
 }
 
 /// Polyline of values over [low, high] in the panel at (x0, y0), between `least` and `most`.
@@ -55,6 +75,14 @@ std::string line(const std::vector<double>& values, double x0, double y0, double
                     y0 + kHigh * (1 - (values[i] - least) / (most - least)));
   return fmt::format("<polyline fill='none' stroke='{}' stroke-width='2' points='{}'/>\n", colour,
                      points);
+}
+
+std::string frame(const std::string& title, const std::string& axis, double x0, double y0) {
+  return fmt::format(
+      "<text x='{}' y='{}' font-weight='bold'>{}</text>"
+      "<text x='{}' y='{}' text-anchor='end'>{}</text>\n"
+      "<rect x='{}' y='{}' width='{}' height='{}' fill='none' stroke='#999'/>\n",
+      x0, y0 - 6, title, x0 + kWide, y0 + kHigh + 14, axis, x0, y0, kWide, kHigh);
 }
 
 std::string draw(const Panel& panel, double x0, double y0) {
@@ -75,10 +103,7 @@ std::string draw(const Panel& panel, double x0, double y0) {
   double steep = 0;
   for (double s : stress) steep = std::max(steep, std::abs(s));
   const double least = panel.low < 0 ? -most : 0.0;
-  std::string out = fmt::format(
-      "<text x='{}' y='{}' font-weight='bold'>{}</text><text x='{}' y='{}'>{}</text>\n"
-      "<rect x='{}' y='{}' width='{}' height='{}' fill='none' stroke='#999'/>\n",
-      x0, y0 - 6, panel.title, x0 + kWide - 34, y0 + kHigh + 14, panel.axis, x0, y0, kWide, kHigh);
+  std::string out = frame(panel.title, panel.axis, x0, y0);
   out += line(stress, x0, y0, panel.low < 0 ? -steep : 0, steep, "#d1495b");
   out += line(energy, x0, y0, least, most, "#2166ac");
   for (const Addend& a : panel.model.addends)
@@ -87,6 +112,49 @@ std::string draw(const Panel& panel, double x0, double y0) {
                          x0 + kWide * (e - panel.low) / (panel.high - panel.low),
                          y0 + kHigh * (1 - (sum(e)[0] - least) / (most - least)));
   return out;
+}
+
+std::string draw(const Comparison& both, double x0, double y0) {
+  constexpr int kPoints = 81;
+  std::vector<double> first, second, mean;
+  for (int i = 0; i < kPoints; ++i) {
+    const double e = -0.4 + 0.8 * i / (kPoints - 1);
+    first.push_back(addend_curve(both.first, 0, e)[0]);
+    second.push_back(addend_curve(both.second, 0, e)[0]);
+    mean.push_back(0.5 * (first.back() + second.back()));
+  }
+  const double most = *std::max_element(first.begin(), first.end());
+  std::string out = frame(both.title, both.axis, x0, y0) +
+                    line(second, x0, y0, 0, most, "#1b7837") +
+                    line(first, x0, y0, 0, most, "#2166ac");
+  if (both.blended)
+    out += "<g stroke-dasharray='5 4'>" + line(mean, x0, y0, 0, most, "#777") + "</g>\n";
+  return out + fmt::format(
+                   "<text x='{}' y='{}' fill='#2166ac'>{}</text>"
+                   "<text x='{}' y='{}' fill='#1b7837'>{}</text>\n",
+                   x0 + 90, y0 + 20, both.first_name, x0 + 90, y0 + 36, both.second_name);
+}
+
+/// The barrier below a volume ratio, from the law's own energy of a body squeezed from all sides.
+std::string draw_barrier(double x0, double y0) {
+  constexpr double kBelow = 0.3, kLeast = 0.02, kMost = 0.5;
+  constexpr int kPoints = 161;
+  AdditiveModel model = one("", "J", {0}, {1e-9}, 0, 0).model;
+  model.barrier_modulus = 1.0;
+  model.barrier_below = kBelow;
+  const auto law = additive(model);
+  std::vector<double> energy, stress;
+  for (int i = 0; i < kPoints; ++i) {
+    const double J = kLeast + (kMost - kLeast) * i / (kPoints - 1);
+    const Eigen::Matrix3d F = std::cbrt(J) * Eigen::Matrix3d::Identity();
+    energy.push_back(law->psi(F));
+    // d(psi)/dJ of F = J^(1/3) I: P : I / (3 J^(2/3))
+    stress.push_back(law->P(F).trace() / (3.0 * std::cbrt(J * J)));
+  }
+  const double most = energy.front(), steep = -stress.front();
+  return frame("barrier: below J = 0.3", "J", x0, y0) +
+         line(stress, x0, y0, -steep, steep, "#d1495b") +
+         line(energy, x0, y0, -most, most, "#2166ac");
 }
 
 /// The addend of two components as a map: blue below zero, red above.
@@ -123,15 +191,24 @@ std::string draw_pair(double x0, double y0) {
 
 void draw_all() {
   const std::vector<Panel> all = panels();
+  const std::vector<Comparison> compared = comparisons();
+  std::vector<std::function<std::string(double, double)>> drawings;
+  for (const Panel& panel : all)
+    drawings.push_back([&panel](double x0, double y0) { return draw(panel, x0, y0); });
+  drawings.push_back(draw_pair);
+  drawings.push_back(draw_barrier);
+  for (const Comparison& both : compared)
+    drawings.push_back([&both](double x0, double y0) { return draw(both, x0, y0); });
+  const auto rows = static_cast<double>((drawings.size() + 3) / 4);
   const double column = kWide + kMargin, row = kHigh + 2 * kMargin - 18;
   std::cout << fmt::format(
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {} {}' font-family='sans-serif' "
       "font-size='12'>\n<rect width='100%' height='100%' fill='white'/>\n",
-      4 * column + kMargin, 2 * row + 8);
-  for (size_t i = 0; i <= all.size(); ++i) {
+      4 * column + kMargin, rows * row + 8);
+  for (size_t i = 0; i < drawings.size(); ++i) {
     const double x0 = kMargin + column * static_cast<double>(i % 4);
     const double y0 = 24 + row * static_cast<double>(i / 4);
-    std::cout << (i < all.size() ? draw(all[i], x0, y0) : draw_pair(x0, y0));
+    std::cout << drawings[i](x0, y0);
   }
   std::cout << "</svg>\n";
 }

@@ -10,8 +10,6 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kNormal95 = 1.959964;  ///< half a 95 % interval in standard deviations
-
 json effect_json(const EffectScore& score) {
   json out = {{"effect", score.effect}, {"testable", score.testable}};
   if (!score.why_not.empty()) out["why_not"] = score.why_not;

@@ -209,7 +209,7 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
 bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own) {
   for (size_t k = 0; k < own.size(); ++k) {
     const auto i = offset + static_cast<Eigen::Index>(k);
-    const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * 1.96);
+    const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * kNormal95);
     if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
   }
   return false;

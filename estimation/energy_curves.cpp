@@ -26,14 +26,6 @@ std::vector<Matrix3d> gradients_in_frame(const Scene& scene, const Model& model,
   return all;
 }
 
-double quantile(std::vector<double>& values, double share) {
-  const auto k = static_cast<size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
-  return values[k];
-}
-
-constexpr int kCurvePoints = 41;
-
 /// Strain along a curve: over what is visited and the control points, with a margin.
 std::pair<double, double> curve_range(const Addend& addend, double low, double high) {
   if (!addend.fixed) {
@@ -46,6 +38,12 @@ std::pair<double, double> curve_range(const Addend& addend, double low, double h
 }
 
 }  // namespace
+
+double quantile(std::vector<double>& values, double share) {
+  const auto k = static_cast<size_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(k), values.end());
+  return values[k];
+}
 
 VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
                                const AdditiveModel& model) {
@@ -117,7 +115,7 @@ json curve_json(const AdditiveModel& model, int addend, const VisitedStrains& vi
     double half = 0.0;
     if (!a.fixed) {
       const auto n = point.gradient.size();
-      half = 1.959964 *
+      half = kNormal95 *
              std::sqrt(std::max(
                  0.0, point.gradient.dot(covariance.block(offset, offset, n, n) * point.gradient)));
     }

@@ -9,6 +9,11 @@
 
 namespace hookeye {
 
+constexpr int kCurvePoints = 41;
+
+/// The value below which `share` of `values` lie; at least one value. Reorders them.
+double quantile(std::vector<double>& values, double share);
+
 /// Strains of the components over all points where the energy is evaluated, fitted examples only:
 /// the range between the 1 % and 99 % quantiles of the volume, and always 0.
 struct VisitedStrains {

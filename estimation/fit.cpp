@@ -277,7 +277,7 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
       parameter_covariance(out.evaluation, parameters, p, &out.undetermined);
   out.low = out.high = p;
   for (int i = 0; i < p.size(); ++i) {
-    const double half = 1.959964 * std::sqrt(std::max(0.0, covariance(i, i)));
+    const double half = kNormal95 * std::sqrt(std::max(0.0, covariance(i, i)));
     // positive parameters: the interval is symmetric in the logarithm
     out.low[i] = parameters[i].positive ? p[i] * std::exp(-half / p[i]) : p[i] - half;
     out.high[i] = parameters[i].positive ? p[i] * std::exp(half / p[i]) : p[i] + half;

@@ -38,6 +38,9 @@ struct RefinementStage {
   bool kept = false;
 };
 
+/// Half a 95 % interval of a normal distribution, in standard deviations.
+constexpr double kNormal95 = 1.959964;
+
 /// A fitted model with its pictures and normal equations at full size.
 struct Fitted {
   ModelForm form;

@@ -13,9 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kCurvePoints = 41;
-constexpr double kNormal95 = 1.959964;
-
 /// Energy density with the parts' weights averaged over the body.
 class MeanEnergy {
  public:
@@ -50,12 +47,8 @@ struct Visited {
   double low = 1.0, high = 1.0;  ///< 1 % and 99 % of the points, and always rest
   void cover(std::vector<double>& values) {
     if (values.empty()) return;
-    std::sort(values.begin(), values.end());
-    const auto at = [&](double share) {
-      return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
-    };
-    low = std::min(low, at(0.01));
-    high = std::max(high, at(0.99));
+    low = std::min(low, quantile(values, 0.01));
+    high = std::max(high, quantile(values, 0.99));
   }
 };
 

@@ -37,6 +37,23 @@ int run(const std::string& command) {
   return status == -1 ? 1 : WEXITSTATUS(status);
 }
 
+/// Makes `folder`/capture; exit status of synth. Where it refuses the recipe, because the body
+/// leaves the picture, the cameras step back.
+int photograph(const Options& options, const std::string& effect, unsigned seed,
+               const fs::path& folder) {
+  constexpr int kRefused = 2;
+  int status = kRefused;
+  for (int step_back = 0; status == kRefused && step_back < 3; ++step_back) {
+    write_text(folder / "recipe.yaml", draw_recipe(effect, seed, options.size, step_back));
+    status = run(fmt::format(
+        "{} synth {} -o {} {} 2> {}", shell_quoted(options.hookeye),
+        shell_quoted(folder / "recipe.yaml"), shell_quoted(folder / "capture"),
+        options.photographer.empty() ? "" : "--photographer " + shell_quoted(options.photographer),
+        shell_quoted(folder / "synth.log")));
+  }
+  return status;
+}
+
 /// One capture in a folder of its own. What is there already is not made again.
 Score one(const Options& options, const std::string& effect, unsigned seed) {
   const fs::path folder = fs::path(options.out) / fmt::format("{}-{}", effect, seed);
@@ -47,12 +64,7 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   failed.hidden = effect;
   failed.seed = seed;
   if (!fs::exists(capture)) {
-    write_text(folder / "recipe.yaml", draw_recipe(effect, seed, options.size));
-    const int status = run(fmt::format(
-        "{} synth {} -o {} {} 2> {}", shell_quoted(options.hookeye),
-        shell_quoted(folder / "recipe.yaml"), shell_quoted(capture),
-        options.photographer.empty() ? "" : "--photographer " + shell_quoted(options.photographer),
-        shell_quoted(folder / "synth.log")));
+    const int status = photograph(options, effect, seed, folder);
     if (status != 0) {
       failed.status = fmt::format("synth {}", status);
       return failed;

@@ -37,7 +37,7 @@ std::vector<std::string> effects_of(const std::string& hidden) {
   return out;
 }
 
-std::string draw_recipe(const std::string& hidden, unsigned seed, double size) {
+std::string draw_recipe(const std::string& hidden, unsigned seed, double size, int step_back) {
   Dice dice(hidden, seed);
   const char* shapes[] = {"block", "cylinder", "blob"};
   const double height = dice(50, 70), width = dice(0.42, 0.58) * height;
@@ -55,9 +55,9 @@ std::string draw_recipe(const std::string& hidden, unsigned seed, double size) {
       "  told: {{mu: {:.5f}}}\n  fit: [mu]\n",
       mu, dice(8, 16), mu * dice(0.8, 1.25));
   out += fmt::format(
-      "cameras: {{count: 2, size: [300, 400], distance: 6.5, focal: 1650, azimuth: {:.1f}, "
+      "cameras: {{count: 2, size: [300, 400], distance: {:.2f}, focal: 1650, azimuth: {:.1f}, "
       "spread: {:.1f}, elevation: {:.1f}, look_at: 0.52}}\n",
-      turn, dice(60, 100), dice(8, 28));
+      6.5 + step_back, turn, dice(60, 100), dice(8, 28));
   const double sun = (turn + dice(0, 60)) * 3.14159265358979 / 180.0;
   out +=
       fmt::format("light: {{ambient: {:.3f}, toward: [{:.3f}, {:.3f}, {:.3f}], strength: 0.6}}\n",

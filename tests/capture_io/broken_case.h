@@ -1,6 +1,8 @@
 // One way to break a capture, and the whole message that the user gets.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <string>
 
@@ -13,6 +15,13 @@ struct BrokenCase {
   std::function<void(CaptureFixture&)> damage;
   const char* message;
 };
+
+/// Breaks the fixture's capture and compares the whole complaint (broken_capture_test.cpp).
+class BrokenCapture : public testing::TestWithParam<BrokenCase> {};
+
+inline std::string case_name(const testing::TestParamInfo<BrokenCase>& info) {
+  return info.param.name;
+}
 
 /// Signature and header chunk of a PNG that claims 60000 x 60000 pixels of 16-bit colour.
 inline std::string huge_png() {

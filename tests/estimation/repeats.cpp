@@ -19,8 +19,8 @@ Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
   const auto diagnosis = std::get<Diagnosis>(diagnose(workspace, fitted, options));
   Repeat out;
   out.covered = fitted.low[0] <= truth && truth <= fitted.high[0];
-  out.over_deviation =
-      std::log(fitted.p[0] / truth) / (std::log(fitted.high[0] / fitted.low[0]) / (2.0 * 1.959964));
+  out.over_deviation = std::log(fitted.p[0] / truth) /
+                       (std::log(fitted.high[0] / fitted.low[0]) / (2.0 * kNormal95));
   out.first = diagnosis.effects.front().effect;
   for (const auto& effect : diagnosis.effects) {
     out.p_value = std::min(out.p_value, effect.p_value);
