@@ -152,9 +152,10 @@ std::string where_seen(const Scene& scene, const Evaluation& evaluation, const V
     if (fall > 0.05 * total) cameras.push_back("'" + name + "'");
   const auto most = std::max_element(by_example.begin(), by_example.end(),
                                      [](auto& a, auto& b) { return a.second < b.second; });
-  const std::string who = cameras.size() == by_camera.size() && cameras.size() > 1
-                              ? fmt::format("all {} cameras", cameras.size())
-                              : fmt::format("{}", fmt::join(cameras, " and "));
+  const std::string who =
+      cameras.size() == by_camera.size() && cameras.size() > 1
+          ? cameras.size() == 2 ? "both cameras" : fmt::format("all {} cameras", cameras.size())
+          : fmt::format("{}", fmt::join(cameras, " and "));
   return fmt::format("; seen in {}, most in '{}'", who, most->first);
 }
 
@@ -300,8 +301,9 @@ double least_fall(const Floor& floor) {
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
   constexpr double kToTheLimit = 1.0 / (1.0 - 0.7 * 0.7);
   const auto parameters = fitted.form.parameters();
-  for (int i = 0; i < diagnosis.mesh_shift.size(); ++i) {
-    const double reach = kToTheLimit * diagnosis.mesh_shift[i];
+  fitted.mesh_reach = kToTheLimit * diagnosis.mesh_shift;
+  for (int i = 0; i < fitted.mesh_reach.size(); ++i) {
+    const double reach = fitted.mesh_reach[i];
     double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
     end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
   }

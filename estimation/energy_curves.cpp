@@ -45,6 +45,11 @@ double quantile(std::vector<double>& values, double share) {
   return values[k];
 }
 
+void push_band(json& curve, double value, double half, double reach) {
+  curve["low"].push_back(value - half + std::min(reach, 0.0));
+  curve["high"].push_back(value + half + std::max(reach, 0.0));
+}
+
 VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
                                const AdditiveModel& model) {
   const Model realised = form.realise(fitted.p);
@@ -99,7 +104,7 @@ CurvePoint on_curve(const AdditiveModel& model, int addend, double e, double sec
 }
 
 json curve_json(const AdditiveModel& model, int addend, const VisitedStrains& visited,
-                const Eigen::MatrixXd& covariance, int offset) {
+                const Eigen::MatrixXd& covariance, const VectorXd& mesh_reach, int offset) {
   const Addend& a = model.addends[addend];
   const double low = visited.low[a.first], high = visited.high[a.first];
   const auto [from, to] = curve_range(a, low, high);
@@ -112,17 +117,17 @@ json curve_json(const AdditiveModel& model, int addend, const VisitedStrains& vi
   for (int i = 0; i < kCurvePoints; ++i) {
     const double e = from + (to - from) * i / (kCurvePoints - 1);
     const CurvePoint point = on_curve(model, addend, e, second);
-    double half = 0.0;
+    double half = 0.0, reach = 0.0;
     if (!a.fixed) {
       const auto n = point.gradient.size();
       half = kNormal95 *
              std::sqrt(std::max(
                  0.0, point.gradient.dot(covariance.block(offset, offset, n, n) * point.gradient)));
+      if (mesh_reach.size()) reach = point.gradient.dot(mesh_reach.segment(offset, n));
     }
     one["stretch"].push_back(e);
     one["value"].push_back(point.value);
-    one["low"].push_back(point.value - half);
-    one["high"].push_back(point.value + half);
+    push_band(one, point.value, half, reach);
   }
   return one;
 }
@@ -204,7 +209,8 @@ json energy_curves(const Scene& scene, const Fitted& fitted) {
   const auto beyond = count_beyond(scene, part.model, realised, fitted, &elements);
   for (size_t a = 0; a < part.model.addends.size(); ++a) {
     const Addend& addend = part.model.addends[a];
-    json one = curve_json(part.model, static_cast<int>(a), visited, covariance, offset);
+    json one =
+        curve_json(part.model, static_cast<int>(a), visited, covariance, fitted.mesh_reach, offset);
     one["unit"] = scene.capture.units.stress();
     one["beyond"] = beyond.at(addend.name);
     one["elements"] = elements;

@@ -14,6 +14,11 @@ constexpr int kCurvePoints = 41;
 /// The value below which `share` of `values` lie; at least one value. Reorders them.
 double quantile(std::vector<double>& values, double share);
 
+/// Appends to `low` and `high` of a curve: `half` of noise on both sides, and on the side where an
+/// ever finer mesh would take the value what it would change, `reach` (Fitted::mesh_reach to first
+/// order).
+void push_band(nlohmann::json& curve, double value, double half, double reach);
+
 /// Strains of the components over all points where the energy is evaluated, fitted examples only:
 /// the range between the 1 % and 99 % quantiles of the volume, and always 0.
 struct VisitedStrains {

@@ -48,6 +48,8 @@ struct Fitted {
   /// 95 % intervals, not fooled by correlated residuals; of the mesh they know once
   /// reach_for_mesh() has been there.
   VectorXd low, high;
+  /// What the intervals have more on one side because of the mesh; empty: nothing.
+  VectorXd mesh_reach;
   std::vector<std::string> undetermined;  ///< sentences: what these data cannot fix
   Evaluation evaluation;                  ///< fitted and held-out, pictures and derivatives
   int iterations = 0;

@@ -106,28 +106,37 @@ FlowStatistics flow_statistics(const FlowField& flow) {
   }
   if (out.count == 0.0) return out;
   out.variance /= out.count;
-  // Autocovariance ring by ring (Chebyshev distance) until a ring is indistinguishable from zero.
-  double sum_cov = out.variance, sum_rho2 = 1.0, q = 0.0, q_dof = 0.0;
+  // Autocovariance ring by ring (Chebyshev distance). Its sum ends where a ring is
+  // indistinguishable from zero: the sum over all lags is that of one number squared. The sum of
+  // squares goes over all lags, less what noise alone gives: a bend is correlated across the body
+  // and changes sign along it, so that neither the mean of a ring nor its first zero tells where
+  // correlation ends.
+  double sum_cov = out.variance, sum_rho2 = 1.0, q = 0.0;
+  bool correlated = true;
   for (int ring = 1; ring <= 40; ++ring) {
-    double ring_product = 0.0, pairs = 0.0;
+    double ring_product = 0.0, ring_pairs = 0.0;
     for (int dy = -ring; dy <= ring; ++dy)
       for (int dx = -ring; dx <= ring; ++dx) {
         if (std::max(std::abs(dx), std::abs(dy)) != ring) continue;
+        double product = 0.0, pairs = 0.0;
         for (const auto& cell : flow.cells) {
           const auto other = at.find({cell.row + dy, cell.column + dx});
           if (other == at.end()) continue;
-          ring_product += cell.z.dot(other->second->z);
+          product += cell.z.dot(other->second->z);
           pairs += std::min(cell.known, other->second->known);
         }
+        if (pairs == 0.0) continue;
+        const double rho = product / pairs / out.variance;
+        sum_rho2 += (rho * rho * pairs - 1.0) / out.count;  // 1: mean of white noise
+        ring_product += product;
+        ring_pairs += pairs;
       }
-    if (pairs == 0.0) break;
-    const double rho = ring_product / pairs / out.variance;
+    if (ring_pairs == 0.0) break;
     // Each pair is met twice, so pairs/2 independent products of variance 1/(pairs/2).
-    const double deviation = rho * std::sqrt(pairs / 2.0);
-    if (ring == 1) q += deviation * deviation, q_dof += 1.0;
-    if (deviation < 2.0) break;
-    sum_cov += ring_product / (out.count / 1.0);
-    sum_rho2 += rho * rho * pairs / out.count;
+    const double deviation = ring_product / ring_pairs / out.variance * std::sqrt(ring_pairs / 2.0);
+    if (ring == 1) q = deviation * deviation;
+    correlated = correlated && deviation >= 2.0;
+    if (correlated) sum_cov += ring_product / out.count;
   }
   out.inflation = std::max(1.0, sum_cov);
   out.effective = std::clamp(out.count / sum_rho2, 1.0, out.count);

@@ -145,8 +145,7 @@ json law_curves(const Scene& scene, const Fitted& fitted) {
       const double half = kNormal95 * std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
       one["stretch"].push_back(x);
       one["value"].push_back(value);
-      one["low"].push_back(value - half);
-      one["high"].push_back(value + half);
+      push_band(one, value, half, fitted.mesh_reach.size() ? gradient.dot(fitted.mesh_reach) : 0.0);
     }
     out.push_back(std::move(one));
   }

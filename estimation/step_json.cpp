@@ -126,12 +126,18 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
       const char* kind = told.kind == MeasuredSpec::Kind::force    ? "force_on"
                          : told.kind == MeasuredSpec::Kind::moment ? "moment_on"
                                                                    : "position_of";
+      const Units& units = scene.capture.units;
+      const std::string unit = told.kind == MeasuredSpec::Kind::force ? units.force
+                               : told.kind == MeasuredSpec::Kind::moment
+                                   ? units.force + " " + units.length
+                                   : units.length;
       auto list = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
       all.push_back({{"example", spec.name},
                      {"kind", kind},
                      {"region", told.region},
                      {"measured", list(told.value)},
                      {"predicted", list(one.predicted)},
+                     {"unit", unit},
                      {"sigma", told.sigma},
                      {"over_sigma", list(one.r)}});
     }

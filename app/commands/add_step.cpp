@@ -16,6 +16,11 @@ namespace {
                                 : fmt::format("did you mean '{}'?", near));
 }
 
+[[noreturn]] void there_already(const std::string& wanted) {
+  throw InputError({wanted}, "the newest step has this effect already",
+                   "add another one, or take this one back");
+}
+
 [[noreturn]] void not_there(const std::string& wanted, const std::vector<std::string>& effects) {
   throw InputError(
       {wanted}, "the newest step does not have this effect",
@@ -35,7 +40,8 @@ Step with_effect(Bench& bench, const Step& current, const std::string& name,
   for (const auto& score : diagnosis.effects) {
     if (score.effect != name) continue;
     if (!score.best)
-      throw InputError({name}, "cannot be added: " + score.why_not, "another effect");
+      throw InputError({name}, "this effect cannot be added: " + score.why_not,
+                       "add another one; `hookeye diagnose RUN` ranks them");
     if (options.note) {
       if (!score.testable) options.note(name + ": " + score.why_not);
       options.note(
@@ -89,10 +95,11 @@ void check_effect(const std::string& name) {
 void check_stands(const Run& run, const AddRequest& request) {
   const nlohmann::json& steps = run.timeline().at("steps");
   // Runs of earlier versions do not tell: then the model does, once it is read.
-  if (!request.take_back || steps.empty() || !steps.back().contains("effects")) return;
+  if (steps.empty() || !steps.back().contains("effects")) return;
   const auto effects = steps.back().at("effects").get<std::vector<std::string>>();
-  if (std::find(effects.begin(), effects.end(), request.effect) == effects.end())
-    not_there(request.effect, effects);
+  const bool there = std::find(effects.begin(), effects.end(), request.effect) != effects.end();
+  if (request.take_back && !there) not_there(request.effect, effects);
+  if (!request.take_back && there) there_already(request.effect);
 }
 
 Step next_step(Bench& bench, const Step& current, const AddRequest& request,

@@ -29,7 +29,8 @@ Step next_step(Bench& bench, const Step& current, const AddRequest& request,
 /// Throws InputError with the nearest name.
 void check_effect(const std::string& name);
 
-/// Throws InputError where an effect is to be taken back that the newest step does not have.
+/// Throws InputError where an effect is to be taken back that the newest step does not have, or to
+/// be added that it has.
 void check_stands(const Run& run, const AddRequest& request);
 
 }  // namespace hookeye

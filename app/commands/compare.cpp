@@ -48,7 +48,7 @@ std::string photo_rows(const json& photos, double floor) {
 std::string measured_rows(const json& measured) {
   if (measured.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
-      {"example", "measured", "region", "", "value", "model", "over sigma"}};
+      {"example", "measured", "region", "", "value", "model", "unit", "over sigma"}};
   for (const auto& one : measured)
     for (size_t i = 0; i < 3; ++i) {
       const auto component = [&](const char* key) {
@@ -58,7 +58,8 @@ std::string measured_rows(const json& measured) {
         return i == 0 ? one.at(key).get<std::string>() : std::string();
       };
       rows.push_back({once("example"), once("kind"), once("region"), std::string(1, "xyz"[i]),
-                      component("measured"), component("predicted"), component("over_sigma")});
+                      component("measured"), component("predicted"), one.value("unit", ""),
+                      component("over_sigma")});
     }
   return table(rows);
 }

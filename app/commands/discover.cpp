@@ -63,7 +63,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     timeline["sentence"] = found.sentence;
     timeline["missing"] = found.missing;
     timeline["tie"] = found.tie;
-    timeline["floor"] = to_json(found.floor);
+    tell_floor(timeline, found.floor);
   });
   session.document = run.timeline();
   session.say("{}", steps_table(found));

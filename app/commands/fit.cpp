@@ -65,7 +65,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
                          : value_or_fail(fit(bench.workspace, form, start, fit_options()));
   const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
-  run.update([&](nlohmann::json& timeline) { timeline["floor"] = to_json(floor); });
+  run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
   session.document = run.timeline();
   session.say("{}", parameter_table(step.fitted));
   if (additive) say_refinements(step.fitted, session);

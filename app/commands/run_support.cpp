@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cmath>
+
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "estimation/doubts.h"
@@ -74,6 +76,12 @@ DiscoverOptions discover_options() {
   return options;
 }
 
+void tell_floor(nlohmann::json& timeline, const Floor& floor) {
+  const nlohmann::json told = timeline.value("floor", nlohmann::json::object());
+  if (told.value("source", "") == floor.source && told.value("chi", HUGE_VAL) <= floor.chi) return;
+  timeline["floor"] = to_json(floor);
+}
+
 namespace {
 
 /// What discover said was said of the step that was the newest then. Before the new step is
@@ -108,6 +116,14 @@ void record_diagnosis(Run& run, const Step& step) {
       folder, "parameters.csv",
       [&](const std::filesystem::path& file) { write_text(file, parameters_csv(step.fitted)); },
       true);
+  run.add_file(  // its bands reach as far as the intervals, of whose mesh the diagnosis knows
+      folder, "metrics.json",
+      [&](const std::filesystem::path& file) {
+        write_text(
+            file,
+            metrics(*step.fitted.form.scene, step.fitted, step.diagnosis.floor).dump(1) + "\n");
+      },
+      true);
   if (has_pictures(step.diagnosis))
     run.add_file(
         folder, "removed",
@@ -117,7 +133,7 @@ void record_diagnosis(Run& run, const Step& step) {
     timeline["steps"].back()["diagnosis"] = entry["diagnosis"];
     timeline["steps"].back()["parameters"] = entry["parameters"];
     if (entry.contains("gate")) timeline["steps"].back()["gate"] = entry["gate"];
-    timeline["floor"] = to_json(step.diagnosis.floor);
+    tell_floor(timeline, step.diagnosis.floor);
   });
 }
 

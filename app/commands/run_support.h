@@ -46,6 +46,9 @@ DiscoverOptions discover_options();
 /// Writes the step's folder and the timeline's entry, which keeps the command that made it. The
 /// run's verdict goes: it was about the step before.
 std::filesystem::path record(Run& run, const Step& step, const std::string& command = invocation());
+/// The lowest floor that any step of the run has shown: a model that lacks something leaves some of
+/// it in the rest photos too.
+void tell_floor(nlohmann::json& timeline, const Floor& floor);
 /// Puts a diagnosis into the newest step and the timeline.
 void record_diagnosis(Run& run, const Step& step);
 

@@ -94,6 +94,7 @@ void RefitJob::refit(const AddRequest& request) {
                      request.take_back ? " --take-back" : ""));
   stage("diagnosing the new step");
   step.diagnosis = value_or_fail(diagnose(bench_->workspace, step.fitted, wanted.diagnosis));
+  reach_for_mesh(step.fitted, step.diagnosis);
   record_diagnosis(run, step);
   finish("done",
          fmt::format("χ {:.4g} → {:.4g} on the fitted photos", current.fitted.evaluation.chi(false),

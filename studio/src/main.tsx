@@ -1,6 +1,6 @@
 // The page: verdict on top, the five verbs as tabs, one at a time.
 import {render} from 'preact';
-import {useEffect} from 'preact/hooks';
+import {useEffect, useRef} from 'preact/hooks';
 import {Add, JobLine} from './add/add';
 import {follow} from './add/job';
 import {Compare} from './compare/compare';
@@ -10,7 +10,7 @@ import {Falls} from './falls/falls';
 import {figure} from './format';
 import {Missing} from './missing/missing';
 import {setLive} from './parts';
-import {chosenPhoto, chosenStep, floor, help, otherStep, run, step, stepIndex, theme, timelineOf, verb, verbs, type Verb} from './state';
+import {chosenPhoto, floor, help, otherStep, run, showStep, step, stepIndex, theme, timelineOf, verb, verbs, type Verb} from './state';
 import {Tabs} from './tabs';
 import './style.css';
 
@@ -38,10 +38,7 @@ function StepChoice() {
   if (!list.length) return null;
   return (
     <span class="step-choice">
-      <label>step <select value={stepIndex.value} onChange={(e) => {
-        const i = Number(e.currentTarget.value);
-        chosenStep.value = i === list.length - 1 ? -1 : i;
-      }}>{list.map((s, i) => <option key={s.folder} value={i}>{s.folder}</option>)}</select></label>
+      <label>step <select value={stepIndex.value} onChange={(e) => showStep(Number(e.currentTarget.value))}>{list.map((s, i) => <option key={s.folder} value={i}>{s.folder}</option>)}</select></label>
       <label>against <select value={otherStep.value} onChange={(e) => (otherStep.value = Number(e.currentTarget.value))}>
         <option value={-1}>none</option>
         {list.map((s, i) => <option key={s.folder} value={i}>{s.folder}</option>)}
@@ -62,11 +59,18 @@ const keyTable: [string, string][] = [
 ];
 
 function Help() {
+  const close = useRef<HTMLButtonElement>(null);
+  useEffect(() => {
+    if (!help.value) return;
+    const before = document.activeElement as HTMLElement | null;
+    close.current?.focus();
+    return () => before?.focus();
+  }, [help.value]);
   if (!help.value) return null;
   return (
     <div class="help" role="dialog" aria-label="Keys" onClick={() => (help.value = false)}>
       <table><tbody>{keyTable.map(([k, what]) => <tr key={k}><th scope="row"><kbd>{k}</kbd></th><td>{what}</td></tr>)}</tbody></table>
-      <button onClick={() => (help.value = false)}>Close</button>
+      <button ref={close} onClick={() => (help.value = false)}>Close</button>
     </div>
   );
 }
@@ -80,14 +84,15 @@ const turnTheme = (): void => setTheme(theme.value === 'dark' ? 'light' : 'dark'
 
 function keys(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
-  if (event.ctrlKey || event.metaKey || event.altKey || /INPUT|SELECT|TEXTAREA/.test(target.tagName)) return;
+  const typed = target instanceof HTMLInputElement ? !/checkbox|radio/.test(target.type) : /SELECT|TEXTAREA/.test(target.tagName);
+  if (event.ctrlKey || event.metaKey || event.altKey || typed) return;
   const index = Number(event.key) - 1;
   if (verbs[index]) verb.value = verbs[index];
   else if (event.key === 't') turnTheme();
   else if (event.key === '?') help.value = !help.value;
   else if (event.key === 'Escape') help.value = false;
-  else if (event.key === '[' && stepIndex.value > 0) chosenStep.value = stepIndex.value - 1;
-  else if (event.key === ']' && stepIndex.value < run.value.steps.length - 1) chosenStep.value = stepIndex.value + 1;
+  else if (event.key === '[' && stepIndex.value > 0) showStep(stepIndex.value - 1);
+  else if (event.key === ']' && stepIndex.value < run.value.steps.length - 1) showStep(stepIndex.value + 1);
   else if (event.key === 'n' || event.key === 'p') nextPhoto(event.key === 'n' ? 1 : -1);
 }
 
@@ -101,10 +106,11 @@ function Page() {
     history.replaceState(null, '', '#' + verb.value);
   }, [verb.value]);
   const {faults, reduction, capture} = run.value;
+  const title = capture?.title ?? run.value.run.split('/').pop();
   return (
     <>
       <header>
-        <h1>Hookeye <small>{capture?.title ?? run.value.run.split('/').pop()}</small></h1>
+        <h1 title={title}>Hookeye <small>{title}</small></h1>
         <Verdict />
         <StepChoice />
         <span class="tools">

@@ -26,7 +26,7 @@ function sheet(width: number, height: number): Sheet {
 
 /** Horizontal bars; `mark` is a line across them. */
 export function saveBars(name: string, title: string, rows: {name: string; value: number}[], mark?: number): void {
-  const {canvas, context, ink} = sheet(480, 34 + 22 * rows.length);
+  const {canvas, context, ink} = sheet(480, 34 + 22 * rows.length + (mark === undefined ? 0 : 22));
   const style = getComputedStyle(document.body);
   const most = Math.max(mark ?? 0, ...rows.map((r) => r.value || 0), 1e-12);
   context.fillText(title, 10, 15);
@@ -40,6 +40,8 @@ export function saveBars(name: string, title: string, rows: {name: string; value
     context.fillStyle = style.getPropertyValue('--mark');
     if (mark !== undefined) context.fillRect(140 + (270 * mark) / most, y - 9, 2, 18);
   });
+  context.fillStyle = ink;
+  if (mark !== undefined) context.fillText(`line: the noise floor, ${mark.toPrecision(3)}`, 140, 40 + 22 * rows.length);
   saveCanvas(name, canvas);
 }
 

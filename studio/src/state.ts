@@ -52,6 +52,11 @@ export const stepIndex = computed(() => {
   const count = run.value.steps.length;
   return chosenStep.value < 0 ? count - 1 : Math.min(chosenStep.value, count - 1);
 });
+/** Shows a step. Where that was the one compared with, the two change places. */
+export function showStep(index: number): void {
+  if (index === otherStep.value) otherStep.value = stepIndex.value;
+  chosenStep.value = index === run.value.steps.length - 1 ? -1 : index;
+}
 export const step = computed<StepEntry | undefined>(() => run.value.steps[stepIndex.value]);
 export const other = computed<StepEntry | undefined>(
   () => (otherStep.value === stepIndex.value ? undefined : run.value.steps[otherStep.value]),

@@ -66,16 +66,18 @@ export function bothOf(tried: Decision['tried'][number]): string {
 export function triedBy({added, tried}: Decision): string {
   const own = tried.find((t) => t.effect === added);
   const next = tried.find((t) => t.effect !== added);
-  return own && next ? `tried for two steps it leaves χ ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)}` : '';
+  return own && next
+    ? `tried for two steps on half-size photos it leaves χ ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)}` : '';
 }
 
 function sureness(effect: EffectScore, before: StepEntry): string {
   const next = effectsOf(before).filter((e) => wasTested(e) && e.effect !== effect.effect)
     .sort((a, b) => (b.evidence ?? 0) - (a.evidence ?? 0))[0];
   const decision = decisionAfter(before);
+  const leads = next && (next.evidence ?? 0) > (effect.evidence ?? 0) ? next.effect : effect.effect;
   const own = decision?.added === effect.effect ? decision : undefined;
   const rest = own?.margin !== undefined ? decidedBy(own.added, own.refitted, own.margin)
-    : (own && triedBy(own)) || next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
+    : (own && leads !== effect.effect && triedBy(own)) || next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
   return `would remove ${percent(effect.explains)} of the misfit; log evidence ${logEvidence(effect.evidence)} ` +
     `where ${figure(gateOf(before), 2)} is enough` + (rest ? `; ${rest}` : '');
 }

@@ -153,6 +153,34 @@ async function pointIsShown(page) {
   assert.ok((await page.textContent('#readout')).startsWith(`(${x}, ${y})`), `${said}, but ${await page.textContent('#readout')}`);
 }
 
+/** Beside the shown step's residual stands that of the step it is compared with; and what was made to
+ *  fit fits again after the whole picture was looked at. */
+async function bothStepsAreRead(page) {
+  const name = await page.evaluate(() => document.querySelector('.panel figcaption').textContent.replace('photo · ', '').replace(' ', '-'));
+  const panel = page.locator('.panels canvas').nth(3);
+  const box = await panel.boundingBox();
+  for (const [u, v] of [[0.5, 0.5], [0.45, 0.6]]) {
+    await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
+    await page.waitForTimeout(60);
+    const said = (await page.textContent('#readout')).replaceAll('−', '-');
+    const [, x, y] = /\((\d+), (\d+)\)/.exec(said);
+    const shown = Number(/01-gravity: (-?[\d.]+) σ/.exec(said)?.[1]);
+    const stored = residualOf('01-gravity', name, x, y);
+    assert.ok(Math.abs(shown - stored) <= 1 / 64 + 0.0051, `${said}, but the EXR of 01-gravity holds ${stored}`);
+  }
+  await page.mouse.move(2, 2);
+  const drawn = () => page.$eval('.panels canvas', (canvas) => canvas.toDataURL());
+  await page.click('.toolbar button:text-is("Fit")');
+  await page.waitForTimeout(200);
+  const before = await drawn();
+  await page.click('text=Whole');
+  await page.waitForTimeout(200);
+  assert.notEqual(await drawn(), before);
+  await page.click('.toolbar button:text-is("Fit")');
+  await page.waitForTimeout(200);
+  assert.equal(await drawn(), before, 'Fit does not fit after Whole');
+}
+
 /** What a click makes the page save, as bytes. */
 async function saved(page, control) {
   const [download] = await Promise.all([page.waitForEvent('download'), control.click()]);
@@ -282,6 +310,7 @@ async function retold() {
   near(number(await told('falls'), 'χ'), steps[0].chi_fit);
   near(number(await told('falls'), '→'), steps[1].chi_fit);
   await page.waitForSelector('.panel:nth-child(4) canvas');  // both residuals side by side
+  await bothStepsAreRead(page);
   await pointIsShown(page);
   await page.click('text=blink');
   await page.click('text=residuals of both steps');

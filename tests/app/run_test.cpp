@@ -221,6 +221,22 @@ TEST_F(FittedRun, OnlyWhatStandsIsTakenBack) {
   const Result other = hookeye("add run swelling --take-back");
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.err, HasSubstr("it has gravity: take back one of these"));
+  const Result again = hookeye("add run gravity");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("the newest step has this effect already"));
+}
+
+/// A model that lacks something leaves some of it in the rest photos: that is no higher floor.
+TEST_F(FittedRun, TheFloorIsTheLowestThatAnyStepHasShown) {
+  ASSERT_EQ(hookeye("diagnose run").status, 0);
+  const double base = timeline().at("floor").at("chi");
+  ASSERT_EQ(hookeye("add run gravity").status, 0);
+  ASSERT_EQ(hookeye("diagnose run").status, 0);
+  const double lowest = timeline().at("floor").at("chi");
+  EXPECT_LT(lowest, base);
+  ASSERT_EQ(hookeye("add run gravity --take-back").status, 0);
+  ASSERT_EQ(hookeye("diagnose run").status, 0);
+  EXPECT_EQ(timeline().at("floor").at("chi"), lowest);
 }
 
 }  // namespace

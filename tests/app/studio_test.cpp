@@ -111,6 +111,9 @@ TEST_F(Cli, TheStudioSaysWhatIsWrongWithARequest) {
   const auto other = studio.post("add", R"({"effect": "gravity", "take_back": true})");
   EXPECT_EQ(other.status, 409);
   EXPECT_THAT(other.body, HasSubstr("it has swelling"));
+  const auto again = studio.post("add", R"({"effect": "swelling"})");
+  EXPECT_EQ(again.status, 409);
+  EXPECT_THAT(again.body, HasSubstr("the newest step has this effect already"));
   EXPECT_EQ(studio.post("add", R"({"effect": "gravvity"})").status, 400);
   EXPECT_EQ(studio.post("add", "{").status, 400);
   EXPECT_EQ(json::parse(studio.get("job").body).at("state"), "idle");

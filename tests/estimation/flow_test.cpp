@@ -95,6 +95,30 @@ TEST(Flow, WhiteNoiseIsWhite) {
   EXPECT_LT(refused, 10);
 }
 
+/// The picture bent: moved along x by an amount that changes sign from left to right.
+Image bent(double amount) {
+  Image image = speckle(0, 0);
+  for (int x = 0; x < kWidth; ++x) {
+    const Image moved = speckle(amount * std::cos(3.14159 * x / kWidth), 0);
+    for (int y = 0; y < kHeight; ++y) image.at(x, y) = moved.at(x, y);
+  }
+  return image;
+}
+
+/// Cells that move against one another by one number tell as little as cells that move together,
+/// and where the correlation of a ring of cells crosses zero is no matter of luck.
+TEST(Flow, ABendIsOneObservationToo) {
+  const Image model = speckle(0, 0);
+  const auto effective = [&](double amount) {
+    return flow_statistics(
+        residual_flow(model, over_noise(model, bent(amount), 0.01f), constant(0.01f)));
+  };
+  const FlowStatistics s = effective(0.3);
+  EXPECT_LT(s.effective, 0.1 * s.count);
+  for (double amount : {0.2999, 0.3001, 0.302})
+    EXPECT_NEAR(effective(amount).effective, s.effective, 0.02 * s.effective) << amount;
+}
+
 TEST(Flow, OneMotionEverywhereIsOneObservation) {
   const Image model = speckle(0, 0), photo = speckle(0.3, 0.3);
   const FlowStatistics s =

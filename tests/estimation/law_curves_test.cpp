@@ -33,6 +33,19 @@ TEST(LawCurves, NeoHookesPullIsTheFormulaAndItsBandTheModulus) {
   EXPECT_GT(curves[0]["visited"][1], 1.05);
 }
 
+/// Where a finer mesh would make the modulus larger, the band reaches there as its interval does,
+/// and on that side alone.
+TEST(LawCurves, BandsReachForTheMeshAsIntervalsDo) {
+  Fitted fitted = as_told();
+  const auto before = law_curves(*fitted.form.scene, fitted);
+  fitted.mesh_reach = VectorXd::Constant(fitted.p.size(), 0.02 * fitted.p[0]);
+  const auto curves = law_curves(*fitted.form.scene, fitted);
+  const double value = curves[0]["value"][40];
+  EXPECT_EQ(curves[0]["low"][40], before[0]["low"][40]);
+  const double more = curves[0]["high"][40].get<double>() - before[0]["high"][40].get<double>();
+  EXPECT_NEAR(more, 0.02 * value, 1e-4 * value);
+}
+
 TEST(LawCurves, FibresPullOtherwiseAlongThem) {
   Fitted fitted = as_told();
   const Model model = fitted.form.realise(fitted.p);

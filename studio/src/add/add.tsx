@@ -1,7 +1,7 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
 import {useState} from 'preact/hooks';
 import {figure, duration, forShell, listed, logEvidence, spaced} from '../format';
-import {chosenStep, effectsOf, gateOf, isNamed, job, other, otherStep, run, step, stepIndex, timelineOf, wasTested} from '../state';
+import {effectsOf, gateOf, isNamed, job, other, otherStep, run, showStep, step, stepIndex, timelineOf, wasTested} from '../state';
 import {Ask} from '../facts/glossary';
 import {Share, Wide} from '../widgets';
 import {tooLittle} from '../story';
@@ -43,7 +43,6 @@ export function JobLine() {
 }
 
 function Steps() {
-  const newest = run.value.steps.length - 1;
   const {steps} = run.value.timeline;
   const added = new Set(steps[steps.length - 1]?.effects);
   return (
@@ -57,7 +56,7 @@ function Steps() {
               <td>{entry.folder}{t?.dropped?.length ? `, without ${listed(t.dropped)}` : ''}</td>
               <td>{figure(t?.chi_fit, 4)}</td><td>{figure(t?.chi_validate, 4)}</td><td>{figure(t?.rms_px_fit)}</td>
               <td><input type="radio" name="show" aria-label={`show ${entry.folder}`} checked={i === stepIndex.value}
-                onChange={() => (chosenStep.value = i === newest ? -1 : i)} /></td>
+                onChange={() => showStep(i)} /></td>
               <td><input type="radio" name="against" aria-label={`compare with ${entry.folder}`} checked={i === otherStep.value}
                 onClick={() => (otherStep.value = otherStep.value === i ? -1 : i)} onChange={() => undefined} /></td>
               <td>{run.value.live && t?.added && added.has(t.added) && (
@@ -116,11 +115,13 @@ export function Add() {
         <h3>Add an effect to {newest?.folder ?? 'the newest step'}</h3>
         {!run.value.live && <p class="note">This is a report. To add with one click, run <code>hookeye studio {forShell(run.value.run)}</code>; or copy a command.</p>}
         {offered.length === 0 && <p class="empty">The newest step has not been diagnosed yet.</p>}
+        {standsOut && <p class="note">Named only above log evidence {figure(gateOf(newest))}{
+          offered.some((e) => !isNamed(e, newest)) && '; what is grey does not stand out'}<Ask word="gate" />.</p>}
         {offered.length > 0 && !standsOut && <p>Nothing stands out any more: {(offered[0].evidence ?? 0) < gateOf(newest)
           ? 'chance alone would do as well as any of these' : tooLittle}.</p>}
         <ul class="offers">
           {offered.map((e) => (
-            <li key={e.effect}>
+            <li key={e.effect} class={isNamed(e, newest) ? '' : 'below'}>
               <span class="name">{spaced(e.effect)}</span>
               <Share of={e.explains} />
               <span class="value">evidence {logEvidence(e.evidence)}</span>

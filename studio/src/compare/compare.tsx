@@ -30,15 +30,18 @@ const pairs: Record<string, [Kind, Kind]> = {
 };
 const pair = signal('photo | model');
 
-function readout(shown: Shown | null): string {
+/** Values of the shown step, and the residual of the one it is compared with. */
+function readout(shown: Shown | null, second: Shown | null): string {
   const pixel = cursor.value;
   if (!shown || !pixel) return 'Point at a pixel, or move the cross with the arrow keys.';
   const v = valuesAt(shown.frames, pixel.x, pixel.y);
   if (Number.isNaN(v.residual))
     return `(${pixel.x}, ${pixel.y})  photo ${figure(v.photo, 4)}  ·  this pixel does not count`;
+  const sigmas = (r: number): string => (Number.isNaN(r) ? 'does not count' : `${r.toFixed(2).replace('-', '−')} σ`);
+  const beside = second && other.value
+    ? `  ·  ${other.value.folder}: ${sigmas(valuesAt(second.frames, pixel.x, pixel.y).residual)}` : '';
   return `(${pixel.x}, ${pixel.y})  photo ${figure(v.photo, 4)}  model ${figure(v.model, 4)}  ` +
-    `residual ${figure(v.model - v.photo, 3)} = ${v.residual.toFixed(2).replace('-', '−')} σ  ` +
-    `(σ ${figure(v.sigma, 3)})`;
+    `residual ${figure(v.model - v.photo, 3)} = ${sigmas(v.residual)}  (σ ${figure(v.sigma, 3)})${beside}`;
 }
 
 /** Photo, model, residual and noise of all pixels that count around the cross, or of all. */
@@ -54,8 +57,14 @@ function pixelCsv(shown: Shown): void {
   saveCsv(`${name}.csv`, rows);
 }
 
+/** What counts, in the middle of every panel. */
+function fitAll(shown: Shown | null): void {
+  focus.value = shown ? counted(shown.frames) : null;
+  place.value = {scale: 0, x: 0, y: 0};
+}
+
 /** Arrow keys move the cross, + and - zoom, 0 fits. */
-function keys(event: KeyboardEvent, entry: PhotoEntry, area: HTMLElement): void {
+function keys(event: KeyboardEvent, entry: PhotoEntry, shown: Shown | null, area: HTMLElement): void {
   const steps: Record<string, [number, number]> = {
     ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1],
   };
@@ -72,7 +81,7 @@ function keys(event: KeyboardEvent, entry: PhotoEntry, area: HTMLElement): void 
     if (cursor.value && event.key === '+' && place.value.scale === 0)
       place.value = {scale: resolved(size, entry).scale, ...cursor.value};
     zoom(size, entry, event.key === '+' ? 1.5 : 1 / 1.5, size.width / 2, size.height / 2);
-  } else if (event.key === '0') place.value = {scale: 0, x: 0, y: 0};
+  } else if (event.key === '0') fitAll(shown);
   else return;
   event.preventDefault();
 }
@@ -94,7 +103,7 @@ function Tools(props: {entry: PhotoEntry; shown: Shown | null; area: RefObject<H
       )}
       {apart && <label><input type="checkbox" checked={showArrows.value}
         onChange={(e) => (showArrows.value = e.currentTarget.checked)} /> arrows</label>}
-      <button onClick={() => (place.value = {scale: 0, x: 0, y: 0})}>Fit</button>
+      <button onClick={() => fitAll(shown)}>Fit</button>
       <button onClick={() => {
         focus.value = null;
         place.value = {scale: 0, x: 0, y: 0};
@@ -102,7 +111,7 @@ function Tools(props: {entry: PhotoEntry; shown: Shown | null; area: RefObject<H
       <button onClick={() => (place.value = {scale: 1, x: entry.width / 2, y: entry.height / 2})}>1:1</button>
       <span class="push" />
       <button onClick={() => shown && pixelCsv(shown)}>CSV</button>
-      <button onClick={() => savePictures(`${entry.name}.png`, [...area.current!.querySelectorAll('.panel')].map((panel) => (
+      <button onClick={() => savePictures(`${entry.name}${shown?.arrows.length && apart && showArrows.value ? `-arrows-${figure(shown.gain)}-times-as-long` : ''}.png`, [...area.current!.querySelectorAll('.panel')].map((panel) => (
         {canvas: panel.querySelector('canvas')!, says: panel.querySelector('figcaption')!.textContent ?? ''})), [residualRamp])}>PNG</button>
     </Toolbar>
   );
@@ -191,12 +200,12 @@ export function Compare() {
       <PhotoList />
       <div class="stage">
         <Tools entry={entry} shown={shown} area={area} />
-        <div class="panels" ref={area} tabIndex={0} role="group" onKeyDown={(event) => keys(event, entry, area.current!)}
+        <div class="panels" ref={area} tabIndex={0} role="group" onKeyDown={(event) => keys(event, entry, shown, area.current!)}
              aria-label="Pictures: arrow keys move the cross, + and - zoom, 0 fits">
           {layout.value === 'side by side' ? <SideBySide entry={entry} shown={shown} second={other.value ? second : null} />
             : <Alternating entry={entry} shown={shown} second={second} />}
         </div>
-        <p class="readout" role="status" id="readout">{readout(shown)}</p>
+        <p class="readout" role="status" id="readout">{readout(shown, second)}</p>
         <div class="legends">
           <Legend ramp={residualRamp} /><Ask word="sigma" />
           <ArrowLegend shown={shown} second={other.value ? second : null} />

@@ -26,6 +26,7 @@ export function Ask(props: {word: Word}) {
       event.stopPropagation();
       wanted.value = props.word;
       verb.value = 'facts';
+      document.getElementById('tab-facts')?.focus();
     }}>?</button>
   );
 }

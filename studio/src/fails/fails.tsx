@@ -21,10 +21,10 @@ const chosenExample = signal('');
 
 /** Strain has a sign, the others do not. */
 function rampOf(q: Quantity, most: number): Ramp {
-  const title = `${quantityNames[q]} [${unitOf(q)}]`;
+  const title = q === 'strain' ? 'strain: largest principal one of Green’s, no unit' : `${quantityNames[q]} [${unitOf(q)}]`;
   return q === 'strain'
-    ? {title, ends: [figure(-most), '0', figure(most)], scale: diverging, from: -1}
-    : {title, ends: ['0', '', figure(most)], scale: sequential, from: 0};
+    ? {title, ends: [`${figure(-most)} or less`, '0', `${figure(most)} or more`], scale: diverging, from: -1}
+    : {title, ends: ['0', '', `${figure(most)} or more`], scale: sequential, from: 0};
 }
 
 function lookOf(s: Surface, q: Quantity, most: number, ghost: boolean): Look {

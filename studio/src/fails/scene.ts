@@ -31,10 +31,11 @@ export class BodyScene {
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    const sun = new DirectionalLight(0xffffff, 1.6);
+    const sun = new DirectionalLight(0xffffff, 0.3);
     sun.position.set(-1, -2, 3);
-    this.camera.add(new DirectionalLight(0xffffff, 0.8));
-    this.scene.add(new AmbientLight(0xffffff, 1.3), sun, this.group, this.camera, this.marker);
+    this.camera.add(new DirectionalLight(0xffffff, 0.3));
+    // Colours are read off a scale: light may change them by a tenth, enough to see the form by.
+    this.scene.add(new AmbientLight(0xffffff, 2.75), sun, this.group, this.camera, this.marker);
     this.marker.visible = false;
     this.marker.renderOrder = 2;
     this.camera.up.set(0, 0, 1);

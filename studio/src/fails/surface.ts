@@ -44,7 +44,7 @@ export const quantities = keysOf(quantityNames);
 
 export function unitOf(q: Quantity): string {
   if (q === 'residual') return 'σ of noise';
-  if (q === 'strain') return 'the principal Green strain of largest size';
+  if (q === 'strain') return '1';
   return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
 }
 

@@ -51,6 +51,7 @@ export function Chart(props: {
     const plot = new uPlot(
       {
         ...size(),
+        pxAlign: 0,  // whole pixels would give smooth curves corners
         scales: {x: {time: false, range: names ? [-0.3, names.length - 0.7] : undefined}, y: {distr: props.log ? 3 : 1}},
         axes: [
           {...axis, label: props.xLabel, labelSize: 22, ...(names && {

@@ -2,7 +2,7 @@
 import {useMemo} from 'preact/hooks';
 import {saveCsv} from '../download';
 import {around, figure} from '../format';
-import {floor, other, run, step, timelineOf} from '../state';
+import {floor, other, run, step, timelineOf, units} from '../state';
 import {Wide} from '../widgets';
 import {Chart, type Line} from './chart';
 import type {EnergyCurve, ParameterValue, StepEntry} from '../document';
@@ -63,7 +63,7 @@ function Energy(props: {curve: EnergyCurve}) {
   return <>
     <Chart title={`Energy of ${curve.name}`} file={`energy-${curve.name}`}
            says={`Energy of ${curve.name} over ${axis}, with its 95 % band`} x={curve.stretch} lines={lines}
-           bands={[[1, 3]]} xLabel={axis + other} yLabel={`${curve.name} [${curve.unit}]`} visited={curve.visited} />
+           bands={[[1, 3]]} xLabel={axis + other} yLabel={`energy density [${curve.unit}]`} visited={curve.visited} />
     {curve.visited && <p class="note">{axis} visited (shaded): {figure(curve.visited[0])} to {figure(curve.visited[1])}
       {curve.beyond ? `; beyond the control points in ${curve.beyond} of ${curve.elements} elements` : ''}</p>}
   </>;
@@ -125,16 +125,18 @@ export function Falls() {
 function Measured(props: {of: StepEntry | undefined}) {
   const all = props.of?.metrics?.measured ?? [];
   if (!all.length) return null;
+  const {length, force} = units.value;
+  const unit = (kind: string): string => (kind === 'force_on' ? force : kind === 'moment_on' ? `${force} ${length}` : length);
   const three = (v: number[]): string => v.map((c) => figure(c)).join(', ');
   return (
     <Wide label="Measured forces and positions">
       <thead><tr><th>measured <button class="quiet" onClick={() => saveCsv('measured.csv', [
-        ['example', 'kind', 'region', 'sigma', 'measured x', 'y', 'z', 'model x', 'y', 'z'],
-        ...all.map((m) => [m.example, m.kind, m.region, m.sigma, ...m.measured, ...m.predicted])])}>CSV</button></th><th>value</th><th>model</th><th>over σ</th></tr></thead>
+        ['example', 'kind', 'region', 'unit', 'sigma', ...['measured', 'model'].flatMap((of) => ['x', 'y', 'z'].map((axis) => `${of}_${axis}`))],
+        ...all.map((m) => [m.example, m.kind, m.region, unit(m.kind), m.sigma, ...m.measured, ...m.predicted])])}>CSV</button></th><th>value</th><th>model</th><th>unit</th><th>over σ</th></tr></thead>
       <tbody>
         {all.map((m, i) => (
           <tr key={i}><td>{m.example}: {m.kind.replace('_', ' ')} {m.region}</td><td>{three(m.measured)}</td>
-            <td>{three(m.predicted)}</td><td>{three(m.over_sigma)}</td></tr>
+            <td>{three(m.predicted)}</td><td>{unit(m.kind)}</td><td>{three(m.over_sigma)}</td></tr>
         ))}
       </tbody>
     </Wide>

@@ -28,7 +28,7 @@ function Cell(props: {a: EffectScore; b: EffectScore; row: number; column: numbe
 
 export function Confusion(props: {effects: EffectScore[]; strong: string}) {
   const ref = useRef<SVGSVGElement>(null);
-  const list = together(props.effects.slice(0, 12));
+  const list = together(props.effects.filter((e, i) => i < 12 || e.named));
   const n = list.length;
   if (n < 2) return null;
   return (

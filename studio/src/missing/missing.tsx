@@ -54,9 +54,14 @@ function Row(props: {effect: EffectScore; pinned: boolean; named: boolean; tried
   const choose = (): void => {
     chosenEffect.value = e.effect;
   };
+  const clicked = (): void => {
+    choose();
+    // On a phone what is told of it stands below the whole table.
+    if (matchMedia('(max-width: 900px)').matches) document.querySelector('.detail')?.scrollIntoView();
+  };
   return (
     <tr class={!wasTested(e) ? 'below untested' : props.named ? '' : 'below'} aria-selected={props.pinned}
-        onMouseEnter={() => (previewed.value = e.effect)} onClick={choose}>
+        onMouseEnter={() => (previewed.value = e.effect)} onClick={clicked}>
       <td><button class="link" onFocus={choose}>{spaced(e.effect)}</button></td>
       {wasTested(e) ? <>
         <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
