@@ -19,8 +19,8 @@ export function saveCsv(name: string, rows: unknown[][]): void {
 export function saveCanvas(name: string, canvas: HTMLCanvasElement): void {
   canvas.toBlob((blob) => blob && save(name, blob), 'image/png');
 }
-/** An SVG figure as PNG, with the colours it has on the page. */
-export function saveSvg(name: string, svg: SVGSVGElement): void {
+/** An SVG figure as pixels, with the colours it has on the page. */
+export async function drawnSvg(svg: SVGSVGElement): Promise<HTMLCanvasElement> {
   const copy = svg.cloneNode(true) as SVGSVGElement;
   const from = [svg, ...svg.querySelectorAll('*')];
   const to = [copy, ...copy.querySelectorAll('*')];
@@ -33,17 +33,16 @@ export function saveSvg(name: string, svg: SVGSVGElement): void {
   copy.setAttribute('width', String(box.width));
   copy.setAttribute('height', String(box.height));
   const image = new Image();
-  image.onload = () => {
-    const canvas = document.createElement('canvas');
-    canvas.width = 2 * box.width;
-    canvas.height = 2 * box.height;
-    const context = canvas.getContext('2d')!;
-    context.fillStyle = getComputedStyle(document.body).backgroundColor;
-    context.fillRect(0, 0, canvas.width, canvas.height);
-    context.drawImage(image, 0, 0, canvas.width, canvas.height);
-    saveCanvas(name, canvas);
-  };
   image.src =
     'data:image/svg+xml;charset=utf-8,' +
     encodeURIComponent(new XMLSerializer().serializeToString(copy));
+  await image.decode();
+  const canvas = document.createElement('canvas');
+  canvas.width = 2 * box.width;
+  canvas.height = 2 * box.height;
+  const context = canvas.getContext('2d')!;
+  context.fillStyle = getComputedStyle(document.body).backgroundColor;
+  context.fillRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas;
 }

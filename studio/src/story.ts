@@ -41,7 +41,7 @@ function failed(base: StepEntry, lengthPerPx: number): Told {
   const there = worst && figuresOf(base, worst);
   const length = there && Number.isFinite(lengthPerPx)
     ? ` (${figure(there.rms_px * lengthPerPx, 2)} ${units.value.length})` : '';
-  const where = there ? `, most in ${worst.example} by ${worst.camera}: surface off by ${figure(there.rms_px, 2)} px${length}` : '';
+  const where = there ? `, most in ${worst.example} by ${worst.camera}: surface off there by ${figure(there.rms_px, 2)} px${length}` : '';
   return {
     headline: `${figure(over, 2)} × noise floor`,
     sentence: `is the misfit of the base model (χ ${figure(told.chi_fit)}, floor ${figure(floor.value.chi)})${where}`,
@@ -156,7 +156,7 @@ function fell(base: StepEntry, newest: StepEntry): Told {
     ? `; held-out photos ${figure(a.chi_validate)} → ${figure(b.chi_validate)}` : '';
   return {
     headline: `χ ${figure(a.chi_fit)} → ${figure(b.chi_fit)}`,
-    sentence: `${figure(b.chi_fit / floor.value.chi)} times the floor${heldOut}; surface off by ${figure(a.rms_px_fit, 2)} → ${figure(b.rms_px_fit, 2)} px`,
+    sentence: `${figure(b.chi_fit / floor.value.chi)} times the floor${heldOut}; surface off in all fitted photos by ${figure(a.rms_px_fit, 2)} → ${figure(b.rms_px_fit, 2)} px`,
   };
 }
 

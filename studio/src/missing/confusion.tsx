@@ -2,8 +2,9 @@
 import {useRef} from 'preact/hooks';
 import {css, notCounted, sequential, type Ramp} from '../colours';
 import type {EffectScore} from '../document';
-import {saveCsv, saveSvg} from '../download';
+import {drawnSvg, saveCsv} from '../download';
 import {spaced} from '../format';
+import {savePictures} from '../pictures';
 import {Legend} from '../widgets';
 import {cosine, leastCosine, together} from './order';
 
@@ -11,6 +12,7 @@ const cosineRamp: Ramp = {
   title: 'cosine between the changes of the pictures',
   ends: [`${leastCosine}`, '', '1: cannot be told apart'], scale: sequential, from: 0,
 };
+const title = 'What cannot be told apart sits together';
 const size = 20;
 const left = 200;
 const top = 16;
@@ -33,8 +35,9 @@ export function Confusion(props: {effects: EffectScore[]; strong: string}) {
   if (n < 2) return null;
   return (
     <figure class="confusion">
-      <figcaption>What cannot be told apart sits together
-        <button class="quiet" onClick={() => ref.current && saveSvg('confusion.png', ref.current)}>PNG</button>
+      <figcaption>{title}
+        <button class="quiet" onClick={() => ref.current && void drawnSvg(ref.current).then((canvas) =>
+          savePictures('confusion.png', [{canvas, says: title}], [cosineRamp]))}>PNG</button>
         <button class="quiet" onClick={() => saveCsv('confusion.csv',
           [['', ...list.map((e) => e.effect)], ...list.map((a) => [a.effect, ...list.map((b) => cosine(a, b))])])}>CSV</button>
       </figcaption>

@@ -66,9 +66,9 @@ function Row(props: {effect: EffectScore; pinned: boolean; named: boolean; tried
       {wasTested(e) ? <>
         <td class="share"><Share of={e.explains} /> {percent(e.explains)}</td>
         <td>{logEvidence(e.evidence)}</td><td>{percent(e.weight)}</td>
-        {props.tried.length > 0 && <td>{own ? bothOf(own) : '–'}</td>}
+        {props.tried.length > 0 && <td class="wide tried">{own ? bothOf(own) : '–'}</td>}
         <td class="wide">{e.dof}</td>
-        <td class="wide">{taken.slice(0, 1).map(spaced).join(', ')}{taken.length > 1 && ` and ${taken.length - 1} more`}</td>
+        <td class="wide">{taken.slice(0, 1).map(spaced).join(', ')}{taken.length > 1 && ` +${taken.length - 1}`}</td>
       </> : <td colSpan={6}>not tested: {e.why_not}</td>}
     </tr>
   );
@@ -120,7 +120,7 @@ export function Missing() {
         <Wide label="Ranked effects">
           <thead><tr><th>effect <button class="quiet" onClick={() => rankingCsv(all, tried)}>CSV</button></th><th>would explain</th>
             <th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th>
-            {tried.length > 0 && <th>tried χ<Ask word="tried" /></th>}<th class="wide">dof<Ask word="dof" /></th>
+            {tried.length > 0 && <th class="wide">tried χ<Ask word="tried" /></th>}<th class="wide">dof<Ask word="dof" /></th>
             <th class="wide">easily taken for</th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
