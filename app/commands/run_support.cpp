@@ -97,6 +97,8 @@ void drop_verdict(Run& run) {
 std::filesystem::path record(Run& run, const Step& step, const std::string& command) {
   nlohmann::json entry = timeline_entry(step);
   entry["command"] = command;
+  std::error_code gone;  // a folder that was removed meanwhile has no name
+  entry["made_in"] = std::filesystem::current_path(gone).string();
   entry["made_by"] = versions();
   drop_verdict(run);
   return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {

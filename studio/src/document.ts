@@ -119,6 +119,8 @@ export interface TimelineStep {
   /** Those of them that were refitted to the end: their score less the winner's. */
   rivals?: {effect: string; score: number; chi_fit?: number; chi_validate?: number | null}[];
   command?: string;
+  /** The folder that it ran in. */
+  made_in?: string;
   made_by?: Record<string, string>;
 }
 export interface StepEntry {

@@ -7,10 +7,10 @@ import {Compare} from './compare/compare';
 import {Facts} from './facts/facts';
 import {Fails} from './fails/fails';
 import {Falls} from './falls/falls';
-import {figure} from './format';
 import {Missing} from './missing/missing';
 import {setLive} from './parts';
-import {chosenPhoto, floor, help, otherStep, run, showStep, step, stepIndex, theme, timelineOf, verb, verbs, type Verb} from './state';
+import {chosenPhoto, help, otherStep, run, showStep, stepIndex, theme, verb, verbs, type Verb} from './state';
+import {provisional} from './story';
 import {Tabs} from './tabs';
 import './style.css';
 
@@ -20,15 +20,12 @@ const views: Record<Verb, () => preact.JSX.Element> = {
 
 function Verdict() {
   const {verdict, sentence} = run.value.timeline;
-  const now = timelineOf(step.value);
-  const over = now ? now.chi_fit / floor.value.chi : NaN;
   const judged = sentence !== undefined;
+  const now = provisional();
   return (
     <p class="verdict">
-      <b class={judged ? verdict : 'open'}>{judged ? verdict : 'not judged yet'}</b>{' '}
-      {judged ? sentence : now
-        ? `χ ${figure(now.chi_fit)} on the fitted photos, ${figure(over)} times the floor`
-        : 'no step is finished'}
+      <b class={judged ? verdict : 'open'}>{judged ? verdict : now.headline}</b>{' '}
+      {judged ? sentence : now.sentence}
     </p>
   );
 }

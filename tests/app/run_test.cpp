@@ -190,6 +190,7 @@ TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
   EXPECT_THAT(raced, Contains(added));
   EXPECT_EQ(chosen.at("rivals").at(0).at("effect"), added);
   EXPECT_EQ(chosen.at("rivals")[0].at("chi_fit"), chosen.at("chi_fit"));
+  EXPECT_EQ(chosen.at("made_in"), fs::canonical(folder_).string());
   EXPECT_THAT(found.out, HasSubstr("why " + added + ": what each of "));
   for (const char* key : {"verdict", "sentence", "missing", "tie"})
     EXPECT_TRUE(judged.contains(key)) << key;

@@ -73,7 +73,7 @@ export function Facts() {
         <Glossary />
         <h3>What made it</h3>
         <Wide label="What made it"><tbody>
-          <tr><th scope="row">Command of step {stepIndex.value}</th><td><code>{told?.command ?? 'not recorded'}</code></td></tr>
+          <tr><th scope="row">Command of step {stepIndex.value}</th><td><code>{told?.command ?? 'not recorded'}</code>{told?.made_in && <> in <code>{told.made_in}</code></>}</td></tr>
           <tr><th scope="row">Versions</th><td>{Object.entries(told?.made_by ?? {hookeye: run.value.version}).map(([k, v]) => `${k} ${v}`).join(', ')}</td></tr>
           <tr><th scope="row">This page</th><td>hookeye {run.value.version}</td></tr>
         </tbody></Wide>
