@@ -107,7 +107,7 @@ function CopyCommand(props: {text: string}) {
 export function Add() {
   // An effect is always added to the newest step, whichever is looked at.
   const newest = run.value.steps[run.value.steps.length - 1];
-  const offered = effectsOf(newest).filter(wasTested).slice(0, 10);
+  const offered = effectsOf(newest).filter(wasTested).filter((e, i) => i < 10 || isNamed(e, newest));
   const standsOut = offered.some((e) => isNamed(e, newest));
   return (
     <div class="add columns">

@@ -107,6 +107,7 @@ function Tools(props: {entry: PhotoEntry; shown: Shown | null; area: RefObject<H
       <button onClick={() => {
         focus.value = null;
         place.value = {scale: 0, x: 0, y: 0};
+        area.current?.focus();  // where 0 fits again
       }}>Whole</button>
       <button onClick={() => (place.value = {scale: 1, x: entry.width / 2, y: entry.height / 2})}>1:1</button>
       <span class="push" />

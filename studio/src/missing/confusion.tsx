@@ -37,7 +37,7 @@ export function Confusion(props: {effects: EffectScore[]; strong: string}) {
     <figure class="confusion">
       <figcaption>{title}
         <button class="quiet" onClick={() => ref.current && void drawnSvg(ref.current).then((canvas) =>
-          savePictures('confusion.png', [{canvas, says: title}], [cosineRamp]))}>PNG</button>
+          savePictures('confusion.png', [{canvas, says: `${title} (grey: cosine below ${leastCosine})`}], [cosineRamp]))}>PNG</button>
         <button class="quiet" onClick={() => saveCsv('confusion.csv',
           [['', ...list.map((e) => e.effect)], ...list.map((a) => [a.effect, ...list.map((b) => cosine(a, b))])])}>CSV</button>
       </figcaption>

@@ -33,7 +33,7 @@ function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
           </tbody>
         </Wide>
       )}
-      <Removed effect={e.effect} />
+      {wasTested(e) && <Removed effect={e.effect} />}
     </section>
   );
 }

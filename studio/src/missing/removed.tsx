@@ -30,6 +30,13 @@ function scaleOf(cells: Cells, unit: number): number {
   return Math.max(1, ((there[Math.floor(0.9 * (there.length - 1))] ?? 1) - 1) * unit);
 }
 
+/** Whether nothing in a photo would change. */
+function unchanged(cells: Cells): boolean {
+  const count = cells.columns * cells.rows;
+  const bytes = fromBase64(cells.bytes);
+  return bytes.subarray(count).every((code, i) => bytes[i] === 0 || code === 128);
+}
+
 type Layer = 'now' | 'removed';
 
 /** The value at a pixel; cells reach beyond the last ones. */
@@ -139,6 +146,7 @@ export function Removed(props: {effect: string}) {
                 says={`${says}, on the body in ${entry.example}`} />
       </div>
       <div class="legends">{ramps.map((ramp) => <Legend key={ramp.title} ramp={ramp} />)}</div>
+      {unchanged(prediction.photos[entry.name]) && <p class="note">Nothing would change in this photo: choose another one above.</p>}
       <p class="note">Both scales are the same: nine tenths of the residual there is lie within.</p>
     </figure>
   );
