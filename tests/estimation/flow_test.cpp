@@ -119,6 +119,18 @@ TEST(Flow, ABendIsOneObservationToo) {
     EXPECT_NEAR(effective(amount).effective, s.effective, 0.02 * s.effective) << amount;
 }
 
+/// Stripes of cells that move against one another: the mean over a ring of neighbours is negative,
+/// yet one number moves them all.
+TEST(Flow, StripesAreOneObservationToo) {
+  const Image model = speckle(0, 0), there = speckle(0.3, 0), back = speckle(-0.3, 0);
+  Image photo = model;
+  for (int x = 0; x < kWidth; ++x)
+    for (int y = 0; y < kHeight; ++y) photo.at(x, y) = (x / 16 % 2 ? there : back).at(x, y);
+  const FlowStatistics s =
+      flow_statistics(residual_flow(model, over_noise(model, photo, 0.01f), constant(0.01f)));
+  EXPECT_LT(s.effective, 0.1 * s.count);
+}
+
 TEST(Flow, OneMotionEverywhereIsOneObservation) {
   const Image model = speckle(0, 0), photo = speckle(0.3, 0.3);
   const FlowStatistics s =
