@@ -1,6 +1,8 @@
 // Commands on a run: what they say, what they write into run.json, what they make of a broken one.
 #include <gmock/gmock.h>
 
+#include <fstream>
+
 #include "app/fitted_run.h"
 
 namespace hookeye::test {
@@ -198,6 +200,19 @@ TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
   ASSERT_EQ(hookeye("discover capture -o run").status, 0);
   EXPECT_EQ(timeline().at("steps").size(), judged.at("steps").size());
   EXPECT_EQ(timeline().at("verdict"), judged.at("verdict"));
+}
+
+/// A diagnosis widens the bands of the energy and leaves what only the fit knew.
+TEST_F(FittedRun, DiagnoseKeepsWhatTheFitTold) {
+  const auto file = folder_ / "run/steps/00-base/metrics.json";
+  json before = json::parse(std::ifstream(file));
+  before["additive"] = {{"refinements", {1, 2}}};
+  write("run/steps/00-base/metrics.json", before.dump(1));
+  ASSERT_EQ(hookeye("diagnose run").status, 0);
+  json after = json::parse(std::ifstream(file));
+  EXPECT_NE(after.at("energy"), before.at("energy"));
+  after["energy"] = before["energy"];
+  EXPECT_EQ(after, before);
 }
 
 TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
