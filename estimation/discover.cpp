@@ -215,33 +215,56 @@ bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own)
   return false;
 }
 
+/// `fitted` without its ingredient `i`, fitted again from where it stands.
+std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
+                                  const FitOptions& options) {
+  Eigen::Index offset = 0;
+  for (size_t k = 0; k < i; ++k)
+    offset += static_cast<Eigen::Index>(fitted.form.ingredients[k]->parameters().size());
+  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
+  ModelForm form = fitted.form;
+  form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
+  VectorXd p(fitted.p.size() - n);
+  p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  FitOptions warm = options;
+  warm.coarse_to_fine = false;
+  auto result = fit(workspace, form, p, warm);
+  if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
+  return {};
+}
+
 /// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
                               size_t first_effect, const DiscoverOptions& options) {
   const double full = refit_score(current, current, floor);
   int offset = 0;
   for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
-    const int n = static_cast<int>(current.form.ingredients[i]->parameters().size());
+    const auto own = current.form.ingredients[i]->parameters();
     const Effect* effect = find_effect(current.form.ingredients[i]->name());
     const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
-    if (i >= first_effect && !mesh &&
-        !stands(current, offset, current.form.ingredients[i]->parameters())) {
-      ModelForm form = current.form;
-      form.ingredients.erase(form.ingredients.begin() + i);
-      VectorXd p(current.p.size() - n);
-      p << current.p.head(offset), current.p.tail(current.p.size() - offset - n);
-      FitOptions warm = options.fit;
-      warm.coarse_to_fine = false;
-      auto result = fit(workspace, form, p, warm);
-      if (auto* fitted = std::get_if<Fitted>(&result)) {
-        const double score = refit_score(*fitted, current, floor);
+    if (i >= first_effect && !mesh && !stands(current, offset, own))
+      if (auto lighter = fit_without(workspace, current, i, options.fit)) {
+        const double score = refit_score(*lighter, current, floor);
         if (score > full - kTie)
-          return Refit{current.form.ingredients[i]->name(), std::move(*fitted), score};
+          return Refit{current.form.ingredients[i]->name(), std::move(*lighter), score};
       }
-    }
-    offset += n;
+    offset += static_cast<int>(own.size());
   }
   return {};
+}
+
+/// Whether `rival`, which equalled the winner beside the effect `dropped`, equals it still now that
+/// the winner does without: as it is, which costs that effect's parameters, or without it too.
+bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,
+                       const std::string& dropped, const Floor& floor, const FitOptions& options) {
+  const double enough = refit_score(winner, winner, floor) - kTie;
+  if (refit_score(rival, winner, floor) > enough) return true;
+  for (size_t i = 0; i < rival.form.ingredients.size(); ++i)
+    if (rival.form.ingredients[i]->name() == dropped) {
+      const auto lighter = fit_without(workspace, rival, i, options);
+      return lighter && refit_score(*lighter, winner, floor) > enough;
+    }
+  return false;
 }
 
 std::string say(const Discovery& discovery, const std::string& why) {
@@ -303,19 +326,24 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     Step next;
     next.name = next.added = winner.effect;
     next.raced = std::move(raced);
+    std::vector<const Refit*> equals;
     for (const auto& rival : ranked) {
       const Evaluation& left = rival.fitted.evaluation;
       next.rivals.push_back(
           {rival.effect, rival.score - winner.score, left.chi(false), left.chi(true)});
-      if (&rival != &winner && rival.score > winner.score - kTie) {
-        if (out.tie.empty()) out.tie.push_back(winner.effect);
-        out.tie.push_back(rival.effect);
-      }
+      if (&rival != &winner && rival.score > winner.score - kTie) equals.push_back(&rival);
     }
     next.fitted = std::move(winner.fitted);
     if (next.fitted.form.ingredients.size() > base_ingredients + 1)
-      if (auto lighter = backward(workspace, next.fitted, out.floor, base_ingredients, options))
+      if (auto lighter = backward(workspace, next.fitted, out.floor, base_ingredients, options)) {
         next.dropped = {lighter->effect}, next.fitted = std::move(lighter->fitted);
+        std::erase_if(equals, [&](const Refit* rival) {
+          return !equals_after_swap(workspace, rival->fitted, next.fitted, lighter->effect,
+                                    out.floor, options.fit);
+        });
+      }
+    if (!equals.empty() && out.tie.empty()) out.tie.push_back(next.added);
+    for (const Refit* rival : equals) out.tie.push_back(rival->effect);
     out.steps.push_back(std::move(next));
   }
   std::string why;

@@ -1,9 +1,14 @@
 // The blind benchmark: draws recipes, photographs them, lets `hookeye discover` look, scores.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <chrono>
+#include <mutex>
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
@@ -21,6 +26,7 @@ struct Options {
   std::vector<std::string> effects;
   unsigned first = 1;
   int seeds = 3;
+  int jobs = 1;
   double size = 1.0;
   bool left_out = false;
 };
@@ -73,11 +79,12 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   if (!fs::exists(found)) {
     // discover works on the folder alone; the truth beside it is read below, after it has ended
     const int status = run(fmt::format(
-        "{0} discover --json {1} -o {2} {5} > {3}.part 2> {4} && mv {3}.part {3}",
+        "{0} discover --json {1} -o {2} --threads {6} {5} > {3}.part 2> {4} && mv {3}.part {3}",
         shell_quoted(options.hookeye), shell_quoted(capture), shell_quoted(folder / "run"),
         shell_quoted(found), shell_quoted(folder / "discover.log"),
         options.left_out ? fmt::format("--without {}", fmt::join(effects_of(effect), " --without "))
-                         : ""));
+                         : "",
+        std::max(1, tbb::info::default_concurrency() / options.jobs)));
     if (status != 0) {
       failed.status = fmt::format("discover {}", status);
       return failed;
@@ -91,6 +98,33 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
   return done;
 }
 
+/// Every effect with every seed, `jobs` at once; the tables in the folder grow with each.
+std::vector<Score> all(const Options& options) {
+  std::vector<Score> scores;
+  std::mutex finished;
+  const size_t effects = options.effects.size();
+  const size_t count = effects * static_cast<size_t>(options.seeds);
+  const auto look = [&](size_t i) {
+    const auto seed = options.first + static_cast<unsigned>(i / effects);
+    const Score s = one(options, options.effects[i % effects], seed);
+    const std::lock_guard lock(finished);
+    scores.push_back(s);
+    fmt::print("{} {}: {}, named {}, held out {:.2f} -> {:.2f}, floor {:.2f}\n", s.hidden, s.seed,
+               s.status, s.first, s.held_before, s.held_after, s.floor);
+    std::fflush(stdout);
+    write_text(fs::path(options.out) / "results.csv", csv(scores));
+    write_text(fs::path(options.out) / "confusion.svg", confusion_svg(scores));
+  };
+  // one queue that every job takes the next from: captures take minutes, and not the same
+  std::atomic<size_t> next{0};
+  tbb::task_arena(options.jobs).execute([&] {
+    tbb::parallel_for(0, options.jobs, [&](int) {
+      for (size_t i = next++; i < count; i = next++) look(i);
+    });
+  });
+  return scores;
+}
+
 int main_of(int argc, char** argv) {
   Options options;
   CLI::App app("Hidden effects drawn by seed: how often is the right one named?");
@@ -100,6 +134,9 @@ int main_of(int argc, char** argv) {
                  "Command that takes the pictures (docs/synth.md); default: our renderer");
   app.add_option("-n,--seeds", options.seeds, "Captures per effect");
   app.add_option("--first-seed", options.first, "Seed of the first of them");
+  app.add_option("-j,--jobs", options.jobs,
+                 "Captures looked at at once, which share the cores between them")
+      ->check(CLI::PositiveNumber);
   app.add_option("--size", options.size, "Times 1.5 to 3.5 px (rms): the size of what is hidden");
   app.add_flag("--left-out", options.left_out,
                "Leave what is hidden out of the catalogue: no other name may explain it");
@@ -112,17 +149,7 @@ int main_of(int argc, char** argv) {
     options.effects = {"none"};
     for (const Effect* effect : catalogue()) options.effects.push_back(effect->name());
   }
-  std::vector<Score> scores;
-  for (unsigned seed = options.first; seed < options.first + options.seeds; ++seed)
-    for (const std::string& effect : options.effects) {
-      scores.push_back(one(options, effect, seed));
-      const Score& s = scores.back();
-      fmt::print("{} {}: {}, named {}, held out {:.2f} -> {:.2f}, floor {:.2f}\n", s.hidden, s.seed,
-                 s.status, s.first, s.held_before, s.held_after, s.floor);
-      std::fflush(stdout);
-      write_text(fs::path(options.out) / "results.csv", csv(scores));
-      write_text(fs::path(options.out) / "confusion.svg", confusion_svg(scores));
-    }
+  const std::vector<Score> scores = all(options);
   fmt::print("\n{}", summary(scores));
   return 0;
 }
