@@ -8,76 +8,13 @@
 #include <map>
 #include <random>
 
+#include "estimation/candidates.h"
 #include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 
 namespace hookeye {
 
 namespace {
-
-struct Candidate {
-  const Effect* effect;
-  std::shared_ptr<const Ingredient> ingredient;
-  Hypothesis hypothesis;
-};
-
-bool already_in(const ModelForm& form, const std::string& name) {
-  for (const auto& ingredient : form.ingredients)
-    if (ingredient->name() == name) return true;
-  return false;
-}
-
-/// All candidates with their columns; effects that do not apply go straight to `out`.
-std::vector<Candidate> collect(const Fitted& fitted, const DiagnosisOptions& options,
-                               std::vector<EffectScore>& out) {
-  const Model model = fitted.form.realise(fitted.p);
-  std::vector<Candidate> all;
-  int column = fitted.form.size();
-  std::vector<const Effect*> tested = catalogue();
-  tested.insert(tested.end(), options.also.begin(), options.also.end());
-  for (const Effect* effect : tested) {
-    if (std::count(options.without.begin(), options.without.end(), effect->name())) continue;
-    std::string why_not;
-    if (already_in(fitted.form, effect->name())) why_not = "already in the model";
-    const auto candidates = why_not.empty() ? effect->candidates(model, &why_not)
-                                            : std::vector<std::shared_ptr<const Ingredient>>{};
-    if (candidates.empty()) {
-      EffectScore score;
-      score.effect = effect->name();
-      score.testable = false;
-      score.why_not = why_not.empty() ? "does not apply to this capture" : why_not;
-      out.push_back(std::move(score));
-      continue;
-    }
-    for (const auto& ingredient : candidates) {
-      const auto parameters = ingredient->parameters();
-      Candidate one{effect, ingredient, {}};
-      one.hypothesis.first = column;
-      one.hypothesis.count = static_cast<int>(parameters.size());
-      one.hypothesis.typical.resize(parameters.size());
-      for (size_t i = 0; i < parameters.size(); ++i)
-        one.hypothesis.typical[i] =
-            parameters[i].positive ? std::abs(parameters[i].value) : parameters[i].typical;
-      one.hypothesis.one_sided = parameters.size() == 1 && parameters[0].low >= parameters[0].value;
-      if (one.hypothesis.one_sided) one.hypothesis.most = parameters[0].high - parameters[0].value;
-      column += one.hypothesis.count;
-      all.push_back(std::move(one));
-    }
-  }
-  return all;
-}
-
-/// Evidence of every effect from its candidates' evidence.
-std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
-                                        const VectorXd& evidence) {
-  std::map<std::string, std::vector<double>> lists;
-  for (size_t i = 0; i < candidates.size(); ++i)
-    lists[candidates[i].effect->name()].push_back(evidence[i]);
-  std::map<std::string, double> out;
-  for (const auto& [name, list] : lists)
-    out[name] = log_mean_exp(Eigen::Map<const VectorXd>(list.data(), list.size()));
-  return out;
-}
 
 /// Largest evidence over the catalogue when nothing is missing, sorted: scores drawn as the floor's
 /// errors (their variance and their correlation from cell to cell, rest photos) would give them.
@@ -152,10 +89,9 @@ std::string where_seen(const Scene& scene, const Evaluation& evaluation, const V
     if (fall > 0.05 * total) cameras.push_back("'" + name + "'");
   const auto most = std::max_element(by_example.begin(), by_example.end(),
                                      [](auto& a, auto& b) { return a.second < b.second; });
-  const std::string who =
-      cameras.size() == by_camera.size() && cameras.size() > 1
-          ? cameras.size() == 2 ? "both cameras" : fmt::format("all {} cameras", cameras.size())
-          : fmt::format("{}", fmt::join(cameras, " and "));
+  std::string who = fmt::format("{}", fmt::join(cameras, " and "));
+  if (cameras.size() == by_camera.size() && cameras.size() > 1)
+    who = cameras.size() == 2 ? "both cameras" : fmt::format("all {} cameras", cameras.size());
   return fmt::format("; seen in {}, most in '{}'", who, most->first);
 }
 
@@ -245,41 +181,6 @@ void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagn
         fmt::join(moved, ", "));
 }
 
-/// Share of each effect's signature that the others can imitate.
-void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candidate>& candidates,
-                     const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores) {
-  const Eigen::MatrixXd H_aa_inverse =
-      base > 0 ? Eigen::MatrixXd(
-                     H.topLeftCorner(base, base).completeOrthogonalDecomposition().pseudoInverse())
-               : Eigen::MatrixXd(0, 0);
-  auto block = [&](const Hypothesis& a, const Hypothesis& b) -> Eigen::MatrixXd {
-    return H.block(a.first, b.first, a.count, b.count) -
-           H.block(0, a.first, base, a.count).transpose() * H_aa_inverse *
-               H.block(0, b.first, base, b.count);
-  };
-  for (auto& score : scores) {
-    if (!score.testable || score.evidence <= 0.0) continue;
-    const Hypothesis& mine = candidates[best.at(score.effect)].hypothesis;
-    VectorXd t = score.values;
-    const auto parameters = score.best->parameters();
-    for (int i = 0; i < t.size(); ++i) t[i] -= parameters[i].value;
-    const double length = t.dot(block(mine, mine) * t);
-    if (length <= 0.0) continue;
-    for (const auto& other : scores) {
-      if (!other.testable || other.effect == score.effect || other.evidence <= 0.0) continue;
-      const Hypothesis& theirs = candidates[best.at(other.effect)].hypothesis;
-      const VectorXd projection = block(theirs, mine) * t;
-      const double imitated =
-          projection.dot(block(theirs, theirs).completeOrthogonalDecomposition().solve(projection));
-      const double cosine = std::sqrt(std::clamp(imitated / length, 0.0, 1.0));
-      // A wrong cause at cosine 0.9 still removes 80 % of the removable error.
-      if (cosine > 0.9) score.confused_with.push_back({other.effect, cosine});
-    }
-    std::sort(score.confused_with.begin(), score.confused_with.end(),
-              [](auto& a, auto& b) { return a.cosine > b.cosine; });
-  }
-}
-
 void weigh(std::vector<EffectScore>& scores) {
   double largest = 0.0, sum = 0.0;
   for (const auto& score : scores)
@@ -324,7 +225,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   Diagnosis out;
   const Scene& scene = *fitted.form.scene;
   std::vector<EffectScore> idle;
-  const std::vector<Candidate> candidates = collect(fitted, options, idle);
+  const std::vector<Candidate> candidates = collect_candidates(fitted, options, idle);
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
   for (const auto& candidate : candidates) ingredients.push_back(candidate.ingredient);
   EvaluationOptions evaluation_options;

@@ -1,0 +1,34 @@
+// What the catalogue offers a fitted model: the candidates that a diagnosis scores.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimation/diagnosis.h"
+#include "estimation/evidence.h"
+
+namespace hookeye {
+
+/// One form of an effect (a direction, a place) with its columns of the normal equations.
+struct Candidate {
+  const Effect* effect;
+  std::shared_ptr<const Ingredient> ingredient;
+  Hypothesis hypothesis;
+};
+
+/// All candidates with their columns; effects that do not apply go straight to `idle`.
+std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisOptions& options,
+                                          std::vector<EffectScore>& idle);
+
+/// Evidence of every effect from its candidates' evidence: the mean over them.
+std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
+                                        const VectorXd& evidence);
+
+/// Share of each effect's signature that the others can imitate, beside the `base` first columns of
+/// H. `best`: each effect's candidate.
+void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candidate>& candidates,
+                     const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores);
+
+}  // namespace hookeye
