@@ -129,7 +129,7 @@ std::vector<Refinement> refinements(const ModelForm& form, const Fitted& fitted)
   const VisitedStrains visited = visited_strains(form, fitted, model);
   for (size_t a = 0; a < model.addends.size(); ++a) {
     const Addend& addend = model.addends[a];
-    if (addend.fixed || addend.second >= 0) continue;
+    if (addend.fixed || addend.second >= 0 || addend.at.size() >= kMostControlPoints) continue;
     const double low = visited.low[addend.first], high = visited.high[addend.first];
     if (!(high - low > 1e-6)) continue;
     for (double x : new_points(addend, low, high))

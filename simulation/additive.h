@@ -27,6 +27,9 @@ struct StrainComponent {
   bool shear() const { return kind == Kind::e12 || kind == Kind::e13 || kind == Kind::e23; }
 };
 
+/// At most this many control points along one component: evaluation needs no heap.
+inline constexpr int kMostControlPoints = 64;
+
 /// One function of one or two components. Its control values are second derivatives of the energy
 /// at the control points [stress], so that the gauge holds for any values:
 ///   one component   Psi'' is linear between the control points and constant beyond the outer
@@ -83,7 +86,7 @@ void add_addend(AdditiveModel& model, const std::string& name, std::vector<doubl
                 std::vector<double> at_second, const Eigen::VectorXd& stiffness);
 
 /// The same energy with a control point more at `x` (along the second component if `second`).
-/// Where there is one already, nothing changes.
+/// Where there is one already, or kMostControlPoints are, nothing changes.
 AdditiveModel refined(const AdditiveModel& model, int addend, double x, bool second = false);
 
 /// Frames of the elements by their centroids, for EnergyModel::Part::frames; 9 x elements.

@@ -10,7 +10,7 @@
 
 namespace hookeye::laws {
 
-constexpr int kMostComponents = 16;
+constexpr int kMostComponents = 18;  ///< nine and nine fibres: all there are
 using Strains = std::array<double, kMostComponents>;
 
 /// Energy over the strain components.

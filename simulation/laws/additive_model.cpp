@@ -106,7 +106,7 @@ AdditiveModel refined(const AdditiveModel& model, int index, double x, bool seco
   const Addend& old = model.addends[index];
   std::vector<double>& at = second ? addend.at_second : addend.at;
   const auto place = std::lower_bound(at.begin(), at.end(), x);
-  if (place != at.end() && *place == x) return out;
+  if ((place != at.end() && *place == x) || at.size() >= kMostControlPoints) return out;
   at.insert(place, x);
   // Row by row or column by column a function of one variable.
   const size_t rows = old.at.size(), columns = old.second < 0 ? 1 : old.at_second.size();

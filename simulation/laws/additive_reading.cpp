@@ -36,9 +36,9 @@ double lowest(Kind kind) {
 
 std::optional<AdditiveFault> points_fault(const std::string& key, const std::vector<double>& at,
                                           const StrainComponent& component) {
-  if (at.size() > laws::kMostPoints)
+  if (at.size() > kMostControlPoints)
     return AdditiveFault{key, fmt::format("`{}` has {} control points", key, at.size()),
-                         fmt::format("at most {}", laws::kMostPoints)};
+                         fmt::format("at most {}", kMostControlPoints)};
   const double low = lowest(component.kind);
   for (size_t i = 0; i < at.size(); ++i) {
     if (!std::isfinite(at[i]))
@@ -211,9 +211,6 @@ class Reader {
           "E11 E22 E33 E12 E13 E23 trE I1bar J fibre1 ... fibre9, or two of them as in "
           "E11_E22");
     }
-    if (model.components.size() > laws::kMostComponents)
-      throw InputError(place, "too many strain components",
-                       fmt::format("at most {}", laws::kMostComponents));
     read_directions(name, model);
     const bool wall_only =
         spec_.parameters.count(name + ".wall") && !spec_.parameters.count(name + ".at");

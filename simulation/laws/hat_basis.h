@@ -5,11 +5,11 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "simulation/additive.h"
+
 namespace hookeye::laws {
 
-/// At most this many control points along one component: evaluation needs no heap.
-constexpr int kMostPoints = 64;
-using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostPoints, 1>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostControlPoints, 1>;
 
 /// Hat functions h_i over increasing control points: 1 at the own point, 0 at the others, linear
 /// between, constant beyond the first and the last. Their integrals from 0,
