@@ -1,0 +1,162 @@
+// Derivatives on facets of many pixels, where the normals of the corners are far from the facet's
+// own and the sky is seen differently from corner to corner: terms that a fine mesh hides.
+#include "render/renderer.h"
+#include "scene.h"
+#include "support/derivative.h"
+
+namespace hookeye {
+namespace {
+
+using test::expect_derivative;
+using Source = Texture::Source;
+
+enum class Look { textured, gloss_alone };
+
+struct Setting {
+  Look look;
+  bool distorted;
+};
+
+std::string name_of(const testing::TestParamInfo<Setting>& info) {
+  return std::string(info.param.look == Look::textured ? "textured" : "gloss_alone") +
+         (info.param.distorted ? "_distorted" : "");
+}
+
+/// The camera of the other tests with three times as many pixels along the same picture.
+Camera close_up(bool distorted) {
+  Camera c = test::camera(Camera::Projection::perspective, distorted);
+  c.width *= 3, c.height *= 3;
+  c.fx *= 3, c.fy *= 3, c.cx *= 3, c.cy *= 3;
+  return c;
+}
+
+/// Two balls of 80 facets each, side by side: each hides a part of the other's sky.
+class CoarseFacets : public testing::TestWithParam<Setting> {
+ protected:
+  CoarseFacets()
+      : surface(test::both(test::sphere(Vector3d(-5, 0, 0), 6, 1, 0.05),
+                           test::sphere(Vector3d(7, 1, 1), 5, 1, 0.05))),
+        renderer(surface),
+        state(test::state(close_up(GetParam().distorted))) {
+    texture.source = GetParam().look == Look::textured ? Source::image : Source::uniform;
+    texture.albedo = 0.0;
+    texture.image = test::waves(1024, 1024, 4);
+  }
+
+  Rendering render(const Matrix3Xd& x, const PhotoState& photo, bool derivatives) {
+    RenderOptions o = options;
+    o.derivatives = derivatives;
+    return renderer.render(x, nullptr, texture, photo, o, false);
+  }
+  /// Pixels whose rays stay on one facet.
+  void choose_pixels(const Rendering& r) {
+    const Image& I = r.I;
+    for (const int px : r.dI.pixel) {
+      const int u = px % I.width, v = px / I.width;
+      bool inside = u > 1 && v > 1 && u < I.width - 2 && v < I.height - 2;
+      for (int dv = -2; inside && dv <= 2; ++dv)
+        for (int du = -2; du <= 2; ++du)
+          inside = inside && r.triangle[px + dv * I.width + du] == r.triangle[px] &&
+                   r.coverage.at(u + du, v + dv) == 1.0f;
+      if (inside) pixels.push_back(px);
+    }
+    ASSERT_GT(pixels.size(), 100u);
+  }
+  VectorXd pick(const auto& all) const {
+    VectorXd out(Eigen::Index(pixels.size()));
+    for (size_t i = 0; i < pixels.size(); ++i) out[Eigen::Index(i)] = all[pixels[i]];
+    return out;
+  }
+
+  SurfaceMesh surface;
+  Renderer renderer;
+  PhotoState state;
+  Texture texture;
+  RenderOptions options;
+  std::vector<int> pixels;
+};
+
+TEST_P(CoarseFacets, positions) {
+  options.visibility_rays = 0;  // derivatives take the sky seen by a corner as given
+  const Rendering r = render(surface.X, state, true);
+  choose_pixels(r);
+  for (double phase : {0.2, 1.5}) {
+    const Matrix3Xd u = test::field(surface.X, phase);
+    const VectorXd analytic =
+        pick(test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
+    expect_derivative(
+        [&](double h) { return pick(render(surface.X + h * u, state, false).I.values); }, analytic,
+        0.002, 1e-3, "positions");
+  }
+}
+
+TEST_P(CoarseFacets, camera_and_light) {
+  const Rendering r = render(surface.X, state, true);
+  choose_pixels(r);
+  const auto check = [&](int column, double h, const auto& change) {
+    const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
+    expect_derivative(
+        [&](double t) {
+          PhotoState s = state;
+          change(s, t);
+          return pick(render(surface.X, s, false).I.values);
+        },
+        pick(test::directional(renderer, r, surface.X, nullptr, nullptr, unit)), h, 1e-3,
+        "column " + std::to_string(column));
+  };
+  for (int k = 0; k < 3; ++k) {
+    check(kRotate + k, 1e-4, [k](PhotoState& s, double t) {
+      s.camera = s.camera.moved(t * Vector3d::Unit(k), Vector3d::Zero());
+    });
+    check(kMove + k, 0.004, [k](PhotoState& s, double t) {
+      s.camera = s.camera.moved(Vector3d::Zero(), t * Vector3d::Unit(k));
+    });
+    check(kSun + k, 0.002, [k](PhotoState& s, double t) { s.sun[k] += t; });
+  }
+  check(kZoom, 1e-4, [](PhotoState& s, double t) { s.camera = s.camera.zoomed(t); });
+  if (GetParam().look == Look::textured)  // without albedo no sky is seen
+    check(kAmbient, 0.01, [](PhotoState& s, double t) { s.ambient += t; });
+  check(kSpecular, 0.01, [](PhotoState& s, double t) { s.specular += t; });
+}
+
+/// Facets that the sun does not reach know nothing of it.
+TEST(NightSide, sun) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 1, 0.05);
+  Renderer renderer(surface);
+  PhotoState state = test::state(close_up(false));
+  state.sun = 0.7 * (state.camera.R.transpose() * Vector3d(1, -0.2, 0.1)).normalized();
+  Texture texture;
+  texture.albedo = 0.8;
+  const Rendering r = renderer.render(surface.X, nullptr, texture, state, {}, true);
+  const Matrix3Xd normals = renderer.normals(surface.X);
+  for (int k = 0; k < 3; ++k) {
+    const VectorXd d = test::directional(renderer, r, surface.X, nullptr, nullptr,
+                                         VectorXd::Unit(kPhotoColumns, kSun + k));
+    int night = 0;
+    for (const int px : r.dI.pixel) {
+      bool dark = true, alone = true;
+      for (int by : {-2, 0, 2})
+        for (int by_row : {-2, 0, 2}) {
+          const int other = px + by + by_row * r.I.width;
+          alone = alone && r.triangle[other] == r.triangle[px];
+        }
+      if (!alone || r.triangle[px] < 0) continue;
+      for (const int v : surface.triangles[r.triangle[px]])
+        dark = dark && normals.col(v).dot(state.sun) < -0.05;
+      if (!dark) continue;
+      ++night;
+      EXPECT_EQ(d[px], 0.0) << px;
+    }
+    EXPECT_GT(night, 50);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(all, CoarseFacets,
+                         testing::Values(Setting{Look::textured, false},
+                                         Setting{Look::textured, true},
+                                         Setting{Look::gloss_alone, false},
+                                         Setting{Look::gloss_alone, true}),
+                         name_of);
+
+}  // namespace
+}  // namespace hookeye
