@@ -142,7 +142,8 @@ bool out_of_reach(const Racer& rival, const Racer& winner) {
 /// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
 /// two steps may still be right. So is a sensor's error, which moves no photo and so cannot win by
 /// them. A numerical error that comes near the first is refitted too, whatever its rank: nothing is
-/// named before the mesh is settled.
+/// named before the mesh is settled. Where it is that effect of the largest evidence it goes first:
+/// what it leaves tells early that others will not get there.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
@@ -157,6 +158,9 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
       kept.push_back(std::move(racer));
   }
   racers = std::move(kept);
+  if (numerical(first))
+    std::stable_partition(racers.begin(), racers.end(),
+                          [&](const Racer& racer) { return racer.effect == first; });
 }
 
 struct Contest {
@@ -183,7 +187,12 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
         !may_tie(racer, racers.front()))
       continue;
     if (events.refitting) events.refitting(racer.effect);
-    auto result = refit(workspace, racer, options.fit);
+    FitOptions fit = options.fit;
+    for (const Refit& rival : refits) {
+      const double chi = rival.fitted.evaluation.chi(false);
+      fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
+    }
+    auto result = refit(workspace, racer, fit);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;  // a model without equilibrium explains nothing

@@ -115,8 +115,7 @@ class Reporter final : public ceres::IterationCallback {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (options_.progress)
-      options_.progress({stage_.name(), summary.iteration, of_,
-                         std::sqrt(2.0 * summary.cost / std::max(1.0, count_))});
+      options_.progress({stage_.name(), summary.iteration, of_, chi(summary.cost)});
     return ceres::SOLVER_CONTINUE;
   }
 
@@ -127,20 +126,37 @@ class Reporter final : public ceres::IterationCallback {
   /// refused step that changed next to nothing has met the same limit. A structured misfit moves
   /// the parameters by more than noise does: the limit grows with its square. A coarse picture only
   /// has to lead the next one to the right speckle.
-  bool done(const ceres::IterationSummary& summary) const {
+  bool done(const ceres::IterationSummary& summary) {
     if (stage_.level > 1 && cost_.promised() < 0.02 * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
-    if (summary.step_is_successful)
-      return cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2());
-    return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
+    if (!summary.step_is_successful)
+      return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
+    if (cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2())) return true;
+    return stage_.level == 0 && !stage_.registered && summary.iteration > 0 && creeps(summary);
   }
+
+  /// Two steps in a row that gained nothing that counts. Of a structured misfit, whose effective
+  /// residuals are some hundred, 1e-3 of |r|^2 is a third of a standard error, whatever was
+  /// promised: near a fold of the equilibria derivatives hold for tiny steps alone. Steps on the
+  /// way to `aim_chi` count where twenty of them would arrive.
+  bool creeps(const ceres::IterationSummary& summary) {
+    const double chi = this->chi(summary.cost);
+    const double structured = 1.0 - 1.0 / std::max(1.0, chi * chi);
+    const double fell = this->chi(summary.cost + summary.cost_change) - chi;
+    const bool counts = summary.cost_change > (1e-6 + 1e-3 * structured) * summary.cost;
+    const bool arrives = options_.aim_chi == 0.0 || 20.0 * fell > chi - options_.aim_chi;
+    slow_ = counts && arrives ? 0 : slow_ + 1;
+    return slow_ == 2;
+  }
+  double chi(double cost) const { return std::sqrt(2.0 * cost / std::max(1.0, count_)); }
 
   const FitOptions& options_;
   const ReducedCost& cost_;
   Stage stage_;
   double count_, misfit_;
   int of_;
+  int slow_ = 0;  ///< steps in a row
 };
 
 }  // namespace

@@ -23,6 +23,9 @@ struct FitOptions {
   /// Huber's threshold in multiples of the photos' own misfit (median absolute residual over that
   /// of unit noise, at least 1): outliers of a misfit model are judged against its misfit.
   double huber = 4.0;
+  /// chi of the fitted photos that a rival has come to already: a fit that falls so slowly that it
+  /// would not get there in twenty steps more ends. 0: there is none.
+  double aim_chi = 0.0;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const FitProgress&)> progress;
 };
