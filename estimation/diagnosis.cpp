@@ -181,6 +181,30 @@ void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagn
         fmt::join(moved, ", "));
 }
 
+/// Diagnosis::mesh_fall. The refined mesh has one parameter: a share of what it changed.
+double next_mesh_fall(const ModelForm& form, const DiagnosisSums& sums) {
+  constexpr double kNext = 0.7 * 0.7;
+  Eigen::Index at = 0;
+  for (const auto& ingredient : form.ingredients) {
+    const auto own = static_cast<Eigen::Index>(ingredient->parameters().size());
+    const Effect* effect = find_effect(ingredient->name());
+    if (effect && own == 1 && effect->remeshes(ingredient->variant())) {
+      // last of the base columns, so that the others are what it is projected against
+      const Eigen::Index last = form.size() - 1;
+      Eigen::MatrixXd H = sums.fitted.JtJ.topLeftCorner(form.size(), form.size());
+      H.row(at).swap(H.row(last));
+      H.col(at).swap(H.col(last));
+      Hypothesis change;
+      change.first = static_cast<int>(last), change.count = 1;
+      change.typical = VectorXd::Ones(1);
+      const double M = project(H, static_cast<int>(last), change).M(0, 0);
+      return kNext * kNext * M / std::max(sums.photo_count, 1.0);
+    }
+    at += own;
+  }
+  return 0.0;
+}
+
 void weigh(std::vector<EffectScore>& scores) {
   double largest = 0.0, sum = 0.0;
   for (const auto& score : scores)
@@ -193,10 +217,11 @@ void weigh(std::vector<EffectScore>& scores) {
 
 }  // namespace
 
-double least_fall(const Floor& floor) {
+double least_fall(const Diagnosis& diagnosis) {
   constexpr double kTrustedPx = 0.01;
-  return std::max(0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
-                  kTrustedPx * kTrustedPx * floor.per_px2);
+  const Floor& floor = diagnosis.floor;
+  return std::max({0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
+                   kTrustedPx * kTrustedPx * floor.per_px2, diagnosis.mesh_fall});
 }
 
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
@@ -217,7 +242,7 @@ bool sensors_alone(const Ingredient& ingredient) {
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
-         ((score.best && sensors_alone(*score.best)) || score.fall >= least_fall(diagnosis.floor));
+         ((score.best && sensors_alone(*score.best)) || score.fall >= least_fall(diagnosis));
 }
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
@@ -240,6 +265,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
   out.whiteness_p = sums.whiteness_p;
+  out.mesh_fall = next_mesh_fall(fitted.form, sums);
 
   std::vector<ProjectedHypothesis> projected;
   VectorXd evidence(candidates.size());

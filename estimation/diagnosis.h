@@ -54,6 +54,9 @@ struct Diagnosis {
   /// Empty: not known (the mesh cannot be made finer, or has been).
   VectorXd mesh_shift;
   std::string mesh_note;  ///< those that move beyond their intervals for noise; empty: none
+  /// Change of chi^2 by what the next finer mesh would do to a model whose mesh has been refined:
+  /// by Richardson's rule, second order, 0.7^2 of what the refinement did. 0: not refined.
+  double mesh_fall = 0.0;
 };
 
 struct DiagnosisOptions {
@@ -86,12 +89,13 @@ constexpr int kPictured = 5;
 /// renderer gets wrong, the same way in every photo, so no null of independent noise knows it), and
 /// what 0.01 px of motion all over the surface would bring. Below that two renderers of one scene
 /// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
-/// correlation trusts its matches no further.
-double least_fall(const Floor& floor);
+/// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error.
+double least_fall(const Diagnosis& diagnosis);
 /// It changes what sensors show and nothing in the photos.
 bool sensors_alone(const Ingredient& ingredient);
-/// Testable, above the simulated gate, and, where it is seen in photos, above the renderer's own
-/// errors.
+/// Testable, above the simulated gate, and, where it is seen in photos, above the renderer's and
+/// the mesh's own errors. (The mesh's own effect is not held to the latter: it is not offered
+/// then.)
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 
 }  // namespace hookeye

@@ -163,6 +163,25 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
                           [&](const Racer& racer) { return racer.effect == first; });
 }
 
+/// The mesh leads by more than a tie, and the step that it promises brings fitted and held-out
+/// photos to the floor. That step is no guess (the finer mesh was solved), the mesh is settled
+/// before anything is named, and what it leaves is diagnosed next: nobody needs to race.
+bool mesh_settles_it(const Step& step) {
+  const Diagnosis& diagnosis = step.diagnosis;
+  const auto& effects = diagnosis.effects;
+  if (effects.empty() || !numerical(effects[0].effect) || !nameable(effects[0], diagnosis))
+    return false;
+  if (effects.size() > 1 && effects[1].testable && effects[1].evidence > effects[0].evidence - kTie)
+    return false;
+  const double floor2 = diagnosis.floor.chi * diagnosis.floor.chi;
+  const auto at_floor_after = [&](bool held_out, double share) {
+    const double r2 = std::pow(step.fitted.evaluation.chi(held_out), 2);
+    return r2 - share * (r2 - floor2) <= kAtFloor * kAtFloor * floor2;
+  };
+  return at_floor_after(false, effects[0].explains) &&
+         at_floor_after(true, effects[0].explains_held_out);
+}
+
 struct Contest {
   std::vector<Raced> raced;
   std::vector<Refit> refits;  ///< best first
@@ -175,12 +194,14 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
                                                       const DiscoverEvents& events) {
   Contest out;
   auto& refits = out.refits;
-  auto raced = race(workspace, step.fitted, step.diagnosis, options.fit, events.tried);
+  Diagnosis entered = step.diagnosis;
+  if (mesh_settles_it(step)) entered.effects.resize(1);
+  auto raced = race(workspace, step.fitted, entered, options.fit, events.tried);
   if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
   auto& racers = std::get<std::vector<Racer>>(raced);
   for (const Racer& racer : racers)
     out.raced.push_back({racer.effect, racer.trial.chi_fit, racer.trial.chi_validate});
-  keep_leaders(racers, step.diagnosis, options.leaders);
+  keep_leaders(racers, entered, options.leaders);
   for (const Racer& racer : racers) {
     // Nothing can do better than the floor; once it is reached only a tie is of use.
     if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
@@ -329,7 +350,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
                         std::pow(winner.fitted.evaluation.chi(false), 2);
     if (winner.score < before + kNameable ||
         !held_out_allows(winner.fitted, step.fitted, step.diagnosis.floor) ||
-        (fell < least_fall(step.diagnosis.floor) &&
+        (fell < least_fall(step.diagnosis) &&
          !sensors_alone(*winner.fitted.form.ingredients.back())))
       break;
     Step next;

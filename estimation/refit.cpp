@@ -79,7 +79,9 @@ std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, con
   const Effect& effect = *remeshed_by(*remeshing);
   auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing->variant()));
   form.ingredients.push_back(std::move(remeshing));
-  return fit(workspace, form, start, warm(options));
+  VectorXd all = form.initial();
+  all.head(start.size()) = start;
+  return fit(workspace, form, all, warm(options));
 }
 
 /// Fits; then the smaller form of the last effect, where it has one, from where the larger ended.

@@ -49,7 +49,7 @@ function failed(base: StepEntry, lengthPerPx: number): Told {
 }
 
 /** Above the gate and still not named: no null of independent noise knows of a renderer's errors. */
-export const tooLittle = 'so small a part of the misfit may be the renderer’s own error, so it is not named';
+export const tooLittle = 'so small a part of the misfit may be the renderer’s or the mesh’s own error, so it is not named';
 
 /** What the refits of the leading effects came to. */
 export function decidedBy(added: string, others: string[], margin: number): string {

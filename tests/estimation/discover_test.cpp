@@ -115,6 +115,16 @@ TEST(Discover, NamesStiffeningAlthoughAFieldScoresHigher) {
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }
 
+/// Tetrahedra far too coarse to bend as the body does: a dozen effects stand out. The finer mesh
+/// takes them away, and what it leaves is the next finer one's and nobody else's.
+TEST(Discover, AMeshThatLeavesNothingRacesWithNobody) {
+  const Discovery found = discover(SmallScene({.told = "0.021", .truth_mesh = "0.4"}));
+  ASSERT_EQ(found.steps.size(), 2u) << found.sentence;
+  EXPECT_EQ(found.steps[1].added, "mesh_resolution");
+  EXPECT_EQ(found.steps[1].raced.size(), 1u);
+  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+}
+
 TEST(Discover, CancelledSaysSo) {
   const SmallScene small({.told = "0.02"});
   Workspace workspace(small.scene);

@@ -7,6 +7,7 @@
 
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation.h"
+#include "meshing/interpolation.h"
 
 namespace hookeye::test {
 
@@ -194,6 +195,8 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
   const auto finer = effect.refit_form(model, effect.candidates(model, nullptr).front(), none);
   auto [form, p] = transfer(model, effect.refit_scene(*block_scene(), finer->variant()));
   form.ingredients.push_back(finer);
+  p.conservativeResize(form.size());
+  p[form.size() - 1] = 0.4;
   const auto file = std::filesystem::temp_directory_path() / "hookeye-finer-model.yaml";
   std::ofstream(file) << write_model(form, p);
   const auto [again, values] = read_model(file, block_scene());
@@ -202,6 +205,50 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
   EXPECT_EQ(again.scene->body->mesh.nodes(), form.scene->body->mesh.nodes());
   EXPECT_EQ(again.ingredients.back()->name(), "mesh_resolution");
   EXPECT_EQ(again.scene->photos.size(), block_scene()->photos.size());
+}
+
+/// What the finer mesh changed, added once more by a share, takes it nearer to a far finer one; the
+/// share's derivative is that of the re-solved equilibrium.
+TEST(Sensitivity, TheFinerMeshReachesForTheLimit) {
+  const ModelForm base = base_form(block_scene());
+  const Model model = base.realise(base.initial());
+  const Effect& effect = *find_effect("mesh_resolution");
+  VectorXd none;
+  const auto finer = effect.refit_form(model, effect.candidates(model, nullptr).front(), none);
+  auto [form, p] = transfer(model, effect.refit_scene(*block_scene(), finer->variant()));
+  form.ingredients.push_back(finer);
+  const int s = form.size() - 1;
+  p.conservativeResize(form.size());
+  p[s] = 0.0;
+  const Evaluation at_null = evaluated(form, p, {});
+  p[s] = 0.7;
+  const States start = solve(form, p, {});
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  const States solved = solved_sensitivity(form, p, s, 1e-2, false, start);
+  EXPECT_TRUE(expect_same(evaluated(form, p, {}), s, solved, 1e-2, 1e-3, "mesh_resolution.s"));
+
+  const auto limit_scene = remeshed(*block_scene(), 0.35, 0, false);
+  const auto [limit_form, limit_p] = transfer(model, limit_scene);
+  const Model limit = limit_form.realise(limit_p);
+  const TetMesh &mesh = form.scene->body->mesh, &finest = limit_scene->body->mesh;
+  const auto there = interpolation(finest, mesh.X);
+  double before = 0.0, along = 0.0, length = 0.0;
+  for (const auto& example : at_null.examples) {
+    const int e = example.example;
+    const auto far = solve_equilibrium(finest, limit.energy_of(e), limit.examples[e].loading);
+    const Matrix3Xd u =
+        (std::get<Equilibrium>(far).q.reshaped(3, finest.nodes()) - finest.X) * there.transpose();
+    const VectorXd off = (mesh.X + u).reshaped() - example.equilibrium->q;
+    const VectorXd step = example.S.col(s);
+    before += off.squaredNorm();
+    along += off.dot(step);
+    length += step.squaredNorm();
+  }
+  // The share that serves best, and what it takes of the error in mean square. Where errors fall in
+  // proportion to the edge, which is the slowest, it is 0.7/(1 - 0.7).
+  EXPECT_GT(along / length, 0.2);
+  EXPECT_LT(along / length, 0.7 / (1.0 - 0.7));
+  EXPECT_GT(along * along / length, 0.3 * before) << along / length;
 }
 
 /// Forms of the refit at values away from the null, as part of the model.
@@ -214,6 +261,7 @@ TEST(Sensitivity, RefitForms) {
     for (const auto& scored : effect->candidates(model, nullptr)) {
       VectorXd values = some_values(*scored);
       const auto larger = effect->refit_form(model, scored, values);
+      if (effect->remeshes(larger->variant())) continue;  // lives on another mesh: below
       // one free form a kind: the fibre's 24 bases are alike
       if (larger == scored || !seen.insert(larger->variant().substr(0, 12)).second) continue;
       const ModelForm form = extended(base, larger);
