@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hookeye {
 
@@ -44,12 +45,19 @@ struct Extension {
   }
 };
 
+/// A refit form without a way back to the null (a hard clamp) starts in the same place whatever the
+/// share of the linear step.
+bool starts_anywhere(const Fitted& current, const EffectScore& score) {
+  return Extension(current, score, 1.0).start == Extension(current, score, 0.0).start;
+}
+
 /// The linear step is a direction more than a length: where it has no equilibrium or is worse than
 /// the null, `run(extension)` starts nearer to the null.
 template <class Run>
 auto from_shares(const Fitted& current, const EffectScore& score, const FitOptions& options,
                  const Run& run) {
   auto result = run(Extension(current, score, 1.0));
+  if (starts_anywhere(current, score)) return result;
   for (double share : {0.3, 0.1, 0.0}) {
     const auto* failure = std::get_if<NumericalFailure>(&result);
     if (!failure || cancelled(*failure) || (options.cancel && options.cancel->load())) break;
@@ -124,9 +132,12 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
   for (const EffectScore* form : {&score, score.other_form.get()}) {
     if (!form) continue;
     ModelForm started;
+    TrialScale own = scale;
+    // There the first step may begin worse than the model without, and what it leaves decides.
+    if (starts_anywhere(current, *form)) own.chi = std::numeric_limits<double>::infinity();
     auto result = from_shares(current, *form, options, [&](const Extension& extension) {
       started = extension.form;
-      return try_step(workspace, started, extension.start, scale, options);
+      return try_step(workspace, started, extension.start, own, options);
     });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (form == &score || cancelled(*failure)) best = *failure;

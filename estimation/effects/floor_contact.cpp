@@ -26,9 +26,9 @@ std::shared_ptr<const ForceTerm> plane(const Model& model, int side, double posi
                        smoothing(*model.scene));
 }
 
-/// Something flat and hard that the deformed body touches and was not told. Scored by the contact
-/// stiffness (slope at 0 where the present equilibrium reaches through the plane), refitted with
-/// a hard floor at a free position.
+/// Something flat that the deformed body touches and was not told. Scored by the contact stiffness
+/// (slope at 0 where the present equilibrium reaches through the plane), refitted with a cushion of
+/// free position and stiffness, and from there with a hard floor, which has one number less.
 class FloorContact final : public Effect {
  public:
   std::string name() const override { return "floor_contact"; }
@@ -37,7 +37,8 @@ class FloorContact final : public Effect {
   std::string manual() const override {
     return "The deformed body touches a table, a wall or a jaw that was not told. Easily taken "
            "for stiffening or for a misaligned load; it changes only the examples that reach "
-           "the plane.";
+           "the plane. Refitted as a cushion of free position and stiffness, and as a hard floor, "
+           "which stays where it explains as much.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -55,7 +56,8 @@ class FloorContact final : public Effect {
       const std::string label = fmt::format("plane at {}", kSides[side]);
       const auto n = numbers_in(variant);
       if (starts_with(variant, label) && n.size() == 1) return soft(model, side, n[0]);
-      if (variant == fmt::format("hard plane on side {}", kSides[side])) return hard(model, side);
+      if (variant == cushion_on(side)) return cushion(model, side);
+      if (variant == hard_on(side)) return hard(model, side);
     }
     return nullptr;
   }
@@ -67,26 +69,46 @@ class FloorContact final : public Effect {
     for (int side = 0; side < 6; ++side)
       if (starts_with(scored->variant(), fmt::format("plane at {}", kSides[side])) &&
           n.size() == 1) {
-        values = VectorXd::Constant(1, n[0]);
-        return hard(model, side);
+        values = Eigen::Vector2d(n[0], values[0]);
+        return cushion(model, side);
       }
     return scored;
+  }
+
+  std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
+                                                 VectorXd& values) const override {
+    for (int side = 0; side < 6; ++side)
+      if (refitted.variant() == cushion_on(side)) {
+        values.conservativeResize(1);
+        return hard(model, side);
+      }
+    return nullptr;
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     const std::string length = model.scene->capture.units.length;
-    for (int side = 0; side < 6; ++side)
-      if (ingredient.variant() == fmt::format("hard plane on side {}", kSides[side]))
+    const std::string unit = model.scene->capture.units.stress() + "/" + length;
+    for (int side = 0; side < 6; ++side) {
+      const bool soft = ingredient.variant() == cushion_on(side);
+      if (soft || ingredient.variant() == hard_on(side))
         return fmt::format(
-            "the body touches a plane on its {} side, {} {} from where it ends at "
-            "rest",
-            kSides[side], figure(values[0] - reach(*model.scene, side)), length);
-    return fmt::format("the body touches a {} (contact stiffness {} {}/{})", ingredient.variant(),
-                       figure(values[0]), model.scene->capture.units.stress(), length);
+            "the body touches a {} on its {} side, {} {} from where it ends at rest{}",
+            soft ? "cushion" : "plane", kSides[side], figure(values[0] - reach(*model.scene, side)),
+            length, soft ? fmt::format(" (stiffness {} {})", figure(values[1]), unit) : "");
+    }
+    return fmt::format("the body touches a {} (contact stiffness {} {})", ingredient.variant(),
+                       figure(values[0]), unit);
   }
 
  private:
+  static std::string hard_on(int side) {
+    return fmt::format("hard plane on side {}", kSides[side]);
+  }
+  static std::string cushion_on(int side) {
+    return fmt::format("cushion on side {}", kSides[side]);
+  }
+
   std::shared_ptr<const Ingredient> soft(const Model& model, int side, double position) const {
     position = std::stod(fmt::format("{:.5g}", position));
     const double mu = initial_shear_modulus(model.energy);
@@ -113,22 +135,49 @@ class FloorContact final : public Effect {
     return make_ingredient(std::move(spec));
   }
 
-  std::shared_ptr<const Ingredient> hard(const Model& model, int side) const {
+  static Parameter position(const Scene& scene, int side) {
+    const double size = body_size(scene).size, rest = reach(scene, side);
+    return {"floor_contact.position",
+            scene.capture.units.length,
+            fmt::format("where the plane stands along {}", kSides[side]),
+            rest + 0.05 * size,
+            rest - 0.02 * size,
+            rest + size,
+            0.01 * size,
+            false};
+  }
+
+  std::shared_ptr<const Ingredient> cushion(const Model& model, int side) const {
     const Scene& scene = *model.scene;
-    const double size = body_size(scene).size;
-    // A traction of mu/5 sinks in by 0.2 % of the size.
-    const double k = 100.0 * initial_shear_modulus(model.energy) / size;
+    const Units& units = scene.capture.units;
+    const double k = 0.1 * initial_shear_modulus(model.energy) / body_size(scene).size;
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = fmt::format("hard plane on side {}", kSides[side]);
+    spec.variant = cushion_on(side);
     spec.has_null = false;
-    spec.parameters = {{"floor_contact.position", scene.capture.units.length,
-                        fmt::format("where the plane stands along {}", kSides[side]),
-                        reach(scene, side) + 0.05 * size, reach(scene, side) - 0.02 * size,
-                        reach(scene, side) + size, 0.01 * size, false}};
+    spec.parameters = {position(scene, side),
+                       {"floor_contact.k", units.stress() + "/" + units.length, "contact stiffness",
+                        k, 1e-4 * k, 1e5 * k, k, true}};
     spec.touches = {.loading = true};
-    spec.apply = [side, k](const VectorXd& position, Model& m) {
-      const auto force = plane(m, side, position[0], k);
+    spec.apply = [side](const VectorXd& values, Model& m) {
+      const auto force = plane(m, side, values[0], values[1]);
+      for (auto& example : m.examples) example.loading.forces.push_back(force);
+    };
+    return make_ingredient(std::move(spec));
+  }
+
+  std::shared_ptr<const Ingredient> hard(const Model& model, int side) const {
+    const Scene& scene = *model.scene;
+    // A traction of mu/5 sinks in by 0.2 % of the size.
+    const double k = 100.0 * initial_shear_modulus(model.energy) / body_size(scene).size;
+    IngredientSpec spec;
+    spec.name = name();
+    spec.variant = hard_on(side);
+    spec.has_null = false;
+    spec.parameters = {position(scene, side)};
+    spec.touches = {.loading = true};
+    spec.apply = [side, k](const VectorXd& values, Model& m) {
+      const auto force = plane(m, side, values[0], k);
       for (auto& example : m.examples) example.loading.forces.push_back(force);
     };
     return make_ingredient(std::move(spec));

@@ -256,6 +256,21 @@ TEST(Sensitivity, RefitForms) {
   const ModelForm base = base_form(block_scene());
   const Model model = base.realise(base.initial());
   int tried = 0;
+  const auto check = [&](const Effect& effect, const std::shared_ptr<const Ingredient>& refitted,
+                         const VectorXd& values) {
+    const ModelForm form = extended(base, refitted);
+    const VectorXd p = with_values(form, values);
+    const States start = solve(form, p, {});
+    if (::testing::Test::HasFailure()) return;
+    const Evaluation evaluation = evaluated(form, p, {});
+    const auto parameters = refitted->parameters();
+    for (size_t i = 0; i < parameters.size(); ++i) {
+      const int k = base.size() + static_cast<int>(i);
+      const double h = 1e-3 * (parameters[i].positive ? p[k] : parameters[i].typical);
+      tried += expect_same(evaluation, k, solved_sensitivity(form, p, k, h, false, start), h, 1e-3,
+                           effect.name() + " [" + refitted->variant() + "] " + parameters[i].name);
+    }
+  };
   for (const Effect* effect : catalogue()) {
     std::set<std::string> seen;
     for (const auto& scored : effect->candidates(model, nullptr)) {
@@ -264,19 +279,10 @@ TEST(Sensitivity, RefitForms) {
       if (effect->remeshes(larger->variant())) continue;  // lives on another mesh: below
       // one free form a kind: the fibre's 24 bases are alike
       if (larger == scored || !seen.insert(larger->variant().substr(0, 12)).second) continue;
-      const ModelForm form = extended(base, larger);
-      const VectorXd p = with_values(form, values);
-      const States start = solve(form, p, {});
+      check(*effect, larger, values);
+      if (const auto smaller = effect->smaller_form(model, *larger, values))
+        check(*effect, smaller, values);
       if (::testing::Test::HasFailure()) return;
-      const Evaluation evaluation = evaluated(form, p, {});
-      const auto parameters = larger->parameters();
-      for (size_t i = 0; i < parameters.size(); ++i) {
-        const int k = base.size() + static_cast<int>(i);
-        const double h = 1e-3 * (parameters[i].positive ? p[k] : parameters[i].typical);
-        tried +=
-            expect_same(evaluation, k, solved_sensitivity(form, p, k, h, false, start), h, 1e-3,
-                        effect->name() + " [" + larger->variant() + "] " + parameters[i].name);
-      }
     }
   }
   EXPECT_GT(tried, 15);
