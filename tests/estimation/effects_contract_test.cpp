@@ -47,7 +47,8 @@ std::vector<Case> all_cases(bool refit_forms) {
 
 bool has_null(const Ingredient& ingredient) {
   return ingredient.variant().rfind("springs", 0) != 0 &&
-         ingredient.variant().rfind("hard", 0) != 0;
+         ingredient.variant().rfind("hard", 0) != 0 &&
+         ingredient.variant().rfind("cushion", 0) != 0;
 }
 
 TEST(Catalogue, NamesAreThoseOfTheFormat) {
@@ -273,6 +274,8 @@ TEST(Catalogue, SmallerFormsSayTheSameWhereOneValueStandsOut) {
     for (Eigen::Index k = 0; k < nulls.size(); ++k) {
       VectorXd values = nulls;
       values[k] = some_values(*c.ingredient)[k];
+      // a hard floor is the cushion that is a thousand times as stiff as it is declared
+      if (c.effect->name() == "floor_contact" && values.size() == 2) values[1] = 1e3 * nulls[1];
       VectorXd fewer = values;
       const auto smaller = c.effect->smaller_form(base_model(), *c.ingredient, fewer);
       if (!smaller) break;
