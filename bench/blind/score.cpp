@@ -129,54 +129,89 @@ std::string summary(const std::vector<Score>& scores) {
   return out;
 }
 
-std::string confusion_svg(const std::vector<Score>& scores) {
+namespace {
+
+/// What a capture was taken for: the names in its last model, numerical ones only where hidden, and
+/// those that a declared tie has beside them.
+std::set<std::string> taken_for(const Score& s, bool* tied) {
+  const auto hidden = effects_of(s.hidden);
   std::set<std::string> names;
-  std::map<std::pair<std::string, std::string>, int> count;
+  for (const std::string& name : s.added)
+    if (!numerical(name) || std::find(hidden.begin(), hidden.end(), name) != hidden.end())
+      names.insert(name);
+  *tied = !s.tie.empty();
+  names.insert(s.tie.begin(), s.tie.end());
+  if (names.empty()) names.insert("none");
+  return names;
+}
+
+struct Cell {
+  int count = 0, tied = 0;
+};
+
+/// Blue: hidden and named; red: named and not hidden; the paler the rarer, and paler where tied.
+std::string cell_svg(int x, int y, int size, const Cell& cell, int total, bool right) {
+  const double share = (cell.count - 0.5 * cell.tied) / total;
+  const int pale = static_cast<int>(235 - 165 * share);
+  const std::string fill = !cell.count ? "#fff"
+                           : right     ? fmt::format("rgb({},{},{})", pale, pale + 10, 245)
+                                       : fmt::format("rgb({},{},{})", 245, pale, pale);
+  std::string out = fmt::format(
+      "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" stroke=\"#ccc\"/>\n", x, y,
+      size, size, fill);
+  if (cell.count)
+    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" fill=\"{}\">{}{}</text>\n",
+                       x + size / 2, y + size / 2 + 4, share > 0.6 ? "#fff" : "#000", cell.count,
+                       cell.tied ? "=" : "");
+  return out;
+}
+
+}  // namespace
+
+std::string confusion_svg(const std::vector<Score>& scores) {
+  std::set<std::string> hidden, columns;
+  std::map<std::pair<std::string, std::string>, Cell> cells;
   std::map<std::string, int> total;
   for (const Score& s : scores) {
     if (s.status != "ok") continue;
-    names.insert({s.hidden, s.first});
-    ++count[{s.hidden, s.first}];
+    hidden.insert(s.hidden);
+    for (const std::string& name : effects_of(s.hidden)) columns.insert(name);
     ++total[s.hidden];
+    bool tied = false;
+    for (const std::string& name : taken_for(s, &tied)) {
+      columns.insert(name);
+      Cell& cell = cells[{s.hidden, name}];
+      ++cell.count, cell.tied += tied;
+    }
   }
-  const int cell = 26, left_margin = 210, top = 200, n = static_cast<int>(names.size());
+  const int size = 26, left_margin = 210, top = 190;
+  const int width = left_margin + static_cast<int>(columns.size()) * size + 120;
+  const int height = top + static_cast<int>(hidden.size()) * size + 40;
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" "
       "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
-      "fill=\"white\"/>\n<text x=\"8\" y=\"{}\">hidden (rows), named first (columns)</text>\n",
-      left_margin + n * cell + 60, top + n * cell + 40, top + n * cell + 28);
+      "fill=\"white\"/>\n<text x=\"8\" y=\"{}\">hidden (rows), named (columns); blue: right, red: "
+      "wrong; =: in a declared tie</text>\n",
+      std::max(width, 480), height, height - 12);
   int i = 0;
-  for (const auto& name : names) {
-    const int at = i++ * cell + cell / 2 + 4;
-    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", left_margin - 8,
-                       top + at, name);
+  for (const std::string& name : columns)
     out += fmt::format("<text transform=\"translate({},{}) rotate(-60)\">{}</text>\n",
-                       left_margin + at, top - 8, name);
-  }
+                       left_margin + i++ * size + size / 2 + 4, top - 8, name);
   int row = 0;
-  for (const auto& hidden : names) {
+  for (const std::string& name : hidden) {
+    const int y = top + row++ * size;
+    out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", left_margin - 8,
+                       y + size / 2 + 4, name);
+    const auto names = effects_of(name);
     int column = 0;
-    for (const auto& first : names) {
-      const auto found = count.find({hidden, first});
-      const int here = found == count.end() ? 0 : found->second;
-      const double share = here ? static_cast<double>(here) / total[hidden] : 0.0;
-      const int x = left_margin + column * cell, y = top + row * cell;
-      // right ones blue, wrong ones red; the paler the rarer
-      const int pale = static_cast<int>(255 - 190 * share);
-      const bool right =
-          hidden == first || ("+" + hidden + "+").find("+" + first + "+") != std::string::npos;
-      const std::string fill = right ? fmt::format("rgb({},{},255)", pale, pale)
-                                     : fmt::format("rgb(255,{},{})", pale, pale);
-      out += fmt::format(
-          "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" "
-          "stroke=\"#ccc\"/>\n",
-          x, y, cell, cell, here ? fill : "#fff");
-      if (here)
-        out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                           x + cell / 2, y + cell / 2 + 4, here);
-      ++column;
+    for (const std::string& named : columns) {
+      const bool right = names.empty()
+                             ? named == "none"
+                             : std::find(names.begin(), names.end(), named) != names.end();
+      const auto found = cells.find({name, named});
+      out += cell_svg(left_margin + column++ * size, y, size,
+                      found == cells.end() ? Cell{} : found->second, total[name], right);
     }
-    ++row;
   }
   return out + "</svg>\n";
 }

@@ -38,7 +38,7 @@ Score score(const nlohmann::json& run, const nlohmann::json& truth);
 std::string csv(const std::vector<Score>& scores);
 /// Counts over everything that ran, as lines for people.
 std::string summary(const std::vector<Score>& scores);
-/// Rows: what was hidden; columns: what was named first.
+/// Rows: what was hidden; columns: what was named, first or later, or declared a tie.
 std::string confusion_svg(const std::vector<Score>& scores);
 
 }  // namespace hookeye::blind
