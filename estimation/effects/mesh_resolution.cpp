@@ -282,9 +282,8 @@ class MeshResolution final : public Effect {
     IngredientSpec spec;
     spec.name = name();
     spec.variant = variant;
-    spec.parameters = {{"mesh_resolution.s", "",
-                        "times the change from the told mesh, still to come", 0.0, 0.0, most, 1.0,
-                        false}};
+    spec.parameters = {{"mesh_resolution.s", "", "more of what the refinement changed", 0.0, 0.0,
+                        most, 1.0, false}};
     spec.touches = {.loading = true};
     struct Told {
       std::once_flag once;
