@@ -45,12 +45,26 @@ std::vector<std::string> column_names(const ModelForm& form) {
   return names;
 }
 
+/// Numerical effects to their nulls: what they change is little beside what is planned, and each
+/// new load would have to be solved on another mesh too.
+void without_numerical(const ModelForm& form, VectorXd& p) {
+  Eigen::Index at = 0;
+  for (const auto& ingredient : form.ingredients) {
+    const Effect* effect = find_effect(ingredient->name());
+    for (const Parameter& parameter : ingredient->parameters()) {
+      if (effect && effect->group() == EffectGroup::numerical) p[at] = parameter.value;
+      ++at;
+    }
+  }
+}
+
 /// The fitted model on a planned scene, with the effects appended as hypotheses at their nulls.
 PlannedModel planned_model(const Model& now, std::shared_ptr<const Scene> scene,
                            const Diagnosis& diagnosis, const std::vector<std::string>& names,
                            std::vector<PlanHypothesis>* hypotheses) {
   PlannedModel out;
   std::tie(out.form, out.p) = transfer(now, std::move(scene));
+  without_numerical(out.form, out.p);
   out.model = out.form.realise(out.p);
   for (const auto& name : names) {
     const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
