@@ -181,14 +181,14 @@ void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagn
         fmt::join(moved, ", "));
 }
 
-/// Diagnosis::mesh_fall. The refined mesh has one parameter: a share of what it changed.
+/// Diagnosis::mesh_fall. The refined mesh has one parameter, a share of what it changed; typical of
+/// it is what the next refinement would change.
 double next_mesh_fall(const ModelForm& form, const DiagnosisSums& sums) {
-  constexpr double kNext = 0.7 * 0.7;
   Eigen::Index at = 0;
   for (const auto& ingredient : form.ingredients) {
-    const auto own = static_cast<Eigen::Index>(ingredient->parameters().size());
+    const auto parameters = ingredient->parameters();
     const Effect* effect = find_effect(ingredient->name());
-    if (effect && own == 1 && effect->remeshes(ingredient->variant())) {
+    if (effect && parameters.size() == 1 && effect->remeshes(ingredient->variant())) {
       // last of the base columns, so that the others are what it is projected against
       const Eigen::Index last = form.size() - 1;
       Eigen::MatrixXd H = sums.fitted.JtJ.topLeftCorner(form.size(), form.size());
@@ -198,9 +198,9 @@ double next_mesh_fall(const ModelForm& form, const DiagnosisSums& sums) {
       change.first = static_cast<int>(last), change.count = 1;
       change.typical = VectorXd::Ones(1);
       const double M = project(H, static_cast<int>(last), change).M(0, 0);
-      return kNext * kNext * M / std::max(sums.photo_count, 1.0);
+      return std::pow(parameters[0].typical, 2) * M / std::max(sums.photo_count, 1.0);
     }
-    at += own;
+    at += static_cast<Eigen::Index>(parameters.size());
   }
   return 0.0;
 }

@@ -62,11 +62,11 @@ class OtherMesh {
     return solver;
   }
 
-  /// The finer mesh's equilibrium, from this mesh's.
+  /// The other mesh's equilibrium, from this mesh's.
   std::variant<Equilibrium, NumericalFailure> solve_there(int example, const Equilibrium& here) {
-    const Model& fine_model = other();
+    const Model& other_model = other();
     const TetMesh& mesh = model_.scene->body->mesh;
-    const TetMesh& fine = fine_model.scene->body->mesh;
+    const TetMesh& fine = other_model.scene->body->mesh;
     const Matrix3Xd u = here.q.reshaped(3, mesh.nodes()) - mesh.X;
     const Matrix3Xd x = fine.X + u * from_here_.transpose();
     const VectorXd start = x.reshaped();
@@ -74,8 +74,8 @@ class OtherMesh {
     options.tolerance = 1e-6;  // what a mesh changes need not be known to more than a per mille
     options.factored = false;
     auto solver = take_solver();
-    auto there = solver->solve(fine_model.energy_of(example), fine_model.examples[example].loading,
-                               options, &start);
+    auto there = solver->solve(other_model.energy_of(example),
+                               other_model.examples[example].loading, options, &start);
     solver->forget();
     const std::lock_guard lock(mutex_);
     solvers_.push_back(std::move(solver));
@@ -113,10 +113,10 @@ class OtherMesh {
   }
 
   /// Change of the support's force and moment, as the smallest nodal forces that have both.
-  void add_reaction(const std::string& name, const Model& fine_model, const Equilibrium& coarse,
+  void add_reaction(const std::string& name, const Model& other_model, const Equilibrium& coarse,
                     const Equilibrium& other, VectorXd& reaction) const {
     const Region& region = model_.scene->body->regions.at(name);
-    const Region& theirs = fine_model.scene->body->regions.at(name);
+    const Region& theirs = other_model.scene->body->regions.at(name);
     const double count = static_cast<double>(region.nodes.size());
     Vector3d centre = Vector3d::Zero();
     for (int node : region.nodes) centre += coarse.q.segment<3>(3 * node) / count;
@@ -149,8 +149,8 @@ class OtherMesh {
 /// nothing.
 class MeshError final : public ForceTerm {
  public:
-  MeshError(std::shared_ptr<OtherMesh> finer, int example, double share)
-      : finer_(std::move(finer)), example_(example), share_(share) {}
+  MeshError(std::shared_ptr<OtherMesh> other, int example, double share)
+      : other_(std::move(other)), example_(example), share_(share) {}
   double potential(const TetMesh& mesh, const VectorXd& q, double s) const override {
     return term().potential(mesh, q, s);
   }
@@ -162,10 +162,10 @@ class MeshError final : public ForceTerm {
 
  private:
   const ForceTerm& term() const {
-    std::call_once(once_, [&] { term_ = nodal_force(share_ * finer_->force(example_)); });
+    std::call_once(once_, [&] { term_ = nodal_force(share_ * other_->force(example_)); });
     return *term_;
   }
-  std::shared_ptr<OtherMesh> finer_;
+  std::shared_ptr<OtherMesh> other_;
   int example_;
   double share_;
   mutable std::once_flag once_;
@@ -276,14 +276,16 @@ class MeshResolution final : public Effect {
   /// what it changed itself (Richardson 1911), which the photos fit: a real body has no mesh, and
   /// what the finer one still gets wrong would be blamed on a clamp or a stiff place.
   std::shared_ptr<const Ingredient> refined(const std::string& variant) const {
-    // Falling in proportion to the edge is the slowest; quadratic elements halve the error at
-    // least.
-    const double most = variant == kQuadratic ? 1.0 : kFiner / (1.0 - kFiner);
+    // Falling in proportion to the edge is the slowest, and with its square the rule; quadratic
+    // elements halve the error of linear ones at least, and leave a tenth of it as a rule.
+    const bool quadratic = variant == kQuadratic;
+    const double most = quadratic ? 1.0 : kFiner / (1.0 - kFiner);
+    const double next = quadratic ? 0.1 : kFiner * kFiner;
     IngredientSpec spec;
     spec.name = name();
     spec.variant = variant;
     spec.parameters = {{"mesh_resolution.s", "", "more of what the refinement changed", 0.0, 0.0,
-                        most, 1.0, false}};
+                        most, next, false}};
     spec.touches = {.loading = true};
     struct Told {
       std::once_flag once;

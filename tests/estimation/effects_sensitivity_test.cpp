@@ -186,9 +186,8 @@ TEST(Sensitivity, MeshResolutionIsTheFinerMesh) {
   EXPECT_LT(error, 0.02 * moved);
 }
 
-/// Written and read, the finer mesh is there again.
-TEST(Sensitivity, AFinerMeshIsReadBack) {
-  const ModelForm base = base_form(block_scene());
+/// The base form on the mesh of mesh_resolution's refit, with `share` of its change on top.
+std::pair<ModelForm, VectorXd> on_finer_mesh(const ModelForm& base, double share) {
   const Model model = base.realise(base.initial());
   const Effect& effect = *find_effect("mesh_resolution");
   VectorXd none;
@@ -196,7 +195,13 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
   auto [form, p] = transfer(model, effect.refit_scene(*block_scene(), finer->variant()));
   form.ingredients.push_back(finer);
   p.conservativeResize(form.size());
-  p[form.size() - 1] = 0.4;
+  p[form.size() - 1] = share;
+  return {form, p};
+}
+
+/// Written and read, the finer mesh is there again.
+TEST(Sensitivity, AFinerMeshIsReadBack) {
+  const auto [form, p] = on_finer_mesh(base_form(block_scene()), 0.4);
   const auto file = std::filesystem::temp_directory_path() / "hookeye-finer-model.yaml";
   std::ofstream(file) << write_model(form, p);
   const auto [again, values] = read_model(file, block_scene());
@@ -211,15 +216,8 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
 /// share's derivative is that of the re-solved equilibrium.
 TEST(Sensitivity, TheFinerMeshReachesForTheLimit) {
   const ModelForm base = base_form(block_scene());
-  const Model model = base.realise(base.initial());
-  const Effect& effect = *find_effect("mesh_resolution");
-  VectorXd none;
-  const auto finer = effect.refit_form(model, effect.candidates(model, nullptr).front(), none);
-  auto [form, p] = transfer(model, effect.refit_scene(*block_scene(), finer->variant()));
-  form.ingredients.push_back(finer);
+  auto [form, p] = on_finer_mesh(base, 0.0);
   const int s = form.size() - 1;
-  p.conservativeResize(form.size());
-  p[s] = 0.0;
   const Evaluation at_null = evaluated(form, p, {});
   p[s] = 0.7;
   const States start = solve(form, p, {});
@@ -228,7 +226,7 @@ TEST(Sensitivity, TheFinerMeshReachesForTheLimit) {
   EXPECT_TRUE(expect_same(evaluated(form, p, {}), s, solved, 1e-2, 1e-3, "mesh_resolution.s"));
 
   const auto limit_scene = remeshed(*block_scene(), 0.35, 0, false);
-  const auto [limit_form, limit_p] = transfer(model, limit_scene);
+  const auto [limit_form, limit_p] = transfer(base.realise(base.initial()), limit_scene);
   const Model limit = limit_form.realise(limit_p);
   const TetMesh &mesh = form.scene->body->mesh, &finest = limit_scene->body->mesh;
   const auto there = interpolation(finest, mesh.X);
