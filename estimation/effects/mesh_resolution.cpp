@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/LU>
 #include <array>
@@ -25,12 +26,16 @@ class OtherMesh {
   /// tested. `here`: the present model's equilibrium, where it is known.
   const VectorXd& force(int example, const Equilibrium* here = nullptr) {
     Slot& slot = forces_[example];
+    // A thread that waits for its own solve must not take another example up meanwhile: that would
+    // want what this one has locked, or pile solve upon solve on one stack.
     std::call_once(slot.once, [&] {
-      try {
-        slot.force = compute(example, here);
-      } catch (const InputError&) {  // a surface that cannot be filled
-        slot.force = VectorXd::Zero(3 * model_.scene->body->mesh.nodes());
-      }
+      tbb::this_task_arena::isolate([&] {
+        try {
+          slot.force = compute(example, here);
+        } catch (const InputError&) {  // a surface that cannot be filled
+          slot.force = VectorXd::Zero(3 * model_.scene->body->mesh.nodes());
+        }
+      });
     });
     return slot.force;
   }
