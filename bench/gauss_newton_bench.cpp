@@ -61,7 +61,7 @@ std::shared_ptr<const Scene> scene() {
 std::pair<ModelForm, VectorXd> additive_form(int count) {
   const ModelForm base = base_form(scene());
   auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = find_additive(form, p).model;
+  AdditiveModel model = additive_parts(form, p).at(0).model;
   const char* names[] = {"E11", "E22", "E33", "E12", "E13", "E23"};
   int left = count - static_cast<int>(p.size());
   for (int k = 0; k < 6 && left > 0; ++k) {
@@ -71,7 +71,7 @@ std::pair<ModelForm, VectorXd> additive_form(int count) {
     add_addend(model, names[k], at, {}, VectorXd::Constant(points, 1e-3));
     left -= points;
   }
-  return with_structure(form, p, model);
+  return with_structures(form, p, {model});
 }
 
 void gauss_newton(benchmark::State& state) {

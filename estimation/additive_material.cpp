@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "capture_io/input_error.h"
+#include "estimation/additive_function.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye {
@@ -19,8 +19,9 @@ std::vector<double> numbers(const auto& matrix) {
 }
 
 /// Structure as text. Values of free addends stand among the parameters.
-std::string to_text(const AdditiveModel& model) {
+std::string to_text(const AdditiveModel& model, const MaterialPlace& place) {
   json out = {{"additive", 1}};
+  if (!place.label.empty()) out["material"] = {place.part, place.label};
   if (!model.frame.isIdentity(0.0)) out["frame"] = numbers(model.frame);
   if (model.cylinder) {
     out["axis"] = numbers(model.cylinder->axis);
@@ -66,12 +67,16 @@ void read_addend(const json& one, AdditiveModel& model) {
       model.components[component_index(model, fibre)].direction = vector_of<3>(d);
 }
 
-AdditiveModel from_text(const std::string& text) {
+std::pair<AdditiveModel, MaterialPlace> from_text(const std::string& text) {
   const json in = json::parse(text, nullptr, false);
   if (!in.is_object() || !in.contains("additive"))
     throw std::invalid_argument("not an additive material");
   try {
     AdditiveModel model;
+    MaterialPlace place;
+    if (in.contains("material"))
+      place = {in["material"].at(0).get<int>(), in["material"].at(1).get<std::string>()};
+    if (place.part < 0) throw std::invalid_argument("no such material");
     if (in.contains("frame")) model.frame = vector_of<9>(in["frame"]).reshaped(3, 3);
     if (in.contains("axis"))
       model.cylinder = {vector_of<3>(in["axis"]), vector_of<3>(in.at("center"))};
@@ -81,19 +86,27 @@ AdditiveModel from_text(const std::string& text) {
     }
     for (const json& one : in.at("addends")) read_addend(one, model);
     if (const auto wrong = structure_fault(model)) throw std::invalid_argument(wrong->wrong);
-    return model;
+    return {std::move(model), std::move(place)};
   } catch (const json::exception& error) {
     throw std::invalid_argument(error.what());
   }
 }
 
+std::vector<Parameter> named(std::vector<Parameter> all, const std::string& label) {
+  if (!label.empty())
+    for (Parameter& one : all) one.name = label + "." + one.name;
+  return all;
+}
+
 class AdditiveMaterial final : public Ingredient {
  public:
-  AdditiveMaterial(AdditiveModel model, const Units& units)
+  AdditiveMaterial(AdditiveModel model, const Units& units, MaterialPlace place)
       : model_(std::move(model)),
-        variant_(to_text(model_)),
-        parameters_(additive(model_)->parameters(units)) {}
+        place_(std::move(place)),
+        variant_(to_text(model_, place_)),
+        parameters_(named(additive(model_)->parameters(units), place_.label)) {}
   const AdditiveModel& model() const { return model_; }
+  const MaterialPlace& place() const { return place_; }
 
   std::string name() const override { return "material"; }
   std::string variant() const override { return variant_; }
@@ -102,7 +115,7 @@ class AdditiveMaterial final : public Ingredient {
   void apply(const VectorXd& values, Model& model) const override {
     AdditiveModel own = model_;
     own.set_values(values);
-    EnergyModel::Part& part = model.energy.parts.at(0);
+    EnergyModel::Part& part = model.energy.parts.at(index());
     part.term = additive(own);
     set_frames(part, model.scene->body->mesh);
   }
@@ -111,16 +124,16 @@ class AdditiveMaterial final : public Ingredient {
                             MechanicsDerivative& out) const override {
     const std::lock_guard lock(mutex_);
     Columns& kept = columns_[example];
-    const EnergyModel::Part& part = model.energy.parts.at(0);
+    const EnergyModel::Part& part = model.energy.parts.at(index());
     // Forces are linear in the values: the columns depend on q and on the factors alone.
     const EnergyModel scaled = model.energy_of(example);
+    const VectorXd& weight = scaled.parts[index()].weight;
     if (kept.q.size() != equilibrium.q.size() || kept.q != equilibrium.q ||
-        kept.weight.size() != scaled.parts[0].weight.size() ||
-        kept.weight != scaled.parts[0].weight || kept.swelling.size() != scaled.swelling.size() ||
-        kept.swelling != scaled.swelling) {
+        kept.weight.size() != weight.size() || kept.weight != weight ||
+        kept.swelling.size() != scaled.swelling.size() || kept.swelling != scaled.swelling) {
       if (static_cast<size_t>(part.term->size()) != parameters_.size()) return false;
-      kept = {equilibrium.q, scaled.parts[0].weight, scaled.swelling,
-              all_dR_dtheta(model.scene->body->mesh, scaled, equilibrium.q, 0)};
+      kept = {equilibrium.q, weight, scaled.swelling,
+              all_dR_dtheta(model.scene->body->mesh, scaled, equilibrium.q, place_.part)};
     }
     out.dR_dt = kept.dR.col(parameter);
     return true;
@@ -131,7 +144,9 @@ class AdditiveMaterial final : public Ingredient {
     VectorXd q, weight, swelling;
     Eigen::MatrixXd dR;
   };
+  size_t index() const { return static_cast<size_t>(place_.part); }
   AdditiveModel model_;
+  MaterialPlace place_;
   std::string variant_;
   std::vector<Parameter> parameters_;
   mutable std::mutex mutex_;
@@ -140,36 +155,94 @@ class AdditiveMaterial final : public Ingredient {
 
 }  // namespace
 
-std::shared_ptr<const Ingredient> additive_material(const AdditiveModel& model,
-                                                    const Units& units) {
-  return std::make_shared<AdditiveMaterial>(model, units);
-}
-
-const AdditiveModel* additive_structure(const Ingredient& ingredient) {
-  const auto* found = dynamic_cast<const AdditiveMaterial*>(&ingredient);
-  return found ? &found->model() : nullptr;
+std::shared_ptr<const Ingredient> additive_material(const AdditiveModel& model, const Units& units,
+                                                    const MaterialPlace& place) {
+  return std::make_shared<AdditiveMaterial>(model, units, place);
 }
 
 std::shared_ptr<const Ingredient> additive_material_from(const std::string& variant,
                                                          const Units& units) {
-  const AdditiveModel model = from_text(variant);
-  return additive_material(model, units);
+  const auto [model, place] = from_text(variant);
+  return additive_material(model, units, place);
 }
 
-AdditivePart find_additive(const ModelForm& form, const VectorXd& p) {
-  AdditivePart out;
+namespace {
+
+/// Calls visit(ingredient, its index, offset of its values, their number).
+template <class Visit>
+void for_each_ingredient(const ModelForm& form, Visit&& visit) {
   int offset = 0;
   for (size_t i = 0; i < form.ingredients.size(); ++i) {
-    const AdditiveModel* model = additive_structure(*form.ingredients[i]);
-    if (model) {
-      out.ingredient = static_cast<int>(i);
-      out.offset = offset;
-      out.model = *model;
-      out.model.set_values(p.segment(offset, model->size()));
-      return out;
-    }
-    offset += static_cast<int>(form.ingredients[i]->parameters().size());
+    const int n = static_cast<int>(form.ingredients[i]->parameters().size());
+    visit(*form.ingredients[i], static_cast<int>(i), offset, n);
+    offset += n;
   }
+}
+
+const AdditiveMaterial* as_material(const Ingredient& ingredient) {
+  return dynamic_cast<const AdditiveMaterial*>(&ingredient);
+}
+
+}  // namespace
+
+std::vector<AdditivePart> additive_parts(const ModelForm& form, const VectorXd& p) {
+  std::vector<AdditivePart> out;
+  for_each_ingredient(form, [&](const Ingredient& one, int index, int offset, int n) {
+    const AdditiveMaterial* material = as_material(one);
+    if (!material) return;
+    out.push_back({index, offset, material->place(), material->model()});
+    out.back().model.set_values(p.segment(offset, n));
+  });
+  return out;
+}
+
+bool has_additive(const ModelForm& form) {
+  return std::any_of(form.ingredients.begin(), form.ingredients.end(),
+                     [](const auto& one) { return as_material(*one) != nullptr; });
+}
+
+std::vector<AddedPart> added_parts(const ModelForm& form, const VectorXd& p) {
+  std::vector<AddedPart> out;
+  for_each_ingredient(form, [&](const Ingredient& one, int, int offset, int n) {
+    auto added = added_functions(one, p.segment(offset, n));
+    if (!added) return;
+    Eigen::MatrixXd by_p = Eigen::MatrixXd::Zero(added->by_values.rows(), p.size());
+    by_p.middleCols(offset, n) = added->by_values;
+    out.push_back({one.name(), {std::move(added->model), std::move(by_p)}});
+  });
+  return out;
+}
+
+namespace {
+
+/// Adds `functions` to every part of the same frame; false: there is none.
+bool add_to_each(std::vector<ConvexPart>& parts, const ConvexPart& functions) {
+  bool any = false;
+  for (ConvexPart& part : parts) {
+    auto sum = sum_of(part.model, functions.model);
+    if (!sum) continue;
+    Eigen::MatrixXd by_x(part.by_x.rows() + functions.by_x.rows(), functions.by_x.cols());
+    by_x << part.by_x, functions.by_x;
+    part = {std::move(*sum), std::move(by_x)};
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace
+
+std::vector<ConvexPart> convex_parts(const ModelForm& form, const VectorXd& p) {
+  std::vector<ConvexPart> out;
+  for (const AdditivePart& part : additive_parts(form, p)) {
+    const int n = part.model.size();
+    Eigen::MatrixXd by_p = Eigen::MatrixXd::Zero(n, p.size());
+    by_p.middleCols(part.offset, n).setIdentity();
+    out.push_back({part.model, std::move(by_p)});
+  }
+  std::vector<ConvexPart> alone;
+  for (const AddedPart& added : added_parts(form, p))
+    if (!add_to_each(out, added.functions)) alone.push_back(added.functions);
+  out.insert(out.end(), alone.begin(), alone.end());
   return out;
 }
 
@@ -192,52 +265,69 @@ AdditiveModel start_of(const EnergyTerm& law) {
 
 std::pair<ModelForm, VectorXd> to_additive(const ModelForm& form, const VectorXd& p) {
   const Capture& capture = form.scene->capture;
-  if (capture.materials.size() != 1)
-    throw InputError(
-        capture.materials.empty() ? Place{capture.file.string()} : capture.materials[1].place,
-        "the additive material is fitted for one material over the whole body",
-        "tell one `material`, or fit the laws of the regions");
   ModelForm out = form;
   std::vector<double> values;
   const Model now = form.realise(p);
-  const AdditiveModel model = start_of(*now.energy.parts[0].term);
-  const auto material = additive_material(model, capture.units);
-  out.ingredients.assign(1, material);
-  const VectorXd start = model.values();
-  values.assign(start.data(), start.data() + start.size());
-  int offset = 0;
-  for (const auto& ingredient : form.ingredients) {
-    const int n = static_cast<int>(ingredient->parameters().size());
-    if (ingredient->name() != "material") {
-      out.ingredients.push_back(ingredient);
-      values.insert(values.end(), p.data() + offset, p.data() + offset + n);
-    }
-    offset += n;
+  out.ingredients.clear();
+  for (size_t i = 0; i < capture.materials.size(); ++i) {
+    const AdditiveModel model = start_of(*now.energy.parts[i].term);
+    out.ingredients.push_back(additive_material(
+        model, capture.units, {static_cast<int>(i), capture.materials[i].region}));
+    const VectorXd start = model.values();
+    values.insert(values.end(), start.begin(), start.end());
   }
+  for_each_ingredient(form, [&](const Ingredient& one, int index, int offset, int n) {
+    if (one.name() == "material") return;
+    out.ingredients.push_back(form.ingredients[static_cast<size_t>(index)]);
+    values.insert(values.end(), p.data() + offset, p.data() + offset + n);
+  });
   return {out, Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()))};
 }
 
-std::pair<ModelForm, VectorXd> with_structure(const ModelForm& form, const VectorXd& p,
-                                              const AdditiveModel& model) {
-  const AdditivePart old = find_additive(form, p);
-  if (old.ingredient < 0) throw std::logic_error("with_structure: no additive material");
+std::pair<ModelForm, VectorXd> with_structures(const ModelForm& form, const VectorXd& p,
+                                               const std::vector<AdditiveModel>& models) {
   ModelForm out = form;
-  out.ingredients[old.ingredient] = additive_material(model, form.scene->capture.units);
-  const int before = old.offset, after = static_cast<int>(p.size()) - before - old.model.size();
-  VectorXd values(before + model.size() + after);
-  values << p.head(before), model.values(), p.tail(after);
-  return {out, values};
+  std::vector<double> values;
+  size_t next = 0;
+  for_each_ingredient(form, [&](const Ingredient& one, int index, int offset, int n) {
+    VectorXd own = p.segment(offset, n);
+    if (const AdditiveMaterial* material = as_material(one)) {
+      const AdditiveModel& model = models.at(next++);
+      out.ingredients[static_cast<size_t>(index)] =
+          additive_material(model, form.scene->capture.units, material->place());
+      own = model.values();
+    }
+    values.insert(values.end(), own.begin(), own.end());
+  });
+  if (next != models.size()) throw std::logic_error("with_structures: one for every material");
+  return {out, Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()))};
+}
+
+std::optional<ConvexityTest> smallest_eigenvalue(const Model& model) {
+  std::vector<ConvexPart> materials, added;
+  const size_t told = model.scene->capture.materials.size();
+  for (size_t i = 0; i < model.energy.parts.size(); ++i)
+    if (const AdditiveModel* own = additive_model(*model.energy.parts[i].term))
+      (i < told ? materials : added).push_back({*own, Eigen::MatrixXd(own->size(), 0)});
+  std::vector<ConvexPart> all = materials;
+  for (const ConvexPart& one : added)
+    if (!add_to_each(all, one)) all.push_back(one);
+  std::optional<ConvexityTest> least;
+  for (const ConvexPart& one : all) {
+    ConvexityTest test = smallest_eigenvalue(one.model);
+    if (!least || test.smallest < least->smallest) least = std::move(test);
+  }
+  return least;
 }
 
 std::optional<NumericalFailure> not_convex(const Model& model) {
-  for (const EnergyModel::Part& part : model.energy.parts) {
-    const AdditiveModel* additive = additive_model(*part.term);
-    if (!additive) continue;
-    const ConvexityTest test = smallest_eigenvalue(*additive);
-    if (test.smallest < -1e-12 * additive->values().cwiseAbs().maxCoeff())
-      return NumericalFailure{"", 0.0, fmt::format("the energy is not convex at {}", test.where)};
-  }
-  return {};
+  const auto test = smallest_eigenvalue(model);
+  double stiffest = 0.0;
+  for (const EnergyModel::Part& part : model.energy.parts)
+    if (const AdditiveModel* own = additive_model(*part.term); own && own->size() > 0)
+      stiffest = std::max(stiffest, own->values().cwiseAbs().maxCoeff());
+  if (!test || test->smallest >= -1e-12 * stiffest) return {};
+  return NumericalFailure{"", 0.0, fmt::format("the energy is not convex at {}", test->where)};
 }
 
 void set_frames(EnergyModel::Part& part, const TetMesh& mesh) {

@@ -107,8 +107,7 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
   ModelForm form;
   form.scene = scene;
   form.start = told_model(scene);
-  if (auto material = material_ingredient(*scene, form.start.energy))
-    form.ingredients.push_back(material);
+  form.ingredients = material_ingredients(*scene, form.start.energy);
   if (auto rigid = rigid_support_ingredient(*scene)) form.ingredients.push_back(rigid);
   const bool shaded = any_image(capture) && (capture.body.texture == BodySpec::Texture::image ||
                                              capture.body.texture == BodySpec::Texture::uniform);

@@ -212,6 +212,13 @@ class SelfWeight final : public Ingredient {
   Vector3d gravity_;
 };
 
+/// Every control value moves.
+bool asks_for_additive(const Capture& capture) {
+  return !capture.materials.empty() && capture.fit == std::vector<std::string>{"additive"} &&
+         std::all_of(capture.materials.begin(), capture.materials.end(),
+                     [](const MaterialSpec& spec) { return spec.law == "additive"; });
+}
+
 [[noreturn]] void unknown_parameter(const Capture& capture, size_t i,
                                     const std::vector<std::string>& known) {
   const std::string& wanted = capture.fit[i];
@@ -223,12 +230,16 @@ class SelfWeight final : public Ingredient {
 
 }  // namespace
 
-std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
-                                                      const EnergyModel& energy) {
+std::vector<std::shared_ptr<const Ingredient>> material_ingredients(const Scene& scene,
+                                                                    const EnergyModel& energy) {
   const Capture& capture = scene.capture;
-  if (capture.materials.size() == 1 && capture.fit == std::vector<std::string>{"additive"})
-    if (const AdditiveModel* model = additive_model(*energy.parts.at(0).term))
-      return additive_material(*model, capture.units);
+  if (asks_for_additive(capture)) {
+    std::vector<std::shared_ptr<const Ingredient>> all;
+    for (size_t i = 0; i < capture.materials.size(); ++i)
+      all.push_back(additive_material(*additive_model(*energy.parts.at(i).term), capture.units,
+                                      {static_cast<int>(i), capture.materials[i].region}));
+    return all;
+  }
   std::vector<Material::Slot> slots;
   for (size_t i = 0; i < capture.fit.size(); ++i) {
     std::vector<std::string> known;
@@ -253,8 +264,8 @@ std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
     }
     if (!found) unknown_parameter(capture, i, known);
   }
-  if (slots.empty()) return nullptr;
-  return std::make_shared<Material>(std::move(slots));
+  if (slots.empty()) return {};
+  return {std::make_shared<Material>(std::move(slots))};
 }
 
 std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene) {

@@ -2,15 +2,17 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "estimation/model.h"
 
 namespace hookeye {
 
-/// What `fit:` names, over all materials; null when nothing moves. Throws InputError for an
-/// unknown name.
-std::shared_ptr<const Ingredient> material_ingredient(const Scene& scene,
-                                                      const EnergyModel& energy);
+/// What `fit:` names, over all materials: one ingredient; with `fit: [additive]`, where all
+/// materials are, one for each, which stays convex. Empty when nothing moves. Throws InputError for
+/// an unknown name.
+std::vector<std::shared_ptr<const Ingredient>> material_ingredients(const Scene& scene,
+                                                                    const EnergyModel& energy);
 /// Six numbers for every `rigid: fit` support; null when there is none.
 std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene);
 /// Ambient and sun (vector), common to all photos; light was not told.

@@ -29,20 +29,32 @@ VectorXd within_upper_bounds(const Scaling& scaling, VectorXd p) {
   return p;
 }
 
-/// The model whose control values are those of x: all of an additive material share one scale, so
-/// that H(x) is a multiple of H(p) and keeps its sign.
-double common_scale(Scaling& scaled, const AdditivePart& part) {
-  double scale = 0.0;
-  for (int i = 0; i < part.model.size(); ++i)
-    scale = std::max(scale, scaled.parameters[part.offset + i].typical);
-  for (int i = 0; i < part.model.size(); ++i) scaled.parameters[part.offset + i].typical = scale;
-  return scale;
+/// Whether control values come from this parameter.
+bool is_control_value(const std::vector<ConvexPart>& parts, Eigen::Index parameter) {
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const ConvexPart& part) { return !part.by_x.col(parameter).isZero(0.0); });
 }
 
-/// Walls are stiffness in p; in x they are divided by the scale like the values.
-AdditiveModel in_units(AdditiveModel model, double scale) {
-  for (Addend& a : model.addends) a.stiffness /= scale;
-  return model;
+/// The parts by x. Parameters that control values come from share one scale, so that H(x) is a
+/// multiple of H(p) and keeps its sign; walls are divided by it like the values.
+std::vector<ConvexPart> in_x(std::vector<ConvexPart> by_p, Scaling& scaled) {
+  double scale = 0.0;
+  std::vector<Parameter*> values;
+  for (size_t i = 0; i < scaled.parameters.size(); ++i)
+    if (is_control_value(by_p, static_cast<Eigen::Index>(i)))
+      values.push_back(&scaled.parameters[i]);
+  for (const Parameter* one : values) scale = std::max(scale, one->typical);
+  for (Parameter* one : values) one->typical = scale;
+  for (ConvexPart& part : by_p)
+    for (Addend& a : part.model.addends) a.stiffness /= scale;
+  return by_p;
+}
+
+double smallest_eigenvalue_of(const ModelForm& form, const VectorXd& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ConvexPart& part : convex_parts(form, p))
+    least = std::min(least, smallest_eigenvalue(part.model).smallest);
+  return least;
 }
 
 /// How the pictures are compared from here on: as in fit(), far ones by their motion.
@@ -94,13 +106,16 @@ struct SumsAt {
 /// such values by many times the stiffness, which other motions then feel.
 struct Draw {
   VectorXd centre, width;  ///< in x; width 0: not drawn
-  Draw(const AdditiveModel& in_x, int offset, VectorXd x) : centre(std::move(x)) {
-    double rest = 0.0;
-    for (size_t a = 0; a < in_x.addends.size(); ++a)
-      if (in_x.addends[a].second < 0)
-        rest = std::max(rest, addend_curve(in_x, static_cast<int>(a), 0.0)[2]);
+  Draw(const std::vector<ConvexPart>& parts, VectorXd x) : centre(std::move(x)) {
     width.setZero(centre.size());
-    width.segment(offset, in_x.size()).setConstant(rest);
+    for (const ConvexPart& part : parts) {
+      double rest = 0.0;
+      for (size_t a = 0; a < part.model.addends.size(); ++a)
+        if (part.model.addends[a].second < 0)
+          rest = std::max(rest, addend_curve(part.model, static_cast<int>(a), 0.0)[2]);
+      for (Eigen::Index i = 0; i < width.size(); ++i)
+        if (!part.by_x.col(i).isZero(0.0)) width[i] = std::max(width[i], rest);
+    }
   }
   double cost(const VectorXd& x) const {
     double sum = 0.0;
@@ -123,13 +138,13 @@ struct Step {
   MatrixXd H;
   VectorXd g;
   /// Minimum of the model over convex control values.
-  ConvexProjection solve(const AdditiveModel& model, int offset, const VectorXd& x,
+  ConvexProjection solve(const std::vector<ConvexPart>& parts, const VectorXd& x,
                          const VectorXd& low, double damping) const {
     const double floor = 1e-10 * std::max(H.diagonal().maxCoeff(), 1e-300);
     MatrixXd metric = H;
     metric.diagonal() += damping * H.diagonal() + VectorXd::Constant(x.size(), floor);
     const VectorXd target = x - metric.llt().solve(g);
-    return project_convex(model, target, metric, offset, low);
+    return project_convex(parts, target, metric, low);
   }
 };
 
@@ -138,11 +153,11 @@ struct Step {
 std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const ModelForm& form,
                                                      const VectorXd& start,
                                                      const FitOptions& options) {
-  const AdditivePart part = find_additive(form, start);
-  if (part.ingredient < 0) throw std::logic_error("fit_convex: no additive material");
+  if (!has_additive(form)) throw std::logic_error("fit_convex: no additive material");
   Scaling scaled{form.parameters()};
-  const double scale = common_scale(scaled, part);
-  const AdditiveModel model = in_units(part.model, scale);
+  const std::vector<ConvexPart> parts = in_x(convex_parts(form, start), scaled);
+  int values = 0;
+  for (const ConvexPart& part : parts) values += part.model.size();
   const VectorXd low = lower_bounds(scaled);
   auto chosen = comparison(workspace, form, start, options);
   if (auto* failure = std::get_if<NumericalFailure>(&chosen)) return *failure;
@@ -151,11 +166,11 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   ConvexFit out;
   out.registered = evaluation.registered;
   out.p = start;
-  out.eigenvalues = {smallest_eigenvalue(part.model).smallest};
+  out.eigenvalues = {smallest_eigenvalue_of(form, start)};
   auto first = sums_at(start);
   if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
   NormalEquations sums = std::get<NormalEquations>(std::move(first));
-  const Draw draw(model, part.offset, scaled.to_x(start));
+  const Draw draw(parts, scaled.to_x(start));
   double damping = 1e-3;
   for (; out.iterations < options.max_iterations; ++out.iterations) {
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
@@ -167,7 +182,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
     double fall = 0.0;
     // A damping of 1e6 moves nothing: then there is no lower place to go.
     for (; !accepted && damping < 1e6; damping = accepted ? damping : 8.0 * damping) {
-      const ConvexProjection next = step.solve(model, part.offset, x, low, damping);
+      const ConvexProjection next = step.solve(parts, x, low, damping);
       if (!next.converged) continue;
       const VectorXd p = within_upper_bounds(scaled, scaled.to_p(next.x));
       const VectorXd move = next.x - x;
@@ -183,11 +198,11 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
       if (!(fall > 0)) continue;
       sums = std::move(there);
       out.p = p;
-      out.eigenvalues.push_back(smallest_eigenvalue(find_additive(form, p).model).smallest);
+      out.eigenvalues.push_back(smallest_eigenvalue_of(form, p));
       accepted = true;
     }
     if (options.progress)
-      options.progress({fmt::format("additive, {} values", part.model.size()), out.iterations + 1,
+      options.progress({fmt::format("additive, {} values", values), out.iterations + 1,
                         options.max_iterations, std::sqrt(sums.r2 / sums_at.residuals)});
     if (!accepted || fall < 1e-5 * sums.r2) {
       out.converged = true;

@@ -11,19 +11,23 @@ namespace {
 
 using nlohmann::json;
 
-/// F of example `e` in the frame of the elements, element by element and point by point.
-std::vector<Matrix3d> gradients_in_frame(const Scene& scene, const Model& model,
-                                         const VectorXd& q) {
+/// Calls visit(element, F) for every point of an example where a part of the energy acts, F in the
+/// part's frame and without the swelling. Part -1: everywhere, in the frames of the first.
+template <class Visit>
+void for_each_point(const Scene& scene, const Model& model, const VectorXd& q, int part,
+                    Visit&& visit) {
   const TetMesh& mesh = scene.body->mesh;
-  std::vector<Matrix3d> all = deformation_gradients(mesh, q);
-  const EnergyModel::Part& part = model.energy.parts.at(0);
+  const std::vector<Matrix3d> all = deformation_gradients(mesh, q);
+  const EnergyModel::Part& own = model.energy.parts.at(static_cast<size_t>(std::max(part, 0)));
   const size_t points = all.size() / static_cast<size_t>(mesh.size());
   for (size_t i = 0; i < all.size(); ++i) {
     const int e = static_cast<int>(i / points);
-    if (model.energy.swelling.size()) all[i] /= model.energy.swelling[e];
-    if (part.frames.size()) all[i] = all[i] * part.frame(e);
+    if (part >= 0 && own.weight.size() && !(own.weight[e] > 0)) continue;
+    Matrix3d F = all[i];
+    if (model.energy.swelling.size()) F /= model.energy.swelling[e];
+    if (own.frames.size()) F = F * own.frame(e);
+    visit(e, F);
   }
-  return all;
 }
 
 /// Strain along a curve: over what is visited and the control points, with a margin.
@@ -51,15 +55,17 @@ void push_band(json& curve, double value, double half, double reach) {
 }
 
 VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
-                               const AdditiveModel& model) {
+                               const AdditiveModel& model, int part) {
   const Model realised = form.realise(fitted.p);
   std::vector<std::vector<double>> all(model.components.size());
   for (const auto& example : fitted.evaluation.examples) {
     if (example.held_out) continue;
-    for (const Matrix3d& F : gradients_in_frame(*form.scene, realised, example.equilibrium->q)) {
-      const VectorXd e = strains(model, F);
-      for (size_t c = 0; c < all.size(); ++c) all[c].push_back(e[static_cast<Eigen::Index>(c)]);
-    }
+    for_each_point(*form.scene, realised, example.equilibrium->q, part,
+                   [&](int, const Matrix3d& F) {
+                     const VectorXd e = strains(model, F);
+                     for (size_t c = 0; c < all.size(); ++c)
+                       all[c].push_back(e[static_cast<Eigen::Index>(c)]);
+                   });
   }
   VisitedStrains out;
   for (auto& values : all) {
@@ -70,16 +76,13 @@ VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
 }
 
 VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
-                        const VectorXd& q) {
-  const auto all = gradients_in_frame(scene, realised, q);
-  const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
+                        const VectorXd& q, int part) {
   Eigen::MatrixXd flags = Eigen::MatrixXd::Zero(scene.body->mesh.size(), model.addends.size());
-  for (size_t i = 0; i < all.size(); ++i) {
-    const std::vector<bool> beyond = beyond_control_points(model, strains(model, all[i]));
+  for_each_point(scene, realised, q, part, [&](int e, const Matrix3d& F) {
+    const std::vector<bool> beyond = beyond_control_points(model, strains(model, F));
     for (size_t a = 0; a < beyond.size(); ++a)
-      if (beyond[a])
-        flags(static_cast<Eigen::Index>(i / points), static_cast<Eigen::Index>(a)) = 1.0;
-  }
+      if (beyond[a]) flags(e, static_cast<Eigen::Index>(a)) = 1.0;
+  });
   return flags.rowwise().sum();
 }
 
@@ -103,27 +106,56 @@ CurvePoint on_curve(const AdditiveModel& model, int addend, double e, double sec
   return out;
 }
 
-json curve_json(const AdditiveModel& model, int addend, const VisitedStrains& visited,
-                const Eigen::MatrixXd& covariance, const VectorXd& mesh_reach, int offset) {
-  const Addend& a = model.addends[addend];
+/// Functions whose curves are drawn: a material's, or what an effect adds.
+struct Drawn {
+  AdditiveModel model;
+  Eigen::MatrixXd by_p;  ///< values() = by_p * p
+  int part = 0;          ///< as for_each_point
+  std::string label;     ///< "", "head", "strain_stiffening"
+};
+
+std::vector<Drawn> drawn(const Fitted& fitted) {
+  std::vector<Drawn> all;
+  const Eigen::Index n = fitted.p.size();
+  for (const AdditivePart& one : additive_parts(fitted.form, fitted.p)) {
+    Eigen::MatrixXd by_p = Eigen::MatrixXd::Zero(one.model.size(), n);
+    by_p.middleCols(one.offset, one.model.size()).setIdentity();
+    all.push_back({one.model, std::move(by_p), one.place.part, one.place.label});
+  }
+  for (const AddedPart& one : added_parts(fitted.form, fitted.p))
+    all.push_back({one.functions.model, one.functions.by_x, -1, one.name});
+  return all;
+}
+
+/// What the values of a fit are known to.
+struct Known {
+  const Eigen::MatrixXd& covariance;
+  const VectorXd& mesh_reach;  ///< empty: none
+};
+
+/// `first`: row of by_p of the addend's first control value.
+json curve_json(const Drawn& of, int addend, int first, const VisitedStrains& visited,
+                const Known& known) {
+  const Addend& a = of.model.addends[addend];
   const double low = visited.low[a.first], high = visited.high[a.first];
   const auto [from, to] = curve_range(a, low, high);
   double second = 0.0;
   if (a.second >= 0)
     second = visited.high[a.second] > -visited.low[a.second] ? visited.high[a.second]
                                                              : visited.low[a.second];
-  json one = {{"name", a.name}, {"axis", model.components[a.first].name}, {"visited", {low, high}}};
-  if (a.second >= 0) one["at"] = {{model.components[a.second].name, second}};
+  json one = {{"name", of.label.empty() ? a.name : of.label + "." + a.name},
+              {"axis", of.model.components[a.first].name},
+              {"visited", {low, high}}};
+  if (a.second >= 0) one["at"] = {{of.model.components[a.second].name, second}};
   for (int i = 0; i < kCurvePoints; ++i) {
     const double e = from + (to - from) * i / (kCurvePoints - 1);
-    const CurvePoint point = on_curve(model, addend, e, second);
+    const CurvePoint point = on_curve(of.model, addend, e, second);
     double half = 0.0, reach = 0.0;
     if (!a.fixed) {
-      const auto n = point.gradient.size();
-      half = kNormal95 *
-             std::sqrt(std::max(
-                 0.0, point.gradient.dot(covariance.block(offset, offset, n, n) * point.gradient)));
-      if (mesh_reach.size()) reach = point.gradient.dot(mesh_reach.segment(offset, n));
+      const VectorXd by_p =
+          of.by_p.middleRows(first, point.gradient.size()).transpose() * point.gradient;
+      half = kNormal95 * std::sqrt(std::max(0.0, by_p.dot(known.covariance * by_p)));
+      if (known.mesh_reach.size()) reach = by_p.dot(known.mesh_reach);
     }
     one["stretch"].push_back(e);
     one["value"].push_back(point.value);
@@ -133,19 +165,21 @@ json curve_json(const AdditiveModel& model, int addend, const VisitedStrains& vi
 }
 
 /// Elements of all examples beyond the control points, by addend.
-std::map<std::string, int> count_beyond(const Scene& scene, const AdditiveModel& model,
-                                        const Model& realised, const Fitted& fitted,
-                                        int* elements) {
+std::map<std::string, int> count_beyond(const Scene& scene, const Drawn& of, const Model& realised,
+                                        const Fitted& fitted, int* elements) {
   std::map<std::string, int> count;
   *elements = 0;
   for (const auto& example : fitted.evaluation.examples) {
-    for (const Addend& a : model.addends) {
-      AdditiveModel one = model;
+    for (const Addend& a : of.model.addends) {
+      AdditiveModel one = of.model;
       one.addends = {a};
-      const VectorXd beyond = addends_beyond(scene, one, realised, example.equilibrium->q);
+      const VectorXd beyond = addends_beyond(scene, one, realised, example.equilibrium->q, of.part);
       count[a.name] += static_cast<int>(beyond.sum());
     }
-    *elements += scene.body->mesh.size();
+    const VectorXd everywhere;
+    const VectorXd& weight = of.part < 0 ? everywhere : realised.energy.parts[of.part].weight;
+    *elements +=
+        weight.size() ? static_cast<int>((weight.array() > 0.0).count()) : scene.body->mesh.size();
   }
   return count;
 }
@@ -197,37 +231,37 @@ json ellipticity_json(const Scene& scene, const Model& realised, const Fitted& f
 }  // namespace
 
 json energy_curves(const Scene& scene, const Fitted& fitted) {
-  const AdditivePart part = find_additive(fitted.form, fitted.p);
   json out = json::array();
-  if (part.ingredient < 0) return out;
   const auto parameters = fitted.form.parameters();
   const Eigen::MatrixXd covariance =
       parameter_covariance(fitted.evaluation, parameters, fitted.p, nullptr, true);
-  const VisitedStrains visited = visited_strains(fitted.form, fitted, part.model);
   const Model realised = fitted.form.realise(fitted.p);
-  int elements = 0, offset = part.offset;
-  const auto beyond = count_beyond(scene, part.model, realised, fitted, &elements);
-  for (size_t a = 0; a < part.model.addends.size(); ++a) {
-    const Addend& addend = part.model.addends[a];
-    json one =
-        curve_json(part.model, static_cast<int>(a), visited, covariance, fitted.mesh_reach, offset);
-    one["unit"] = scene.capture.units.stress();
-    one["beyond"] = beyond.at(addend.name);
-    one["elements"] = elements;
-    out.push_back(std::move(one));
-    if (!addend.fixed) offset += static_cast<int>(addend.stiffness.size());
+  for (const Drawn& of : drawn(fitted)) {
+    const VisitedStrains visited = visited_strains(fitted.form, fitted, of.model, of.part);
+    int elements = 0, first = 0;
+    const auto beyond = count_beyond(scene, of, realised, fitted, &elements);
+    for (size_t a = 0; a < of.model.addends.size(); ++a) {
+      const Addend& addend = of.model.addends[a];
+      json one =
+          curve_json(of, static_cast<int>(a), first, visited, {covariance, fitted.mesh_reach});
+      one["unit"] = scene.capture.units.stress();
+      one["beyond"] = beyond.at(addend.name);
+      one["elements"] = elements;
+      out.push_back(std::move(one));
+      if (!addend.fixed) first += static_cast<int>(addend.stiffness.size());
+    }
   }
   return out;
 }
 
 json additive_metrics(const Scene& scene, const Fitted& fitted) {
-  const AdditivePart part = find_additive(fitted.form, fitted.p);
-  if (part.ingredient < 0) return {};
-  const ConvexityTest convex = smallest_eigenvalue(part.model);
+  if (!has_additive(fitted.form)) return {};
+  const Model realised = fitted.form.realise(fitted.p);
+  const ConvexityTest convex = *smallest_eigenvalue(realised);
   json out = {{"smallest_eigenvalue", convex.smallest},
               {"at", convex.where},
               {"least_over_accepted_steps", fitted.smallest_eigenvalue},
-              {"ellipticity", ellipticity_json(scene, fitted.form.realise(fitted.p), fitted)},
+              {"ellipticity", ellipticity_json(scene, realised, fitted)},
               {"refinements", json::array()}};
   for (const RefinementStage& stage : fitted.refinements)
     out["refinements"].push_back(

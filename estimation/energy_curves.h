@@ -19,18 +19,18 @@ double quantile(std::vector<double>& values, double share);
 /// order).
 void push_band(nlohmann::json& curve, double value, double half, double reach);
 
-/// Strains of the components over all points where the energy is evaluated, fitted examples only:
-/// the range between the 1 % and 99 % quantiles of the volume, and always 0.
+/// Strains of the components over all points where the energy is evaluated and the part of the
+/// energy acts, in its frames, fitted examples only: the range between the 1 % and 99 % quantiles
+/// of the volume, and always 0.
 struct VisitedStrains {
   std::vector<double> low, high;  ///< by component
 };
 VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
-                               const AdditiveModel& model);
+                               const AdditiveModel& model, int part = 0);
 
-/// Number of elements of an example with a point beyond the control points of any addend; per
-/// element how many addends (for pictures).
+/// Per element, of how many addends of the part's material it is beyond the control points.
 VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
-                        const VectorXd& q);
+                        const VectorXd& q, int part = 0);
 
 /// `metrics.energy` of a material told by laws, effects included, in the same form: a pull at
 /// constant volume (along x, y and z where that differs) and a change of volume, of the mean over

@@ -378,8 +378,7 @@ std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
-  if (find_additive(form, start).ingredient >= 0)
-    return fit_convex_to_end(workspace, form, start, options);
+  if (has_additive(form)) return fit_convex_to_end(workspace, form, start, options);
   StageResult result{start, true, 0};
   if (form.size() > 0) {
     const Scope scope{false, std::vector<bool>(form.size(), true)};

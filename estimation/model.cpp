@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "estimation/additive_material.h"
 #include "estimation/effect.h"
 
 namespace hookeye {
@@ -60,6 +61,8 @@ namespace {
 
 std::shared_ptr<const Ingredient> same_ingredient(const ModelForm& base, const ModelForm& so_far,
                                                   const VectorXd& p, const Ingredient& wanted) {
+  if (wanted.name() == "material" && !wanted.variant().empty())
+    return additive_material_from(wanted.variant(), base.scene->capture.units);
   for (const auto& ingredient : base.ingredients)
     if (ingredient->name() == wanted.name()) return ingredient;
   const Effect* effect = find_effect(wanted.name());

@@ -123,7 +123,7 @@ std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
     read_values(section.need("values", "the ingredient's parameters"), *ingredient, values);
     form.ingredients.push_back(std::move(ingredient));
     const VectorXd so_far_values = Eigen::Map<const VectorXd>(values.data(), values.size());
-    if (const AdditivePart part = find_additive(form, so_far_values); part.ingredient >= 0)
+    for (const AdditivePart& part : additive_parts(form, so_far_values))
       if (const auto wrong = fault(part.model))
         throw InputError(node.place, wrong->wrong, wrong->right);
   }

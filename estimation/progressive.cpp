@@ -73,7 +73,8 @@ RefinementStage stage_of(const std::string& what, double evidence, const Fitted&
   RefinementStage stage;
   stage.what = what;
   stage.evidence = evidence;
-  stage.values = find_additive(fitted.form, fitted.p).model.size();
+  for (const AdditivePart& part : additive_parts(fitted.form, fitted.p))
+    stage.values += part.model.size();
   stage.misfit_fit = fitted_misfit(fitted);
   stage.misfit_held_out = held_out_misfit(fitted);
   stage.smallest_eigenvalue = fitted.smallest_eigenvalue;
@@ -85,10 +86,11 @@ RefinementStage stage_of(const std::string& what, double evidence, const Fitted&
 /// that it asks for most.
 struct Next {
   std::string what;
-  AdditiveModel model;
+  std::vector<AdditiveModel> models;  ///< of all additive materials
   double evidence;
 };
-std::vector<Next> next_models(const AdditiveModel& present, const std::vector<Refinement>& all,
+std::vector<Next> next_models(const std::vector<AdditiveModel>& present,
+                              const std::vector<Refinement>& all,
                               const std::vector<Scored>& ranked) {
   std::vector<Next> out;
   Next together{"", present, 0.0};
@@ -96,12 +98,12 @@ std::vector<Next> next_models(const AdditiveModel& present, const std::vector<Re
   for (const Scored& one : ranked) {
     if (one.evidence < kTie || count == kMostAtOnce) break;
     const Refinement& refinement = all[one.index];
-    refinement.add(together.model);
+    refinement.add(together.models[refinement.material]);
     together.what += (count++ ? ", " : "") + refinement.what;
     together.evidence = std::max(together.evidence, one.evidence);
     if (count > 2) continue;
     out.push_back({refinement.what, present, one.evidence});
-    refinement.add(out.back().model);
+    refinement.add(out.back().models[refinement.material]);
   }
   if (count > 1) out.insert(out.begin(), std::move(together));
   return out;
@@ -119,9 +121,11 @@ std::variant<std::optional<Fitted>, NumericalFailure> one_more(
   if (auto* failure = std::get_if<NumericalFailure>(&scored)) return *failure;
   const auto before = held_out_misfit(present);
   std::optional<Fitted> best;
-  for (const Next& one : next_models(find_additive(present.form, present.p).model, all,
-                                     std::get<std::vector<Scored>>(scored))) {
-    const auto [larger, p] = with_structure(present.form, present.p, one.model);
+  std::vector<AdditiveModel> models;
+  for (const AdditivePart& part : additive_parts(present.form, present.p))
+    models.push_back(part.model);
+  for (const Next& one : next_models(models, all, std::get<std::vector<Scored>>(scored))) {
+    const auto [larger, p] = with_structures(present.form, present.p, one.models);
     auto result = fit(workspace, larger, p, options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (failure->reason == "cancelled") return *failure;

@@ -21,6 +21,7 @@ struct ProgressiveOptions {
 /// new addend. Zero at its null.
 struct Refinement {
   std::string what;                             ///< "control point E11 = 0.21", "addend E22"
+  size_t material = 0;                          ///< of the form's additive ones
   std::function<void(AdditiveModel&)> add;      ///< puts it in; the energy stays the same
   std::shared_ptr<const Ingredient> candidate;  ///< the function alone, to be scored
 };

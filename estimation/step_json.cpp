@@ -258,9 +258,13 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
       {"cauchy_stress", state.cauchy_stress, false},
       {"von_mises", state.von_mises.transpose(), false},
       {"J", state.J.transpose(), false}};
-  if (const AdditiveModel* own = additive_model(*model.energy.parts.at(0).term))
-    arrays.push_back(
-        {"beyond_control_points", addends_beyond(scene, *own, model, q).transpose(), false});
+  VectorXd beyond;
+  for (size_t part = 0; part < scene.capture.materials.size(); ++part)
+    if (const AdditiveModel* own = additive_model(*model.energy.parts.at(part).term)) {
+      if (beyond.size() == 0) beyond.setZero(mesh.size());
+      beyond += addends_beyond(scene, *own, model, q, static_cast<int>(part));
+    }
+  if (beyond.size()) arrays.push_back({"beyond_control_points", beyond.transpose(), false});
   write_vtu(file, mesh, arrays);
 }
 

@@ -85,6 +85,10 @@ int component_index(AdditiveModel& model, const std::string& name);
 void add_addend(AdditiveModel& model, const std::string& name, std::vector<double> at,
                 std::vector<double> at_second, const Eigen::VectorXd& stiffness);
 
+/// The energy of both: the addends of `a`, then those of `b`; values() one after the other. Empty
+/// where the frames differ, both have a barrier, or a model cannot hold so many components.
+std::optional<AdditiveModel> sum_of(const AdditiveModel& a, const AdditiveModel& b);
+
 /// The same energy with a control point more at `x` (along the second component if `second`).
 /// Where there is one already, or kMostControlPoints are, nothing changes.
 AdditiveModel refined(const AdditiveModel& model, int addend, double x, bool second = false);
@@ -120,18 +124,23 @@ struct ConvexityTest {
 /// The smallest eigenvalue over all tests. A model without addends: 0 at "".
 ConvexityTest smallest_eigenvalue(const AdditiveModel& model);
 
-/// The point x nearest to `target`, in the metric, whose control values x[offset] ... make a convex
-/// model that resists every strain at rest (1e-5 of the stiffest in `model`) and which keeps x >=
-/// low (empty: no bounds; -infinity: none for this one). H is linear in the control values, so a
-/// violated test bounds them by v^T H(x) v >= 0, which every convex model satisfies: cutting planes
-/// along the eigenvalues' gradients. metric: positive definite.
+/// A model that shall be convex, its control values linear in other numbers: values() = by_x * x.
+struct ConvexPart {
+  AdditiveModel model;
+  Eigen::MatrixXd by_x;
+};
+
+/// The point x nearest to `target`, in the metric, at which every part is convex and resists every
+/// strain at rest (1e-5 of the stiffest in its `model`) and which keeps x >= low (empty: no bounds;
+/// -infinity: none for this one). H is linear in x, so a violated test bounds it by
+/// v^T H(x) v >= 0, which every convex model satisfies: cutting planes along the eigenvalues'
+/// gradients. metric: positive definite.
 struct ConvexProjection {
   Eigen::VectorXd x;
   int cuts = 0;
   bool converged = false;  ///< false: x may violate convexity
 };
-ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorXd& target,
-                                const Eigen::MatrixXd& metric, int offset = 0,
-                                const Eigen::VectorXd& low = {});
+ConvexProjection project_convex(const std::vector<ConvexPart>& parts, const Eigen::VectorXd& target,
+                                const Eigen::MatrixXd& metric, const Eigen::VectorXd& low = {});
 
 }  // namespace hookeye

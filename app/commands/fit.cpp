@@ -14,15 +14,9 @@ struct FitArguments {
   std::string capture, run, model, material;
 };
 
-/// The capture's own law is additive, and its `fit` asks for all of it.
-bool asks_for_additive(const Capture& capture) {
-  return capture.materials.size() == 1 && capture.materials[0].law == "additive" &&
-         capture.fit == std::vector<std::string>{"additive"};
-}
-
 /// The textbook law first, where it can move; then the same energy told additively, refined.
 Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p, Session& session) {
-  const bool own = find_additive(form, p).ingredient >= 0;
+  const bool own = has_additive(form);
   std::vector<AdditiveStart> starts = {own ? AdditiveStart(form, p) : to_additive(form, p)};
   if (!own && form.size() > 0) {
     const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options()));
@@ -58,9 +52,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
   if (!arguments.model.empty()) std::tie(form, start) = read_model(arguments.model, bench.scene);
   Step step;
   step.name = "base";
-  const bool additive = arguments.material == "additive" ||
-                        find_additive(form, start).ingredient >= 0 ||
-                        asks_for_additive(bench.scene->capture);
+  const bool additive = arguments.material == "additive" || has_additive(form);
   step.fitted = additive ? fit_additive(bench, form, start, session)
                          : value_or_fail(fit(bench.workspace, form, start, fit_options()));
   const auto folder = record(run, step);

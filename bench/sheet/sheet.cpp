@@ -118,10 +118,10 @@ Result run(const Material& material, const std::string& motion, const fs::path& 
             "additive");
   out.additive_fit = shown_on(out.scene, additive);
   out.additive = errors_of(*out.scene, out.additive_fit);
-  out.values = find_additive(additive.form, additive.p).model.size();
+  out.values = additive_parts(additive.form, additive.p).at(0).model.size();
   std::cerr << fmt::format("{} {}: StVK misfit {:.6g}\n", material.name, motion,
                            normal_equations(stvk.evaluation).r2);
-  for (const Addend& a : find_additive(additive.form, additive.p).model.addends)
+  for (const Addend& a : additive_parts(additive.form, additive.p).at(0).model.addends)
     std::cerr << fmt::format("  {} at {}: {}\n", a.name, fmt::join(a.at, " "),
                              fmt::join(a.stiffness, " "));
   for (const RefinementStage& stage : additive.refinements)

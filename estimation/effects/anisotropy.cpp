@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -24,7 +26,30 @@ Vector3d turned(const Vector3d& a, double t1, double t2) {
   return rotation_of(t1 * first + t2 * second) * a.normalized();
 }
 
-/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike.
+/// E_jj, E_kk and E_jk of the two axes across `axis` with one modulus: W = k/2 (E_jj^2 + E_kk^2 +
+/// 2 E_jk^2), the same in all directions of that plane.
+AdditiveModel plane_across(const AdditiveModel& base, int axis, double k) {
+  const int low = axis == 0 ? 1 : 0, high = axis == 2 ? 1 : 2;
+  AdditiveModel out = in_frame_of(base);
+  const auto add = [&](int i, int j, double modulus) {
+    add_addend(out, fmt::format("E{}{}", i + 1, j + 1), {0.0}, {}, VectorXd::Constant(1, modulus));
+  };
+  add(low, low, k);
+  add(high, high, k);
+  add(low, high, 2.0 * k);
+  return out;
+}
+
+AdditiveModel fibres_along(const AdditiveModel& base, const Vector3d& a, double k) {
+  AdditiveModel out = in_frame_of(base);
+  add_addend(out, "fibre1", {0.0}, {}, VectorXd::Constant(1, k));
+  out.components[0].direction = a.normalized();
+  return out;
+}
+
+/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike. Of an
+/// additive material a function of the fibres' stretch, k/2 (lambda - 1)^2 with k >= 0, or one
+/// modulus in the plane across an axis of its frame, which makes that axis the softer one.
 class Anisotropy final : public Effect {
  public:
   std::string name() const override { return "anisotropy"; }
@@ -39,12 +64,16 @@ class Anisotropy final : public Effect {
   Ingredients candidates(const Model& model, std::string*) const override {
     Ingredients all;
     for (int i = 0; i < kDirections; ++i) all.push_back(along(model, hemisphere_direction(i)));
+    if (additive_base(model))
+      for (int axis = 0; axis < 3; ++axis) all.push_back(across(model, axis));
     return all;
   }
 
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
     const auto numbers = numbers_in(variant);
+    if (starts_with(variant, "across axis") && numbers.size() == 1 && additive_base(model))
+      return across(model, static_cast<int>(std::clamp(numbers[0], 1.0, 3.0)) - 1);
     if (numbers.size() != 3) return nullptr;
     const Vector3d a(numbers[0], numbers[1], numbers[2]);
     if (starts_with(variant, "along")) return along(model, a);
@@ -64,15 +93,20 @@ class Anisotropy final : public Effect {
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     const auto n = numbers_in(ingredient.variant());
+    const double mu = initial_shear_modulus(model.energy);
+    const std::string stress = model.scene->capture.units.stress();
+    if (starts_with(ingredient.variant(), "across"))
+      return fmt::format("{} % stiffer in the plane across axis {:g} than along it (modulus {} {})",
+                         figure(100.0 * values[0] / (3.0 * mu)), n.at(0), figure(values[0]),
+                         stress);
     Vector3d a = Vector3d(n.at(0), n.at(1), n.at(2)).normalized();
     if (values.size() == 3) a = turned(a, values[1], values[2]);
     if (a.z() < 0.0) a = -a;
-    // Uniaxial modulus along a: 3 mu + d2W/de2 with I4bar - 1 = 2 e, hence 4 k.
-    const double mu = initial_shear_modulus(model.energy);
-    const double change = 4.0 * values[0] / (3.0 * mu);
+    // Uniaxial modulus along a: 3 mu + d2W/de2 with I4bar - 1 = 2 e, hence 4 k; lambda - 1 = e.
+    const double change = (additive_base(model) ? 1.0 : 4.0) * values[0] / (3.0 * mu);
     return fmt::format("{} % {} along {} than across (fibre modulus {} {})",
                        figure(100.0 * std::abs(change)), change >= 0 ? "stiffer" : "softer",
-                       vector_text(a), figure(values[0]), model.scene->capture.units.stress());
+                       vector_text(a), figure(values[0]), stress);
   }
 
  private:
@@ -82,10 +116,36 @@ class Anisotropy final : public Effect {
             model.scene->capture.units.stress(),
             "fibre modulus",
             0.0,
-            -0.5 * mu,
+            additive_base(model) ? 0.0 : -0.5 * mu,  // a softer fibre alone is not convex
             1e3 * mu,
             mu,
             false};
+  }
+
+  std::shared_ptr<const Ingredient> across(const Model& model, int axis) const {
+    FunctionSpec spec;
+    spec.name = name();
+    spec.variant = fmt::format("across axis {}", axis + 1);
+    spec.parameters = {stiffness(model)};
+    spec.parameters[0].long_name = "modulus of the plane";
+    spec.functions = [base = in_frame_of(*additive_base(model)), axis](const VectorXd& values) {
+      return plane_across(base, axis, values[0]);
+    };
+    return additive_function(std::move(spec));
+  }
+
+  std::shared_ptr<const Ingredient> fibre_function(const Model& model, const Vector3d& a,
+                                                   std::string variant,
+                                                   std::vector<Parameter> parameters) const {
+    FunctionSpec spec;
+    spec.name = name();
+    spec.variant = std::move(variant);
+    spec.parameters = std::move(parameters);
+    spec.functions = [base = in_frame_of(*additive_base(model)), a](const VectorXd& values) {
+      return fibres_along(base, values.size() == 3 ? turned(a, values[1], values[2]) : a,
+                          values[0]);
+    };
+    return additive_function(std::move(spec));
   }
 
   std::shared_ptr<const Ingredient> along(const Model& model, const Vector3d& a) const {
@@ -93,6 +153,7 @@ class Anisotropy final : public Effect {
     spec.name = name();
     spec.variant = fmt::format("along {}", vector_text(a, 3));
     spec.parameters = {stiffness(model)};
+    if (additive_base(model)) return fibre_function(model, a, spec.variant, spec.parameters);
     spec.touches = {.energy = true};
     spec.apply = [a](const VectorXd& values, Model& m) { add_part(m.energy, fibre(values[0], a)); };
     spec.derivative = [a](const VectorXd& values, const Model& m, int example,
@@ -112,6 +173,7 @@ class Anisotropy final : public Effect {
         stiffness(model),
         {"anisotropy.angle1", "rad", "first angle of the fibre", 0.0, -3.2, 3.2, 0.2, false},
         {"anisotropy.angle2", "rad", "second angle of the fibre", 0.0, -3.2, 3.2, 0.2, false}};
+    if (additive_base(model)) return fibre_function(model, a, spec.variant, spec.parameters);
     spec.touches = {.energy = true};
     spec.apply = [a](const VectorXd& values, Model& m) {
       if (values[0] == 0.0) return;

@@ -41,14 +41,17 @@ bool is_volumetric(const AdditiveModel& model, const Addend& a) {
 }
 
 /// The J addend at rest, where it is there and the capture does not fit it.
-double free_volume_modulus(const EnergyTerm& term, const Capture& capture) {
+double free_volume_modulus(const EnergyTerm& term, const MaterialSpec& spec,
+                           const Capture& capture) {
   const AdditiveModel& model = *additive_model(term);
   const Addend* J = nullptr;
   for (const Addend& a : model.addends)
     if (is_volumetric(model, a)) J = &a;
-  const bool told = capture.materials.size() == 1 && capture.materials[0].law == "additive";
-  const bool fitted = std::any_of(capture.fit.begin(), capture.fit.end(), [](const auto& name) {
-    return name == "additive" || name == "J" || name.rfind("J.", 0) == 0;
+  const bool told = spec.law == "additive";
+  const bool fitted = std::any_of(capture.fit.begin(), capture.fit.end(), [&](std::string name) {
+    if (!spec.region.empty() && starts_with(name, spec.region + "."))
+      name.erase(0, spec.region.size() + 1);
+    return name == "additive" || name == "J" || starts_with(name, "J.");
   });
   // A material that was told otherwise became additive by a fit, which moves all of it.
   if (!J || !told || fitted) return 0.0;
@@ -94,7 +97,7 @@ std::vector<Volumetric> free_volumetric(const Model& model) {
     how.label = spec.region;
     if (additive_model(term)) {
       how.kind = Volumetric::Kind::addend;
-      how.modulus = free_volume_modulus(term, capture);
+      how.modulus = free_volume_modulus(term, spec, capture);
       how.value = 1.0;
       if (how.modulus > 0) out.push_back(how);
       continue;

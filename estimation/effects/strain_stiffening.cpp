@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -10,7 +12,23 @@ std::shared_ptr<const EnergyTerm> higher_order(double c2, double c3) {
   return yeoh(0.0, c2, c3, 0.0);
 }
 
-/// W += c2 (I1bar - 3)^2 + c3 (I1bar - 3)^3 (Yeoh 1993); the initial modulus stays.
+/// Amounts of shear over which the modulus of an additive material is tried to change: from what
+/// photos just show to a rubber's, each twice the last.
+const double kReaches[] = {0.05, 0.1, 0.2, 0.4, 0.8};
+
+/// A function of I1bar whose modulus is zero at rest and `values` at the control points after it.
+AdditiveModel stiffening(const AdditiveModel& base, std::vector<double> at,
+                         const VectorXd& values) {
+  VectorXd from_rest(values.size() + 1);
+  from_rest << 0.0, values;
+  at.insert(at.begin(), 0.0);
+  AdditiveModel out = in_frame_of(base);
+  add_addend(out, "I1bar", at, {}, from_rest);
+  return out;
+}
+
+/// W += c2 (I1bar - 3)^2 + c3 (I1bar - 3)^3 (Yeoh 1993); of an additive material a function of
+/// I1bar whose modulus rises or falls up to one control point, then two. The initial modulus stays.
 class StrainStiffening final : public Effect {
  public:
   std::string name() const override { return "strain_stiffening"; }
@@ -23,6 +41,74 @@ class StrainStiffening final : public Effect {
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
+    if (!additive_base(model)) return {of_law(model)};
+    Ingredients all;
+    for (double reach : kReaches) all.push_back(of_additive(model, {reach}));
+    return all;
+  }
+
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                            const std::string& variant) const override {
+    const auto at = numbers_in(variant);
+    if (!starts_with(variant, kAdditive) || at.empty() || !additive_base(model)) return nullptr;
+    return of_additive(model, at);
+  }
+
+  /// The same function with a control point in the middle.
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    const auto at = numbers_in(scored->variant());
+    if (!starts_with(scored->variant(), kAdditive) || at.size() != 1) return scored;
+    values = Eigen::Vector2d(0.5 * values[0], values[0]);
+    return of_additive(model, {0.5 * at[0], at[0]});
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    const double mu = initial_shear_modulus(model.energy);
+    if (starts_with(ingredient.variant(), kAdditive)) {
+      const double change = values[values.size() - 1] / mu;
+      return fmt::format(
+          "the material {} with strain: from an amount of shear of {} on its modulus "
+          "is {} % {} than at rest",
+          change >= 0 ? "stiffens" : "softens", figure(numbers_in(ingredient.variant()).back()),
+          figure(100.0 * std::abs(change)), change >= 0 ? "higher" : "lower");
+    }
+    // Uniaxial stretch 1.5: I1bar - 3 = 1.5^2 + 2/1.5 - 3; modulus 2 dW/dI1bar against its start.
+    const double i = 1.5 * 1.5 + 2.0 / 1.5 - 3.0;
+    const double change = 2.0 * (2.0 * values[0] * i + 3.0 * values[1] * i * i) / mu;
+    return fmt::format(
+        "the material {} with strain: at 50 % stretch its modulus is {} % {} than "
+        "at rest (c2 {} {}, c3 {})",
+        change >= 0 ? "stiffens" : "softens", figure(100.0 * std::abs(change)),
+        change >= 0 ? "higher" : "lower", figure(values[0]), model.scene->capture.units.stress(),
+        figure(values[1]));
+  }
+
+ private:
+  static constexpr const char* kAdditive = "additive at";
+
+  std::shared_ptr<const Ingredient> of_additive(const Model& model,
+                                                const std::vector<double>& at) const {
+    const double mu = initial_shear_modulus(model.energy);
+    FunctionSpec spec;
+    spec.name = name();
+    spec.variant = kAdditive;
+    for (size_t i = 0; i < at.size(); ++i) {
+      spec.variant += fmt::format(" {:g}", at[i]);
+      spec.parameters.push_back({fmt::format("strain_stiffening.k{}", i + 1),
+                                 model.scene->capture.units.stress(),
+                                 fmt::format("shear modulus added at I1bar = {:g}", at[i]), 0.0,
+                                 -mu, std::numeric_limits<double>::infinity(), 0.5 * mu, false});
+    }
+    spec.functions = [base = in_frame_of(*additive_base(model)), at](const VectorXd& values) {
+      return stiffening(base, at, values);
+    };
+    return additive_function(std::move(spec));
+  }
+
+  std::shared_ptr<const Ingredient> of_law(const Model& model) const {
     const double mu = initial_shear_modulus(model.energy);
     const std::string stress = model.scene->capture.units.stress();
     const double infinite = std::numeric_limits<double>::infinity();
@@ -42,21 +128,7 @@ class StrainStiffening final : public Effect {
       out.dR_dt = part_force(m, example, equilibrium.q, higher_order(k == 0, k == 1));
       return true;
     };
-    return {make_ingredient(std::move(spec))};
-  }
-
-  std::string sentence(const Model& model, const Ingredient&,
-                       const VectorXd& values) const override {
-    // Uniaxial stretch 1.5: I1bar - 3 = 1.5^2 + 2/1.5 - 3; modulus 2 dW/dI1bar against its start.
-    const double mu = initial_shear_modulus(model.energy);
-    const double i = 1.5 * 1.5 + 2.0 / 1.5 - 3.0;
-    const double change = 2.0 * (2.0 * values[0] * i + 3.0 * values[1] * i * i) / mu;
-    return fmt::format(
-        "the material {} with strain: at 50 % stretch its modulus is {} % {} than "
-        "at rest (c2 {} {}, c3 {})",
-        change >= 0 ? "stiffens" : "softens", figure(100.0 * std::abs(change)),
-        change >= 0 ? "higher" : "lower", figure(values[0]), model.scene->capture.units.stress(),
-        figure(values[1]));
+    return make_ingredient(std::move(spec));
   }
 };
 

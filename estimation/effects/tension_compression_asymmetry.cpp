@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "estimation/effects/toolbox.h"
@@ -69,6 +70,27 @@ std::shared_ptr<const EnergyTerm> bimodular_term(double b) {
   return std::make_shared<Bimodular>(b, kSwitchStrain);
 }
 
+/// Strains over which an additive material is tried to begin to differ: a switch at rest, and a
+/// growth over what photos show.
+const double kReaches[] = {0.02, 0.1, 0.5};
+
+/// The same function of E11, E22 and E33, zero on one side of rest: `values` are its moduli at the
+/// control points `at` on the other side, from rest outwards.
+AdditiveModel one_sided(const AdditiveModel& base, bool tension, std::vector<double> at,
+                        const VectorXd& values) {
+  VectorXd moduli(values.size() + 1);
+  moduli << 0.0, values;
+  at.insert(at.begin(), 0.0);
+  if (!tension) {
+    for (double& x : at) x = x == 0.0 ? 0.0 : -x;
+    std::reverse(at.begin(), at.end());
+    moduli.reverseInPlace();
+  }
+  AdditiveModel out = in_frame_of(base);
+  for (const char* normal : {"E11", "E22", "E33"}) add_addend(out, normal, at, {}, moduli);
+  return out;
+}
+
 class TensionCompressionAsymmetry final : public Effect {
  public:
   std::string name() const override { return "tension_compression_asymmetry"; }
@@ -82,13 +104,41 @@ class TensionCompressionAsymmetry final : public Effect {
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
-    return {make(model, "growing with strain", odd_term),
-            make(model, "by a fixed share", bimodular_term)};
+    if (!additive_base(model))
+      return {make(model, "growing with strain", odd_term),
+              make(model, "by a fixed share", bimodular_term)};
+    Ingredients all;
+    for (bool tension : {true, false})
+      for (double reach : kReaches) all.push_back(of_additive(model, tension, {reach}));
+    return all;
+  }
+
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                            const std::string& variant) const override {
+    const auto at = numbers_in(variant);
+    if (!starts_with(variant, kAdditive) || at.empty() || !additive_base(model)) return nullptr;
+    return of_additive(model, starts_with(variant, kTension), at);
+  }
+
+  /// The same function with a control point in the middle.
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    const auto at = numbers_in(scored->variant());
+    if (!starts_with(scored->variant(), kAdditive) || at.size() != 1) return scored;
+    values = Eigen::Vector2d(0.5 * values[0], values[0]);
+    return of_additive(model, starts_with(scored->variant(), kTension), {0.5 * at[0], at[0]});
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     const double mu = initial_shear_modulus(model.energy);
+    if (starts_with(ingredient.variant(), kAdditive))
+      return fmt::format("stiffer in {0} than in {1}: from {2} % strain on, by {3} % along an axis",
+                         starts_with(ingredient.variant(), kTension) ? "tension" : "compression",
+                         starts_with(ingredient.variant(), kTension) ? "compression" : "tension",
+                         figure(100.0 * numbers_in(ingredient.variant()).back()),
+                         figure(100.0 * values[values.size() - 1] / (3.0 * mu)));
     if (ingredient.variant() == "by a fixed share") {
       const double share = 8.0 * values[0] / (3.0 * mu);
       return fmt::format("{} % {} in tension than in compression", figure(100.0 * std::abs(share)),
@@ -102,6 +152,29 @@ class TensionCompressionAsymmetry final : public Effect {
   }
 
  private:
+  static constexpr const char* kAdditive = "additive in";
+  static constexpr const char* kTension = "additive in tension";
+
+  std::shared_ptr<const Ingredient> of_additive(const Model& model, bool tension,
+                                                const std::vector<double>& at) const {
+    const double mu = initial_shear_modulus(model.energy);
+    FunctionSpec spec;
+    spec.name = name();
+    spec.variant = fmt::format("{} at", tension ? kTension : "additive in compression");
+    for (size_t i = 0; i < at.size(); ++i) {
+      spec.variant += fmt::format(" {:g}", at[i]);
+      // A negative modulus on one side alone is not convex: then the other side is the stiffer one.
+      spec.parameters.push_back(
+          {fmt::format("tension_compression_asymmetry.k{}", i + 1),
+           model.scene->capture.units.stress(),
+           fmt::format("modulus added at a normal strain of {}{:g}", tension ? "" : "-", at[i]),
+           0.0, 0.0, std::numeric_limits<double>::infinity(), 0.5 * mu, false});
+    }
+    spec.functions = [base = in_frame_of(*additive_base(model)), tension,
+                      at](const VectorXd& values) { return one_sided(base, tension, at, values); };
+    return additive_function(std::move(spec));
+  }
+
   using Term = std::shared_ptr<const EnergyTerm> (*)(double);
   std::shared_ptr<const Ingredient> make(const Model& model, const std::string& variant,
                                          Term term) const {

@@ -140,6 +140,20 @@ Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector) {
   return pose_about(Vector3d::Zero(), rotation_vector, Vector3d::Zero()).linear();
 }
 
+const AdditiveModel* additive_base(const Model& model) {
+  const size_t materials = model.scene->capture.materials.size();
+  for (size_t i = 0; i < materials; ++i)
+    if (!additive_model(*model.energy.parts.at(i).term)) return nullptr;
+  return materials > 0 ? additive_model(*model.energy.parts[0].term) : nullptr;
+}
+
+AdditiveModel in_frame_of(const AdditiveModel& base) {
+  AdditiveModel out;
+  out.frame = base.frame;
+  out.cylinder = base.cylinder;
+  return out;
+}
+
 void add_part(EnergyModel& energy, std::shared_ptr<const EnergyTerm> term) {
   energy.parts.push_back({std::move(term), {}});
 }

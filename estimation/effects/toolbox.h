@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "estimation/additive_function.h"
 #include "estimation/effect.h"
 #include "simulation/equilibrium.h"
 
@@ -48,6 +49,12 @@ VectorXd gaussian_bump(const TetMesh& mesh, const Vector3d& centre, double radiu
 /// Initial shear modulus of the first material (mean over parts that act everywhere): P_xy by F_xy
 /// at F = I [stress].
 double initial_shear_modulus(const EnergyModel& energy);
+/// The model of the first material, where all of a capture's materials are additive: what an effect
+/// adds to the material is then told in the same language (additive_function.h) and stays convex
+/// with it. Null: some law is not.
+const AdditiveModel* additive_base(const Model& model);
+/// A model without addends in the frame of another.
+AdditiveModel in_frame_of(const AdditiveModel& base);
 /// Two unit axes normal to `direction` and to each other.
 std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction);
 Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector);

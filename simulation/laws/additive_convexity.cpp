@@ -208,11 +208,39 @@ std::vector<ConvexityTest> violated_tests(const AdditiveModel& model, double at_
   return all;
 }
 
+/// A part while it is being made convex.
+struct PartInWork {
+  const ConvexPart& told;
+  AdditiveModel trial;
+  double margin, at_rest;
+  PartInWork(const ConvexPart& part, const Eigen::VectorXd& target)
+      : told(part), trial(part.model), at_rest(kSoftest * stiffest_at_rest(part.model)) {
+    // Cuts ask for a little more than zero, so that the search ends.
+    margin = 1e-9 * std::max(1e-300, (part.by_x * target).lpNorm<Eigen::Infinity>());
+  }
+  /// Adds half-spaces of x that keep the worst tests; how many.
+  int cut(const Eigen::VectorXd& x, std::vector<Eigen::VectorXd>& normals,
+          std::vector<double>& heights) {
+    const Eigen::VectorXd values = told.by_x * x;
+    trial.set_values(values);
+    std::vector<ConvexityTest> violated = violated_tests(trial, at_rest);
+    // The worst tests first; the others are often satisfied with them.
+    const size_t most = std::min<size_t>(violated.size(), 8);
+    std::partial_sort(
+        violated.begin(), violated.begin() + static_cast<std::ptrdiff_t>(most), violated.end(),
+        [](const ConvexityTest& a, const ConvexityTest& b) { return a.smallest < b.smallest; });
+    for (size_t k = 0; k < most; ++k) {
+      normals.push_back(told.by_x.transpose() * violated[k].gradient);
+      heights.push_back(violated[k].gradient.dot(values) - violated[k].smallest + margin);
+    }
+    return static_cast<int>(most);
+  }
+};
+
 }  // namespace
 
-ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorXd& target,
-                                const Eigen::MatrixXd& metric, int offset,
-                                const Eigen::VectorXd& low) {
+ConvexProjection project_convex(const std::vector<ConvexPart>& parts, const Eigen::VectorXd& target,
+                                const Eigen::MatrixXd& metric, const Eigen::VectorXd& low) {
   const Eigen::LLT<Eigen::MatrixXd> factor(metric);
   ConvexProjection out;
   out.x = target;
@@ -224,10 +252,8 @@ ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorX
       normals.push_back(Eigen::VectorXd::Unit(target.size(), i));
       heights.push_back(low[i]);
     }
-  AdditiveModel trial = model;
-  const double scale = std::max(1e-300, target.segment(offset, model.size()).cwiseAbs().maxCoeff());
-  // Cuts ask for a little more than zero, so that the search ends.
-  const double margin = 1e-9 * scale, at_rest = kSoftest * stiffest_at_rest(model);
+  std::vector<PartInWork> work;
+  for (const ConvexPart& part : parts) work.emplace_back(part, target);
   for (int round = 0; round < 200; ++round) {
     if (!normals.empty()) {
       Eigen::MatrixXd G(normals.size(), target.size());
@@ -240,24 +266,13 @@ ConvexProjection project_convex(const AdditiveModel& model, const Eigen::VectorX
       out.x = *nearest;
       if (low.size() != 0) out.x = out.x.cwiseMax(low);
     }
-    const Eigen::VectorXd values = out.x.segment(offset, model.size());
-    trial.set_values(values);
-    std::vector<ConvexityTest> violated = violated_tests(trial, at_rest);
-    if (violated.empty()) {
+    int cuts = 0;
+    for (PartInWork& part : work) cuts += part.cut(out.x, normals, heights);
+    if (cuts == 0) {
       out.converged = true;
       return out;
     }
-    // The worst tests first; the others are often satisfied with them.
-    const size_t most = std::min<size_t>(violated.size(), 8);
-    std::partial_sort(
-        violated.begin(), violated.begin() + static_cast<std::ptrdiff_t>(most), violated.end(),
-        [](const ConvexityTest& a, const ConvexityTest& b) { return a.smallest < b.smallest; });
-    for (size_t k = 0; k < most; ++k, ++out.cuts) {
-      Eigen::VectorXd normal = Eigen::VectorXd::Zero(target.size());
-      normal.segment(offset, model.size()) = violated[k].gradient;
-      normals.push_back(normal);
-      heights.push_back(violated[k].gradient.dot(values) - violated[k].smallest + margin);
-    }
+    out.cuts += cuts;
   }
   return out;
 }

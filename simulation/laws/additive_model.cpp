@@ -100,6 +100,37 @@ void add_addend(AdditiveModel& model, const std::string& name, std::vector<doubl
   model.addends.push_back(std::move(addend));
 }
 
+std::optional<AdditiveModel> sum_of(const AdditiveModel& a, const AdditiveModel& b) {
+  const auto same = [](const CylinderFrame& one, const CylinderFrame& other) {
+    return one.axis == other.axis && one.center == other.center;
+  };
+  if (a.frame != b.frame || a.cylinder.has_value() != b.cylinder.has_value() ||
+      (a.cylinder && !same(*a.cylinder, *b.cylinder)) ||
+      (a.barrier_modulus > 0 && b.barrier_modulus > 0))
+    return {};
+  AdditiveModel out = a;
+  if (b.barrier_modulus > 0) {
+    out.barrier_modulus = b.barrier_modulus;
+    out.barrier_below = b.barrier_below;
+  }
+  std::vector<int> moved;
+  for (const StrainComponent& c : b.components) {
+    const auto known = std::find_if(
+        out.components.begin(), out.components.end(), [&](const StrainComponent& other) {
+          return c.kind == other.kind && (c.kind != Kind::fibre || c.direction == other.direction);
+        });
+    moved.push_back(static_cast<int>(known - out.components.begin()));
+    if (known == out.components.end()) out.components.push_back(c);
+  }
+  if (out.components.size() > static_cast<size_t>(laws::kMostComponents)) return {};
+  for (Addend addend : b.addends) {
+    addend.first = moved[addend.first];
+    if (addend.second >= 0) addend.second = moved[addend.second];
+    out.addends.push_back(std::move(addend));
+  }
+  return out;
+}
+
 AdditiveModel refined(const AdditiveModel& model, int index, double x, bool second) {
   AdditiveModel out = model;
   Addend& addend = out.addends[index];

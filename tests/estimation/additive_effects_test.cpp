@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 
+#include "estimation/additive_function.h"
 #include "estimation/additive_material.h"
 #include "estimation/effects_scene.h"
 #include "estimation/fit.h"
@@ -47,49 +49,175 @@ const std::vector<std::string>& material_effects() {
   return all;
 }
 
+/// The same motion the other way round, as far as it goes: compressed where the first is stretched.
+VectorXd reversed_state(const Scene& scene) {
+  const Matrix3Xd& X = scene.body->mesh.X;
+  return 1.3 * Eigen::Map<const VectorXd>(X.data(), X.size()) - 0.3 * deformed_state(scene);
+}
+
+/// One effect's candidate on the block: null, derivatives by all parameters, its larger form.
+struct Tried {
+  const Scene& scene;
+  const ModelForm& base;
+  const Effect& effect;
+  std::shared_ptr<const Ingredient> one;
+  VectorXd q;
+
+  VectorXd forces(const ModelForm& form, const VectorXd& p) const {
+    const Model there = form.realise(p);
+    return residual(scene.body->mesh, there.energy_of(1), there.examples[1].loading, q);
+  }
+  void derivatives() const {
+    const ModelForm form = extended(base, one);
+    const VectorXd null = with_values(form, null_values(*one));
+    const Model model = base.realise(base.initial());
+    Equilibrium at;
+    at.q = q;
+    const auto parameters = one->parameters();
+    for (int k = 0; k < static_cast<int>(parameters.size()); ++k) {
+      const auto R = [&](double t) {
+        VectorXd moved = null;
+        moved[base.size() + k] += t;
+        return forces(form, moved);
+      };
+      const double h = 1e-3 * parameters[k].typical;
+      MechanicsDerivative out;
+      if (one->mechanics_derivative(null_values(*one), model, 1, at, k, out))
+        expect_derivative(R, out.dR_dt, h, 1e-6, effect.name() + " " + one->variant());
+      else
+        EXPECT_GT((R(h) - R(-h)).norm(), 0.0) << effect.name() << " " << one->variant();
+    }
+  }
+  void larger_form() const {
+    const Model model = base.realise(base.initial());
+    VectorXd values = some_values(*one);
+    EXPECT_FALSE(effect.sentence(model, *one, values).empty());
+    const VectorXd scored = forces(extended(base, one), with_values(extended(base, one), values));
+    const auto larger = effect.refit_form(model, one, values);
+    ASSERT_EQ(values.size(), static_cast<int>(larger->parameters().size()));
+    EXPECT_FALSE(effect.sentence(model, *larger, values).empty());
+    const ModelForm form = extended(base, larger);
+    const VectorXd after = forces(form, with_values(form, values));
+    EXPECT_TRUE(after.allFinite());
+    // A function with a control point more is the same function.
+    if (added_functions(*larger, values)) {
+      EXPECT_LE((after - scored).norm(), 1e-9 * scored.norm()) << effect.name();
+    }
+    const auto again = effect.candidate(model, larger->variant());
+    ASSERT_TRUE(again) << larger->variant();
+    EXPECT_EQ(again->variant(), larger->variant());
+    EXPECT_EQ(forces(extended(base, again), with_values(extended(base, again), values)), after);
+  }
+};
+
 TEST(EffectsOnAdditive, NullIsBitEqualAndDerivativesHold) {
   const auto scene = additive_block({});
   const ModelForm base = base_form(scene);
-  const VectorXd p0 = base.initial();
-  const Model model = base.realise(p0);
-  const VectorXd q = deformed_state(*scene);
-  const VectorXd before = signature(model, q);
-  Equilibrium at;
-  at.q = q;
+  const Model model = base.realise(base.initial());
+  const VectorXd stretched = deformed_state(*scene), pressed = reversed_state(*scene);
   for (const std::string& name : material_effects()) {
     const Effect& effect = *find_effect(name);
     std::string why_not;
     const auto candidates = effect.candidates(model, &why_not);
     ASSERT_FALSE(candidates.empty()) << name << ": " << why_not;
-    const auto& one = candidates.front();
-    const ModelForm form = extended(base, one);
-    const VectorXd null = with_values(form, null_values(*one));
-    EXPECT_EQ(signature(form.realise(null), q), before) << name;
-    const auto R = [&](int k, double h) {
-      VectorXd moved = null;
-      moved[p0.size() + k] += h;
-      const Model there = form.realise(moved);
-      return residual(scene->body->mesh, there.energy_of(1), there.examples[1].loading, q);
-    };
-    const auto parameters = one->parameters();
-    for (int k = 0; k < static_cast<int>(parameters.size()); ++k) {
-      const double h = 1e-3 * parameters[k].typical;
-      MechanicsDerivative out;
-      if (one->mechanics_derivative(null_values(*one), model, 1, at, k, out)) {
-        expect_derivative([&](double t) { return R(k, t); }, out.dR_dt, h, 1e-6, name);
-      } else {
-        EXPECT_GT((R(k, h) - R(k, -h)).norm(), 0.0) << name;
-      }
+    for (const auto& one : candidates) {
+      const ModelForm form = extended(base, one);
+      const bool in_compression = one->variant().find("compression") != std::string::npos;
+      const VectorXd& q = in_compression ? pressed : stretched;
+      const VectorXd before = signature(model, q);
+      EXPECT_EQ(signature(form.realise(with_values(form, null_values(*one))), q), before) << name;
+      const Tried tried{*scene, base, effect, one, q};
+      tried.derivatives();
+      if (one == candidates.front() || one == candidates.back()) tried.larger_form();
+      EXPECT_GT((signature(form.realise(with_values(form, some_values(*one))), q) - before).norm(),
+                0.0)
+          << name << " " << one->variant();
     }
-    EXPECT_FALSE(effect.sentence(model, *one, some_values(*one)).empty());
-    VectorXd values = some_values(*one);
-    const auto larger = effect.refit_form(model, one, values);
-    EXPECT_EQ(values.size(), static_cast<int>(larger->parameters().size())) << name;
-    const VectorXd after =
-        signature(extended(base, larger).realise(with_values(extended(base, larger), values)), q);
-    EXPECT_GT((after - before).norm(), 0.0) << name;
-    EXPECT_TRUE(after.allFinite()) << name;
   }
+}
+
+TEST(EffectsOnAdditive, AreToldInItsLanguageAndInItsFrame) {
+  const auto told = std::make_shared<Scene>(*additive_block({}));
+  told->capture.materials[0].parameters["frame"] = {{0, 1, 0, -1, 0, 0, 0, 0, 1}, {}};
+  const ModelForm base = base_form(told);
+  const Model model = base.realise(base.initial());
+  for (const std::string name :
+       {"strain_stiffening", "anisotropy", "tension_compression_asymmetry"}) {
+    for (const auto& one : find_effect(name)->candidates(model, nullptr)) {
+      const auto added = added_functions(*one, some_values(*one));
+      ASSERT_TRUE(added) << name << " " << one->variant();
+      EXPECT_EQ(added->model.frame, additive_model(*model.energy.parts[0].term)->frame);
+    }
+    // Of a textbook law they are what they were.
+    const ModelForm law = base_form(block_scene());
+    for (const auto& one : find_effect(name)->candidates(law.realise(law.initial()), nullptr))
+      EXPECT_FALSE(added_functions(*one, some_values(*one))) << name << " " << one->variant();
+  }
+}
+
+/// W over a state of strain, of what one candidate adds with the value 1.
+double added_energy(const Model& model, const std::string& effect, const std::string& variant,
+                    const Matrix3d& F) {
+  const auto one = find_effect(effect)->candidate(model, variant);
+  EXPECT_TRUE(one) << variant;
+  return additive(added_functions(*one, VectorXd::Ones(1))->model)->psi(F);
+}
+
+TEST(EffectsOnAdditive, SayWhatTheirNamesSay) {
+  const ModelForm base = base_form(additive_block({}));
+  const Model model = base.realise(base.initial());
+  const auto diagonal = [](double x, double y, double z) {
+    return Matrix3d(Vector3d(x, y, z).asDiagonal());
+  };
+  const auto energy = [&](const std::string& effect, const std::string& variant,
+                          const Matrix3d& F) { return added_energy(model, effect, variant, F); };
+  // Stiffer in tension: nothing in compression. Past the ramp the modulus is 1: E^2 / 2 and what
+  // the ramp lacks.
+  const std::string tca = "tension_compression_asymmetry";
+  EXPECT_EQ(energy(tca, "additive in tension at 0.02", diagonal(0.8, 1, 1)), 0.0);
+  EXPECT_EQ(energy(tca, "additive in compression at 0.02", diagonal(1.2, 1, 1)), 0.0);
+  const double E = 0.5 * (1.2 * 1.2 - 1), e0 = 0.02;
+  EXPECT_NEAR(energy(tca, "additive in tension at 0.02", diagonal(1.2, 1, 1)),
+              0.5 * E * E - 0.5 * e0 * E + e0 * e0 / 6, 1e-12);
+  // Across axis 1: a pull along it costs nothing, and all directions of the plane cost the same.
+  EXPECT_EQ(energy("anisotropy", "across axis 1", diagonal(1.3, 1, 1)), 0.0);
+  const Matrix3d turn = Eigen::AngleAxisd(0.7, Vector3d::UnitX()).matrix();
+  const double along = energy("anisotropy", "across axis 1", diagonal(1, 1.3, 1));
+  EXPECT_GT(along, 0.0);
+  EXPECT_NEAR(energy("anisotropy", "across axis 1", turn * diagonal(1, 1.3, 1) * turn.transpose()),
+              along, 1e-12);
+  // Stiffening: in simple shear of amount g the modulus rises as g / 0.4 to 1: g^3 / 6 / 0.4.
+  Matrix3d shear = Matrix3d::Identity();
+  shear(0, 1) = 0.3;
+  EXPECT_NEAR(energy("strain_stiffening", "additive at 0.4", shear), std::pow(0.3, 3) / 6 / 0.4,
+              1e-12);
+}
+
+TEST(EffectsOnAdditive, StayConvexWithTheMaterial) {
+  const auto scene = additive_block({"additive"});
+  const ModelForm base = base_form(scene);
+  const Model model = base.realise(base.initial());
+  const auto one = find_effect("strain_stiffening")->candidate(model, "additive at 0.2 0.4");
+  ASSERT_TRUE(one);
+  const ModelForm form = extended(base, one);
+  const VectorXd p = with_values(form, Eigen::Vector2d(-0.03, -0.06));
+  // Softer by less than the material has is convex, although the function alone is not.
+  EXPECT_FALSE(not_convex(form.realise(p)));
+  const std::vector<ConvexPart> parts = convex_parts(form, p);
+  ASSERT_EQ(parts.size(), 1u);
+  EXPECT_EQ(VectorXd(parts[0].by_x * p), parts[0].model.values());
+  EXPECT_EQ(smallest_eigenvalue(parts[0].model).smallest,
+            smallest_eigenvalue(form.realise(p))->smallest);
+  // By more it is not.
+  const VectorXd q = with_values(form, Eigen::Vector2d(-0.03, -0.09));
+  ASSERT_TRUE(not_convex(form.realise(q)));
+  EXPECT_NE(not_convex(form.realise(q))->reason.find("I1bar = 0.4"), std::string::npos);
+  const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(q.size(), q.size());
+  const ConvexProjection back = project_convex(parts, q, I);
+  ASSERT_TRUE(back.converged);
+  EXPECT_FALSE(not_convex(form.realise(back.x)));
+  // Half by the material, half by what is added.
+  EXPECT_NEAR(back.x[form.size() - 1], -0.085, 1e-3);
 }
 
 TEST(EffectsOnAdditive, PoissonsRatioIsThatOfTheWholeMaterial) {

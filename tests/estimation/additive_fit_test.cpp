@@ -5,8 +5,10 @@
 #include <Eigen/Dense>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "capture_io/run.h"
+#include "estimation/additive_function.h"
 #include "estimation/additive_material.h"
 #include "estimation/convex_fit.h"
 #include "estimation/effects_scene.h"
@@ -65,14 +67,14 @@ TEST(AdditiveMaterial, IsReadBackFromItsVariantAndFile) {
   const auto scene = block_scene();
   const ModelForm base = base_form(scene);
   auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = find_additive(form, p).model;
+  AdditiveModel model = additive_parts(form, p).at(0).model;
   model.frame = Eigen::AngleAxisd(0.4, Vector3d::UnitZ()).matrix();
   add_addend(model, "E11", {-0.1, 0.2}, {}, Eigen::Vector2d(0.01, 0.03));
   add_addend(model, "E22", {0.0}, {}, VectorXd::Constant(1, 0.02));
   add_addend(model, "E11_E22", {0.0, 0.1}, {0.0, 0.1}, Eigen::Vector4d(0.001, 0.002, 0.001, 0.002));
   add_addend(model, "fibre1", {0.0}, {}, VectorXd::Constant(1, 0.02));
   model.components[component_index(model, "fibre1")].direction = Vector3d(0.6, 0.8, 0);
-  std::tie(form, p) = with_structure(form, p, model);
+  std::tie(form, p) = with_structures(form, p, {model});
   const fs::path file = folder("model.yaml");
   std::ofstream(file) << write_model(form, p);
   const auto [again, q] = read_model(file, scene);
@@ -105,11 +107,11 @@ TEST(AdditiveMaterial, ValuesOfAFileMustBeConvex) {
   const auto scene = block_scene();
   const ModelForm base = base_form(scene);
   auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = find_additive(form, p).model;
+  AdditiveModel model = additive_parts(form, p).at(0).model;
   for (const char* name : {"E11", "E22"})
     add_addend(model, name, {0.0}, {}, VectorXd::Constant(1, 0.01));
   add_addend(model, "E11_E22", {0.0}, {0.0}, VectorXd::Constant(1, 0.02));
-  std::tie(form, p) = with_structure(form, p, model);
+  std::tie(form, p) = with_structures(form, p, {model});
   const fs::path file = folder("model.yaml");
   std::ofstream(file) << write_model(form, p);
   try {
@@ -157,9 +159,9 @@ TEST(AdditiveMaterial, ForceDerivativesAreThoseOfTheAssembly) {
   const auto scene = block_scene();
   const ModelForm base = base_form(scene);
   auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = refined(find_additive(form, p).model, 0, 0.2);
+  AdditiveModel model = refined(additive_parts(form, p).at(0).model, 0, 0.2);
   add_addend(model, "E33", {-0.1, 0.1}, {}, Eigen::Vector2d(0.01, 0.02));
-  std::tie(form, p) = with_structure(form, p, model);
+  std::tie(form, p) = with_structures(form, p, {model});
   Equilibrium at;
   at.q = deformed_state(*scene);
   const Model now = form.realise(p);
@@ -184,10 +186,10 @@ TEST(ConvexFit, StaysConvexAfterEveryAcceptedStep) {
   const ModelForm base = base_form(scene);
   auto [form, p] = to_additive(base, base.initial());
   // Many control points, and couplings that the data will want to move: some eigenvalue meets zero.
-  AdditiveModel model = find_additive(form, p).model;
+  AdditiveModel model = additive_parts(form, p).at(0).model;
   for (int a = 0; a < 3; ++a)
     for (double x : {-0.08, 0.08, 0.2}) model = refined(model, a, x);
-  std::tie(form, p) = with_structure(form, p, model);
+  std::tie(form, p) = with_structures(form, p, {model});
   FitOptions options;
   options.max_iterations = 6;
   const auto result = fit_convex(workspace, form, p, options);
@@ -233,10 +235,10 @@ TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
   for (const RefinementStage& stage : fitted.refinements)
     EXPECT_GE(*stage.misfit_held_out, held) << stage.what;
   EXPECT_GT(values, fitted.refinements[0].values);
-  EXPECT_EQ(values, find_additive(fitted.form, fitted.p).model.size());
+  EXPECT_EQ(values, additive_parts(fitted.form, fitted.p).at(0).model.size());
   EXPECT_LT(held, 0.5 * *fitted.refinements[0].misfit_held_out);
   const auto curves = energy_curves(*scene, fitted);
-  ASSERT_EQ(curves.size(), find_additive(fitted.form, fitted.p).model.addends.size());
+  ASSERT_EQ(curves.size(), additive_parts(fitted.form, fitted.p).at(0).model.addends.size());
   for (const auto& curve : curves) {
     ASSERT_EQ(curve["stretch"].size(), curve["value"].size());
     for (size_t i = 0; i < curve["value"].size(); ++i)
@@ -247,6 +249,54 @@ TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
   const auto told = additive_metrics(*scene, fitted);
   EXPECT_GE(told["smallest_eigenvalue"].get<double>(), 0.0);
   EXPECT_TRUE(told["ellipticity"].contains("smallest"));
+}
+
+TEST(ProgressiveFit, ACouplingIsRefinedAlongBothAxes) {
+  const auto scene = small_sheet({"positions", "forces"}, cloth(),
+                                 "{law: stvk, lambda: 0.1, mu: 0.1}", "[lambda, mu]");
+  Workspace workspace(scene);
+  const ModelForm base = base_form(scene);
+  const auto [form, p] = to_additive(base, base.initial());
+  EvaluationOptions all;
+  all.pictures = true;
+  auto seen = workspace.evaluate(form, p, all);
+  ASSERT_TRUE(std::holds_alternative<Evaluation>(seen));
+  Fitted fitted;
+  fitted.form = form;
+  fitted.p = p;
+  fitted.evaluation = std::get<Evaluation>(std::move(seen));
+  const AdditiveModel before = additive_parts(form, p).at(0).model;
+  Matrix3d F;
+  F << 1.2, 0.1, 0.0, 0.05, 1.1, 0.02, 0.0, 0.03, 0.9;
+  std::set<std::string> along;
+  for (const Refinement& one : refinements(form, fitted)) {
+    if (one.what.find("E11_E22") == std::string::npos) continue;
+    along.insert(one.what.substr(0, one.what.find('=')));
+    AdditiveModel larger = before;
+    one.add(larger);
+    EXPECT_FALSE(structure_fault(larger)) << one.what;
+    EXPECT_GT(larger.size(), before.size());
+    EXPECT_NEAR(additive(larger)->psi(F), additive(before)->psi(F), 1e-14) << one.what;
+    // The score's ridge is what moving all its points in step would do.
+    const Addend& grid = *larger.find("E11_E22");
+    const auto [name, x] = std::pair(one.what.substr(0, one.what.find(" =")),
+                                     std::stod(one.what.substr(one.what.find('=') + 1)));
+    const bool second = name.ends_with("E22");
+    AdditiveModel moved = larger;
+    for (Addend& a : moved.addends)
+      if (a.name == "E11_E22")
+        for (size_t r = 0; r < grid.at.size(); ++r)
+          for (size_t c = 0; c < grid.at_second.size(); ++c)
+            if ((second ? grid.at_second[c] : grid.at[r]) == x)
+              a.stiffness[static_cast<Eigen::Index>(r * grid.at_second.size() + c)] += 0.01;
+    const auto ridge = added_functions(*one.candidate, VectorXd::Constant(1, 0.01));
+    ASSERT_TRUE(ridge) << one.what;
+    EXPECT_NEAR(additive(moved)->psi(F), additive(before)->psi(F) + additive(ridge->model)->psi(F),
+                1e-12)
+        << one.what;
+  }
+  EXPECT_THAT(along,
+              testing::ElementsAre("control point E11_E22: E11 ", "control point E11_E22: E22 "));
 }
 
 /// Interval of the shear and bulk modulus of an additive neo-Hookean material from one kind of

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "simulation/additive.h"
@@ -28,6 +29,11 @@ AdditiveModel tied() {
   add_addend(model, "I1bar", {0.0, 0.5}, {}, Eigen::Vector2d(0.3, 0.2));
   add_addend(model, "J", {0.0}, {}, one(2.0));
   return model;
+}
+
+/// The values are the numbers themselves.
+std::vector<ConvexPart> alone(const AdditiveModel& model) {
+  return {{model, MatrixXd::Identity(model.size(), model.size())}};
 }
 
 TEST(Convexity, EigenvalueOfStVkIsKnown) {
@@ -91,7 +97,7 @@ TEST(Convexity, ProjectionEndsConvexAndMovesNoConvexModel) {
   const AdditiveModel model = tied();
   const int n = model.size();
   const MatrixXd I = MatrixXd::Identity(n, n);
-  const ConvexProjection stays = project_convex(model, model.values(), I);
+  const ConvexProjection stays = project_convex(alone(model), model.values(), I);
   EXPECT_TRUE(stays.converged);
   EXPECT_EQ(stays.x, model.values());
   for (unsigned seed = 1; seed <= 20; ++seed) {
@@ -99,7 +105,7 @@ TEST(Convexity, ProjectionEndsConvexAndMovesNoConvexModel) {
     AdditiveModel out = model;
     out.set_values(target);
     if (smallest_eigenvalue(out).smallest >= 0) continue;
-    const ConvexProjection p = project_convex(model, target, I);
+    const ConvexProjection p = project_convex(alone(model), target, I);
     ASSERT_TRUE(p.converged) << seed;
     EXPECT_GT(p.cuts, 0);
     out.set_values(p.x);
@@ -117,7 +123,7 @@ TEST(Convexity, ProjectionOfOneTiedPairIsKnown) {
   add_addend(model, "E22", {0.0}, {}, one(1));
   add_addend(model, "E11_E22", {0.0}, {0.0}, one(0));
   const Vector3d target(1.0, 0.2, 0.9);
-  const ConvexProjection p = project_convex(model, target, Vector3d(1, 1, 2).asDiagonal());
+  const ConvexProjection p = project_convex(alone(model), target, Vector3d(1, 1, 2).asDiagonal());
   ASSERT_TRUE(p.converged);
   Eigen::Matrix2d H;
   H << 1.0, 0.9, 0.9, 0.2;
@@ -130,12 +136,67 @@ TEST(Convexity, ProjectionOfOneTiedPairIsKnown) {
   EXPECT_NEAR(p.x[2], clipped(0, 1), 1e-5);
 }
 
+TEST(Convexity, PartsAreProjectedTogetherWhereTheyShareNumbers) {
+  // x = (a, b): one part has the moduli a and b - a, the other 2 a. Nearest to (1, 0) with a <= b.
+  AdditiveModel pair, other;
+  add_addend(pair, "E11", {0.0}, {}, one(1));
+  add_addend(pair, "E22", {0.0}, {}, one(1));
+  add_addend(other, "J", {0.0}, {}, one(1));
+  MatrixXd by_pair(2, 2), by_other(1, 2);
+  by_pair << 1, 0, -1, 1;
+  by_other << 2, 0;
+  const std::vector<ConvexPart> parts = {{pair, by_pair}, {other, by_other}};
+  const MatrixXd I = MatrixXd::Identity(2, 2);
+  const ConvexProjection p = project_convex(parts, Eigen::Vector2d(1.0, 0.0), I);
+  ASSERT_TRUE(p.converged);
+  EXPECT_NEAR(p.x[0], 0.5, 1e-4);  // a strain is resisted by 1e-5 of the stiffest at least
+  EXPECT_NEAR(p.x[1], 0.5, 1e-4);
+  const ConvexProjection q = project_convex(parts, Eigen::Vector2d(-1.0, 2.0), I);
+  ASSERT_TRUE(q.converged);
+  EXPECT_NEAR(q.x[0], 0.0, 1e-4);
+  EXPECT_NEAR(q.x[1], 2.0, 1e-4);
+}
+
+TEST(Convexity, ASumIsTheEnergyOfBoth) {
+  AdditiveModel a = tied(), b;
+  add_addend(b, "I1bar", {0.0, 0.2}, {}, Eigen::Vector2d(0.0, 0.1));
+  add_addend(b, "fibre1", {0.0}, {}, one(0.3));
+  b.components.back().direction = Vector3d(0.6, 0.8, 0.0);
+  a.frame = b.frame = Eigen::AngleAxisd(0.3, Vector3d::UnitZ()).matrix();
+  const auto sum = sum_of(a, b);
+  ASSERT_TRUE(sum);
+  EXPECT_EQ(sum->components.size(), a.components.size() + 1);
+  EXPECT_EQ(sum->values().size(), a.size() + b.size());
+  Matrix3d F;
+  F << 1.1, 0.1, 0.0, -0.05, 0.95, 0.1, 0.02, 0.0, 1.05;
+  EXPECT_NEAR(additive(*sum)->psi(F), additive(a)->psi(F) + additive(b)->psi(F), 1e-14);
+  // What one takes away the other gives: convex together.
+  AdditiveModel softer;
+  softer.frame = a.frame;
+  add_addend(softer, "I1bar", {0.0}, {}, one(-0.1));
+  EXPECT_LT(smallest_eigenvalue(softer).smallest, 0.0);
+  EXPECT_GE(smallest_eigenvalue(*sum_of(a, softer)).smallest,
+            smallest_eigenvalue(a).smallest - 0.1);
+  b.frame.setIdentity();
+  EXPECT_FALSE(sum_of(a, b));
+  b.frame = a.frame;
+  for (int i = 1; i <= 9; ++i) {
+    const std::string name = "fibre" + std::to_string(i);
+    for (AdditiveModel* model : {&a, &b}) {
+      if (model == &b && i == 1) continue;
+      add_addend(*model, name, {0.0}, {}, one(0.1));
+      model->components.back().direction = Vector3d(i, model == &a ? 1 : -1, 1).normalized();
+    }
+  }
+  EXPECT_FALSE(sum_of(a, b)) << "18 fibres do not fit into a model";
+}
+
 TEST(Convexity, ProjectionKeepsBounds) {
   const AdditiveModel model = tied();
   const int n = model.size();
   const VectorXd target = VectorXd::Constant(n, -1.0);
   const VectorXd low = VectorXd::Constant(n, 0.1);
-  const ConvexProjection p = project_convex(model, target, MatrixXd::Identity(n, n), 0, low);
+  const ConvexProjection p = project_convex(alone(model), target, MatrixXd::Identity(n, n), low);
   ASSERT_TRUE(p.converged);
   EXPECT_GE(p.x.minCoeff(), 0.1);
 }
