@@ -68,11 +68,12 @@ class StrainStiffening final : public Effect {
                        const VectorXd& values) const override {
     const double mu = initial_shear_modulus(model.energy);
     if (starts_with(ingredient.variant(), kAdditive)) {
-      const double change = values[values.size() - 1] / mu;
+      // the inner control point: the outer one may lie beyond what any photo shows
+      const double change = values[0] / mu;
       return fmt::format(
-          "the material {} with strain: from an amount of shear of {} on its modulus "
+          "the material {} with strain: at an amount of shear of {} its modulus "
           "is {} % {} than at rest",
-          change >= 0 ? "stiffens" : "softens", figure(numbers_in(ingredient.variant()).back()),
+          change >= 0 ? "stiffens" : "softens", figure(numbers_in(ingredient.variant()).front()),
           figure(100.0 * std::abs(change)), change >= 0 ? "higher" : "lower");
     }
     // Uniaxial stretch 1.5: I1bar - 3 = 1.5^2 + 2/1.5 - 3; modulus 2 dW/dI1bar against its start.

@@ -134,11 +134,11 @@ class TensionCompressionAsymmetry final : public Effect {
                        const VectorXd& values) const override {
     const double mu = initial_shear_modulus(model.energy);
     if (starts_with(ingredient.variant(), kAdditive))
-      return fmt::format("stiffer in {0} than in {1}: from {2} % strain on, by {3} % along an axis",
+      return fmt::format("stiffer in {0} than in {1}: at {2} % strain by {3} % along an axis",
                          starts_with(ingredient.variant(), kTension) ? "tension" : "compression",
                          starts_with(ingredient.variant(), kTension) ? "compression" : "tension",
-                         figure(100.0 * numbers_in(ingredient.variant()).back()),
-                         figure(100.0 * values[values.size() - 1] / (3.0 * mu)));
+                         figure(100.0 * numbers_in(ingredient.variant()).front()),
+                         figure(100.0 * values[0] / (3.0 * mu)));
     if (ingredient.variant() == "by a fixed share") {
       const double share = 8.0 * values[0] / (3.0 * mu);
       return fmt::format("{} % {} in tension than in compression", figure(100.0 * std::abs(share)),
