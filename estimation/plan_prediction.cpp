@@ -210,6 +210,9 @@ Eigen::MatrixXd spread(const Eigen::MatrixXd& H, const std::vector<int>& global,
   return out;
 }
 
+/// Newton iterations for a further load; there are other loads for one that folds or buckles.
+constexpr int kMostIterations = 100;
+
 /// One further load, photographed by the cameras there are.
 void predict_load(const Planner& planner, PredictedPhotos& out) {
   auto scene = with_load(*planner.fitted.form.scene, out.candidate);
@@ -226,6 +229,7 @@ void predict_load(const Planner& planner, PredictedPhotos& out) {
   EvaluationOptions evaluation;
   evaluation.only = {e};
   evaluation.derivatives = false;
+  evaluation.most_iterations = kMostIterations;
   evaluation.cancel = planner.options.cancel;
   auto solved = workspace.evaluate(form, p, evaluation);
   if (auto* failure = std::get_if<NumericalFailure>(&solved)) {

@@ -81,6 +81,17 @@ RefinementStage stage_of(const std::string& what, double evidence, const Fitted&
   return stage;
 }
 
+/// What the residual asks for, by falling evidence: functions of one component, and couplings of
+/// two; grids of control points only where it asks for none of these. A grid bends as a function of
+/// one component would and more, and has many values that other motions then feel.
+std::vector<Scored> asked_for(const std::vector<Refinement>& all,
+                              const std::vector<Scored>& ranked) {
+  std::vector<Scored> simple, grids;
+  for (const Scored& one : ranked)
+    if (one.evidence >= kTie) (all[one.index].grid ? grids : simple).push_back(one);
+  return simple.empty() ? grids : simple;
+}
+
 /// What to fit next, by falling promise: all that the residual asks for at once (a control point at
 /// the end of a range bends the middle as well until that has a point of its own), then the two
 /// that it asks for most.
@@ -95,8 +106,8 @@ std::vector<Next> next_models(const std::vector<AdditiveModel>& present,
   std::vector<Next> out;
   Next together{"", present, 0.0};
   int count = 0;
-  for (const Scored& one : ranked) {
-    if (one.evidence < kTie || count == kMostAtOnce) break;
+  for (const Scored& one : asked_for(all, ranked)) {
+    if (count == kMostAtOnce) break;
     const Refinement& refinement = all[one.index];
     refinement.add(together.models[refinement.material]);
     together.what += (count++ ? ", " : "") + refinement.what;

@@ -20,8 +20,10 @@ struct ProgressiveOptions {
 /// One more function that the material may need: a hat at a new control point of an addend, or a
 /// new addend. Zero at its null.
 struct Refinement {
-  std::string what;                             ///< "control point E11 = 0.21", "addend E22"
-  size_t material = 0;                          ///< of the form's additive ones
+  std::string what;     ///< "control point E11 = 0.21", "addend E22"
+  size_t material = 0;  ///< of the form's additive ones
+  /// A control point of a coupling: a whole row of values, tried once nothing simpler is asked for.
+  bool grid = false;
   std::function<void(AdditiveModel&)> add;      ///< puts it in; the energy stays the same
   std::shared_ptr<const Ingredient> candidate;  ///< the function alone, to be scored
 };

@@ -110,6 +110,7 @@ Refinement with_point(const Material& material, const Addend& addend, const NewP
   const AdditiveModel& model = material.part.model;
   Refinement out;
   out.material = material.index;
+  out.grid = addend.second >= 0;
   out.add = [point](AdditiveModel& to) { point.add_to(to); };
   const int component = point.second ? addend.second : addend.first;
   out.what = fmt::format(

@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <opencv2/imgproc.hpp>
 
 #include "estimation/additive_material.h"
 #include "estimation/normal_equations.h"
@@ -66,6 +67,7 @@ T value(std::variant<T, NumericalFailure> result, const std::string& what) {
 }
 
 struct Result {
+  std::string material;
   Errors stvk, additive;
   int values = 0;
   std::shared_ptr<const Scene> scene;  ///< both motions
@@ -104,6 +106,7 @@ Result run(const Material& material, const std::string& motion, const fs::path& 
   o.only_fitted = false;
   o.folder += "_both";
   Result out;
+  out.material = material.name;
   out.scene = test::make_sheet(o);
   Workspace workspace(seen);
   const ModelForm base = base_form(seen);
@@ -118,10 +121,11 @@ Result run(const Material& material, const std::string& motion, const fs::path& 
             "additive");
   out.additive_fit = shown_on(out.scene, additive);
   out.additive = errors_of(*out.scene, out.additive_fit);
-  out.values = additive_parts(additive.form, additive.p).at(0).model.size();
+  const AdditiveModel found = additive_parts(additive.form, additive.p).at(0).model;
+  out.values = found.size();
   std::cerr << fmt::format("{} {}: StVK misfit {:.6g}\n", material.name, motion,
                            normal_equations(stvk.evaluation).r2);
-  for (const Addend& a : additive_parts(additive.form, additive.p).at(0).model.addends)
+  for (const Addend& a : found.addends)
     std::cerr << fmt::format("  {} at {}: {}\n", a.name, fmt::join(a.at, " "),
                              fmt::join(a.stiffness, " "));
   for (const RefinementStage& stage : additive.refinements)
@@ -174,17 +178,33 @@ Image error_map(const Scene& scene, const Fitted& fitted, int e, double full) {
   return tile;
 }
 
+/// Room for the names of rows and columns.
+constexpr int kLeft = 150, kTop = 48;
+
 void paste(const Image& tile, Image& out, int column, int row) {
   for (int y = 0; y < std::min(kTile, tile.height); ++y)
     for (int x = 0; x < std::min(kTile, tile.width); ++x)
-      out.values[(row * (kTile + 4) + y) * out.width + column * (kTile + 4) + x] =
+      out.values[(kTop + row * (kTile + 4) + y) * out.width + kLeft + column * (kTile + 4) + x] =
           std::min(1.0f, tile.values[y * tile.width + x]);
+}
+
+void write_at(Image& out, int x, int y, const std::string& text) {
+  cv::Mat grey(out.height, out.width, CV_32F, out.values.data());
+  cv::putText(grey, text, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar(0.0), 1, cv::LINE_AA);
 }
 
 void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs, int levels,
           const fs::path& file) {
-  Image out{static_cast<int>(2 * shown.size()) * (kTile + 4), 4 * (kTile + 4), 1, {}};
+  Image out{
+      kLeft + static_cast<int>(2 * shown.size()) * (kTile + 4), kTop + 4 * (kTile + 4), 1, {}};
   out.values.assign(out.pixels(), 1.0f);
+  const char* rows[4][2] = {{"error of", "fitted StVK"},
+                            {"error of", "additive model"},
+                            {"additive model,", "rendered"},
+                            {"photo", ""}};
+  for (int row = 0; row < 4; ++row)
+    for (int line = 0; line < 2; ++line)
+      write_at(out, 6, kTop + row * (kTile + 4) + kTile / 2 + 18 * line, rows[row][line]);
   int column = 0;
   for (size_t i = 0; i < shown.size(); ++i)
     for (const char* motion : {"corner", "shear"}) {
@@ -200,6 +220,10 @@ void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs, in
         if (told.kind == MeasuredSpec::Kind::position)
           full = std::max(full, (one.predicted - told.value).norm());
       }
+      const int left = kLeft + column * (kTile + 4);
+      write_at(out, left + 4, 18,
+               fmt::format("{}, {}", r.material, column % 2 ? "complex shear" : "corner pull"));
+      write_at(out, left + 4, 38, fmt::format("errors: white {:.2f} mm", full));
       paste(error_map(*r.scene, r.stvk_fit, last, full), out, column, 0);
       paste(error_map(*r.scene, r.additive_fit, last, full), out, column, 1);
       paste(rendered(*r.scene, r.additive_fit, last), out, column, 2);
