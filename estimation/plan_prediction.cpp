@@ -45,17 +45,14 @@ std::vector<std::string> column_names(const ModelForm& form) {
   return names;
 }
 
-/// Numerical effects to their nulls: what they change is little beside what is planned, and each
-/// new load would have to be solved on another mesh too.
-void without_numerical(const ModelForm& form, VectorXd& p) {
-  Eigen::Index at = 0;
-  for (const auto& ingredient : form.ingredients) {
-    const Effect* effect = find_effect(ingredient->name());
-    for (const Parameter& parameter : ingredient->parameters()) {
-      if (effect && effect->group() == EffectGroup::numerical) p[at] = parameter.value;
-      ++at;
-    }
-  }
+/// The fitted model without its numerical effects: what they change is little beside what is
+/// planned, and each new load would have to be solved on another mesh too.
+Model without_numerical(Model model) {
+  std::erase_if(model.applied, [](const auto& one) {
+    const Effect* effect = find_effect(one.first->name());
+    return effect && effect->group() == EffectGroup::numerical;
+  });
+  return model;
 }
 
 /// The fitted model on a planned scene, with the effects appended as hypotheses at their nulls.
@@ -64,7 +61,6 @@ PlannedModel planned_model(const Model& now, std::shared_ptr<const Scene> scene,
                            std::vector<PlanHypothesis>* hypotheses) {
   PlannedModel out;
   std::tie(out.form, out.p) = transfer(now, std::move(scene));
-  without_numerical(out.form, out.p);
   out.model = out.form.realise(out.p);
   for (const auto& name : names) {
     const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
@@ -147,7 +143,7 @@ struct Planner {
   const Fitted& fitted;
   const Diagnosis& diagnosis;
   const PlanOptions& options;
-  const Model now;
+  const Model now;                   ///< `applied` without numerical effects
   std::vector<std::string> names;    ///< of the hypotheses, confused ones first
   size_t confused = 0;               ///< so many of them
   std::vector<std::string> columns;  ///< of Prediction::H
@@ -268,8 +264,9 @@ std::variant<Prediction, NumericalFailure> predict(const Fitted& fitted, const D
                                                    const std::vector<std::string>& confused,
                                                    const std::vector<std::string>& untestable,
                                                    const PlanOptions& options) {
-  Planner planner{fitted,   diagnosis,       options, fitted.form.realise(fitted.p),
-                  confused, confused.size(), {},      {}};
+  Planner planner{
+      fitted,   diagnosis,       options, without_numerical(fitted.form.realise(fitted.p)),
+      confused, confused.size(), {},      {}};
   planner.names.insert(planner.names.end(), untestable.begin(), untestable.end());
   Prediction out;
   out.noise = diagnosis.floor.cell_variance;
