@@ -176,9 +176,9 @@ void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagn
   }
   if (!moved.empty())
     out.mesh_note = fmt::format(
-        "a mesh of 0.7 times the edge would move {}; the intervals reach there, and adding "
+        "a mesh of {} times the edge would move {}; the intervals reach there, and adding "
         "mesh_resolution fits on it",
-        fmt::join(moved, ", "));
+        kFinerEdge, fmt::join(moved, ", "));
 }
 
 /// Diagnosis::mesh_fall. The refined mesh has one parameter, a share of what it changed; typical of
@@ -225,7 +225,7 @@ double least_fall(const Diagnosis& diagnosis) {
 }
 
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
-  constexpr double kToTheLimit = 1.0 / (1.0 - 0.7 * 0.7);
+  constexpr double kToTheLimit = 1.0 / (1.0 - kFinerEdge * kFinerEdge);
   const auto parameters = fitted.form.parameters();
   fitted.mesh_reach = kToTheLimit * diagnosis.mesh_shift;
   for (int i = 0; i < fitted.mesh_reach.size(); ++i) {

@@ -105,6 +105,8 @@ bool is_rest(const ExampleSpec& example);
 
 /// Scene of a capture: reads photos and builds the body.
 std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true);
+/// Edge of a finer mesh over that of the told one: three times the unknowns.
+inline constexpr double kFinerEdge = 0.7;
 /// The scene with another mesh of the same body: `edge_factor` times the told edge, `order` 1 or 2
 /// (0: as told). Without its photos where they are not needed. Throws InputError as make_body.
 std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, int order,

@@ -11,8 +11,6 @@ namespace hookeye {
 
 namespace {
 
-const double kFiner = 0.7;  ///< of the told edge: three times the unknowns
-
 /// What another mesh of the same body makes of the present model, as nodal forces on this one:
 /// f = K du moves this mesh by du, to where the other mesh has the body (first order), and
 /// changes the reactions of the supports by as much. Solved once an example, when first asked for,
@@ -51,9 +49,9 @@ class OtherMesh {
       const auto scene = remeshed(*model_.scene, factor_, order_, false);
       const auto [form, p] = transfer(model_, scene);
       other_ = form.realise(p);
-      const TetMesh &fine = scene->body->mesh, &mesh = model_.scene->body->mesh;
-      from_here_ = interpolation(mesh, fine.X);
-      to_here_ = interpolation(fine, mesh.X);
+      const TetMesh &theirs = scene->body->mesh, &mesh = model_.scene->body->mesh;
+      from_here_ = interpolation(mesh, theirs.X);
+      to_here_ = interpolation(theirs, mesh.X);
     });
     return other_;
   }
@@ -71,9 +69,9 @@ class OtherMesh {
   std::variant<Equilibrium, NumericalFailure> solve_there(int example, const Equilibrium& here) {
     const Model& other_model = other();
     const TetMesh& mesh = model_.scene->body->mesh;
-    const TetMesh& fine = other_model.scene->body->mesh;
+    const TetMesh& theirs = other_model.scene->body->mesh;
     const Matrix3Xd u = here.q.reshaped(3, mesh.nodes()) - mesh.X;
-    const Matrix3Xd x = fine.X + u * from_here_.transpose();
+    const Matrix3Xd x = theirs.X + u * from_here_.transpose();
     const VectorXd start = x.reshaped();
     EquilibriumOptions options;
     options.tolerance = 1e-6;  // what a mesh changes need not be known to more than a per mille
@@ -91,52 +89,51 @@ class OtherMesh {
     const TetMesh& mesh = model_.scene->body->mesh;
     const Loading& loading = model_.examples[example].loading;
     const VectorXd none = VectorXd::Zero(3 * mesh.nodes());
-    std::variant<Equilibrium, NumericalFailure> here;
+    std::variant<Equilibrium, NumericalFailure> solved;
     if (!known) {
-      here = solve_equilibrium(mesh, model_.energy_of(example), loading);
-      known = std::get_if<Equilibrium>(&here);
+      solved = solve_equilibrium(mesh, model_.energy_of(example), loading);
+      known = std::get_if<Equilibrium>(&solved);
     }
     if (!known) return none;
-    const Equilibrium& coarse = *known;
-    const auto there = solve_there(example, coarse);
-    if (!std::holds_alternative<Equilibrium>(there)) return none;
-    const Equilibrium& other = std::get<Equilibrium>(there);
-    const TetMesh& fine = other_.scene->body->mesh;
+    const Equilibrium& here = *known;
+    const auto result = solve_there(example, here);
+    if (!std::holds_alternative<Equilibrium>(result)) return none;
+    const Equilibrium& there = std::get<Equilibrium>(result);
+    const TetMesh& theirs = other_.scene->body->mesh;
     // Moved as a whole, not at the surface alone: there would be an element's thickness of wild
     // strain in between.
-    const Matrix3Xd u_fine = other.q.reshaped(3, fine.nodes()) - fine.X;
-    const Matrix3Xd u_coarse = coarse.q.reshaped(3, mesh.nodes()) - mesh.X;
-    VectorXd du = (u_fine * to_here_.transpose() - u_coarse).reshaped();
+    const Matrix3Xd u_there = there.q.reshaped(3, theirs.nodes()) - theirs.X;
+    const Matrix3Xd u_here = here.q.reshaped(3, mesh.nodes()) - mesh.X;
+    VectorXd du = (u_there * to_here_.transpose() - u_here).reshaped();
     for (int unknown : loading.prescribed) du[unknown] = 0.0;
     VectorXd reaction = none;
     for (const auto& measured : model_.scene->capture.examples[example].measured)
       if (measured.kind != MeasuredSpec::Kind::position)
-        add_reaction(measured.region, other_, coarse, other, reaction);
-    VectorXd f = coarse.K * du;
+        add_reaction(measured.region, other_, here, there, reaction);
+    VectorXd f = here.K * du;
     for (int unknown : loading.prescribed) f[unknown] -= reaction[unknown];
     return f;
   }
 
   /// Change of the support's force and moment, as the smallest nodal forces that have both.
-  void add_reaction(const std::string& name, const Model& other_model, const Equilibrium& coarse,
-                    const Equilibrium& other, VectorXd& reaction) const {
+  void add_reaction(const std::string& name, const Model& other_model, const Equilibrium& here,
+                    const Equilibrium& there, VectorXd& reaction) const {
     const Region& region = model_.scene->body->regions.at(name);
     const Region& theirs = other_model.scene->body->regions.at(name);
     const double count = static_cast<double>(region.nodes.size());
     Vector3d centre = Vector3d::Zero();
-    for (int node : region.nodes) centre += coarse.q.segment<3>(3 * node) / count;
-    const Vector3d F = support_force(other, theirs) - support_force(coarse, region);
-    const Vector3d M =
-        support_moment(other, theirs, centre) - support_moment(coarse, region, centre);
+    for (int node : region.nodes) centre += here.q.segment<3>(3 * node) / count;
+    const Vector3d F = support_force(there, theirs) - support_force(here, region);
+    const Vector3d M = support_moment(there, theirs, centre) - support_moment(here, region, centre);
     Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
     for (int node : region.nodes) {
-      const Vector3d r = coarse.q.segment<3>(3 * node) - centre;
+      const Vector3d r = here.q.segment<3>(3 * node) - centre;
       inertia += r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose();
     }
     const Vector3d b = inertia.fullPivLu().solve(M);
     for (int node : region.nodes)
       reaction.segment<3>(3 * node) =
-          F / count + b.cross(Vector3d(coarse.q.segment<3>(3 * node) - centre));
+          F / count + b.cross(Vector3d(here.q.segment<3>(3 * node) - centre));
   }
 
   Model model_;
@@ -206,7 +203,7 @@ class MeshResolution final : public Effect {
         reason = "the materials belong to groups of the told volume, which a new mesh has not";
     if (why_not && !reason.empty()) *why_not = reason;
     if (!reason.empty()) return {};
-    return {estimate(model, linear ? kQuadratic : kFinerEdge)};
+    return {estimate(model, linear ? kQuadratic : kByEdge)};
   }
 
   std::shared_ptr<const Ingredient> rebuild(const Model&,
@@ -223,12 +220,13 @@ class MeshResolution final : public Effect {
   }
 
   bool remeshes(const std::string& variant) const override {
-    return variant == kQuadratic || variant == kFinerEdge;
+    return variant == kQuadratic || variant == kByEdge;
   }
 
   std::shared_ptr<const Scene> refit_scene(const Scene& scene,
                                            const std::string& variant) const override {
-    return variant == kQuadratic ? remeshed(scene, 1.0, 2, true) : remeshed(scene, kFiner, 0, true);
+    return variant == kQuadratic ? remeshed(scene, 1.0, 2, true)
+                                 : remeshed(scene, kFinerEdge, 0, true);
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -237,7 +235,7 @@ class MeshResolution final : public Effect {
     const std::string finer =
         variant.find(kQuadratic) != std::string::npos
             ? "quadratic tetrahedra in place of linear ones"
-            : fmt::format("tetrahedra of {} times the edge (now {} {})", kFiner,
+            : fmt::format("tetrahedra of {} times the edge (now {} {})", kFinerEdge,
                           figure(quality(model.scene->body->mesh).mean_edge),
                           model.scene->capture.units.length);
     if (remeshes(variant))
@@ -248,7 +246,7 @@ class MeshResolution final : public Effect {
   }
 
  private:
-  static constexpr const char* kFinerEdge = "edge times 0.7";
+  static constexpr const char* kByEdge = "edge times 0.7";
   static constexpr const char* kQuadratic = "order 2";
 
   std::shared_ptr<const Ingredient> estimate(const Model& model, const std::string& variant) const {
@@ -258,9 +256,9 @@ class MeshResolution final : public Effect {
     // Errors fall at least in proportion to the edge: all of it is at most 1/(1 - 0.7) of the
     // change from one mesh to the other.
     spec.parameters = {{"mesh_resolution.s", "", "times the change that a finer mesh brings", 0.0,
-                        0.0, 1.0 / (1.0 - kFiner), 1.0, false}};
+                        0.0, 1.0 / (1.0 - kFinerEdge), 1.0, false}};
     spec.touches = {.loading = true};
-    const auto finer = std::make_shared<OtherMesh>(model, variant == kQuadratic ? 1.0 : kFiner,
+    const auto finer = std::make_shared<OtherMesh>(model, variant == kQuadratic ? 1.0 : kFinerEdge,
                                                    variant == kQuadratic ? 2 : 0);
     spec.apply = [finer](const VectorXd& s, Model& m) {
       for (size_t e = 0; e < m.examples.size(); ++e)
@@ -284,8 +282,8 @@ class MeshResolution final : public Effect {
     // Falling in proportion to the edge is the slowest, and with its square the rule; quadratic
     // elements halve the error of linear ones at least, and leave a tenth of it as a rule.
     const bool quadratic = variant == kQuadratic;
-    const double most = quadratic ? 1.0 : kFiner / (1.0 - kFiner);
-    const double next = quadratic ? 0.1 : kFiner * kFiner;
+    const double most = quadratic ? 1.0 : kFinerEdge / (1.0 - kFinerEdge);
+    const double next = quadratic ? 0.1 : kFinerEdge * kFinerEdge;
     IngredientSpec spec;
     spec.name = name();
     spec.variant = variant;

@@ -55,20 +55,19 @@ const keyTable: [string, string][] = [
   ['?', 'this table'],
 ];
 
+/** Modal: the browser keeps the focus inside, closes it with Escape and gives the focus back. */
 function Help() {
-  const close = useRef<HTMLButtonElement>(null);
+  const dialog = useRef<HTMLDialogElement>(null);
   useEffect(() => {
-    if (!help.value) return;
-    const before = document.activeElement as HTMLElement | null;
-    close.current?.focus();
-    return () => before?.focus();
+    if (help.value) dialog.current?.showModal();
+    else dialog.current?.close();
   }, [help.value]);
-  if (!help.value) return null;
+  const close = (): void => void (help.value = false);
   return (
-    <div class="help" role="dialog" aria-label="Keys" onClick={() => (help.value = false)}>
+    <dialog class="help" ref={dialog} aria-label="Keys" onClose={close} onClick={close}>
       <table><tbody>{keyTable.map(([k, what]) => <tr key={k}><th scope="row"><kbd>{k}</kbd></th><td>{what}</td></tr>)}</tbody></table>
-      <button ref={close} onClick={() => (help.value = false)}>Close</button>
-    </div>
+      <button onClick={close}>Close</button>
+    </dialog>
   );
 }
 
@@ -87,7 +86,6 @@ function keys(event: KeyboardEvent): void {
   if (verbs[index]) verb.value = verbs[index];
   else if (event.key === 't') turnTheme();
   else if (event.key === '?') help.value = !help.value;
-  else if (event.key === 'Escape') help.value = false;
   else if (event.key === '[' && stepIndex.value > 0) showStep(stepIndex.value - 1);
   else if (event.key === ']' && stepIndex.value < run.value.steps.length - 1) showStep(stepIndex.value + 1);
   else if (event.key === 'n' || event.key === 'p') nextPhoto(event.key === 'n' ? 1 : -1);

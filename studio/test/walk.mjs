@@ -128,8 +128,15 @@ async function keyboardOnly(page) {
   const after = /\((\d+), (\d+)\)/.exec(await page.textContent('#readout'));
   assert.deepEqual([after[1] - before[1], after[2] - before[2]], [10, 1]);
   await page.keyboard.press('?');
-  await page.waitForSelector('[role=dialog]');
+  await page.waitForSelector('dialog.help[open]');
+  for (let i = 0; i < 3; ++i) {
+    await page.keyboard.press('Tab');
+    assert.ok(await page.evaluate(() => document.activeElement === document.body || document.activeElement.closest('dialog')),
+      'Tab leaves the open help');
+  }
   await page.keyboard.press('Escape');
+  await page.waitForSelector('dialog.help[open]', {state: 'detached'});
+  assert.ok(await page.evaluate(() => document.activeElement?.classList.contains('panels')), 'the focus is not given back');
 }
 
 /** A point of the body, picked by the keyboard, is shown in the photos that see it; one leads there. */
