@@ -23,7 +23,7 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
       if (flow.count == 0.0) continue;
       ++photos;
       out.whiteness_p = std::min(out.whiteness_p, flow.whiteness_p);
-      const double w = effective_share(flow, floor);
+      const double w = flow.effective / flow.count;
       out.effective.H += w * photo.sums.JtJ;
       out.effective.s += w * photo.sums.Jtr;
       out.effective.r2 += w * flow.variance * flow.count;

@@ -61,7 +61,7 @@ struct EffectiveMisfit {
 
 /// |z|^2 of `fitted` with the weights that the correlation in `reference` gives; of all examples or
 /// of those held out.
-EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference, const Floor& floor,
+EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference,
                                  bool held_out_alone = false) {
   EffectiveMisfit out;
   for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
@@ -72,7 +72,7 @@ EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference, 
       const FlowStatistics weight =
           flow_statistics(reference.evaluation.examples[e].photos[k].flow);
       if (own.count == 0.0 || weight.count == 0.0) continue;
-      const double w = effective_share(weight, floor);
+      const double w = weight.effective / weight.count;
       out.r2 += w * own.variance * weight.count;
       out.count += w * weight.count;
     }
@@ -87,16 +87,16 @@ EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference, 
 }  // namespace
 
 double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor) {
-  const EffectiveMisfit misfit = effective_misfit(fitted, reference, floor);
+  const EffectiveMisfit misfit = effective_misfit(fitted, reference);
   const double noise = std::max(floor.cell_variance, misfit.r2 / misfit.count);
   return -0.5 * misfit.count * std::log(noise) - 0.5 * misfit.r2 / noise -
          0.5 * fitted.form.size() * std::log(std::max(misfit.count, 2.0));
 }
 
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor) {
-  const EffectiveMisfit after = effective_misfit(with, with, floor, true);
+  const EffectiveMisfit after = effective_misfit(with, with, true);
   if (after.count == 0.0) return true;
-  const double rise = after.r2 - effective_misfit(without, with, floor, true).r2;
+  const double rise = after.r2 - effective_misfit(without, with, true).r2;
   return 0.5 * rise / std::max(floor.cell_variance, after.r2 / after.count) < kTie;
 }
 

@@ -1,6 +1,5 @@
 #include "estimation/floor.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace hookeye {
@@ -68,8 +67,7 @@ double fall_per_px2(const Evaluation& evaluation) {
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   Floor floor;
   floor.per_px2 = fall_per_px2(evaluation);
-  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0, photos = 0.0;
-  double inflation = 0.0, share = 0.0;
+  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0, inflation = 0.0, photos = 0.0;
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
     for (const auto& photo : example.photos) {
@@ -85,10 +83,7 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
       cell_count -= aligned.numbers;
       for (const auto& cell : photo.aligned.cells)
         cells += cell.z.squaredNorm(), cell_count += cell.known;
-      const FlowStatistics rough = flow_statistics(photo.aligned);
-      inflation += rough.inflation;
-      // a photo that is its own texture has nothing left
-      share += rough.variance > 0.0 ? rough.effective / rough.count : 1.0;
+      inflation += flow_statistics(photo.aligned).inflation;
       photos += 1.0;
     }
   }
@@ -97,13 +92,8 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   floor.chi = std::sqrt(std::max(r2, 0.0) / count);
   floor.source = "rest photos";
   floor.cell_inflation = std::max(1.0, inflation / photos);
-  floor.effective_share = share / photos;
   if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);
   return floor;
-}
-
-double effective_share(const FlowStatistics& flow, const Floor& floor) {
-  return std::min(flow.effective / flow.count, floor.effective_share);
 }
 
 }  // namespace hookeye

@@ -16,9 +16,6 @@ struct Floor {
   /// Variance of a smooth signature's score over that under white noise: the same errors summed
   /// over their correlation from cell to cell (FlowStatistics::inflation).
   double cell_inflation = 1.0;
-  /// Share of the cells' numbers that count as independent in the rest photos, by the same errors
-  /// (FlowStatistics::effective over count).
-  double effective_share = 1.0;
   /// Fall of chi^2 that one pixel of motion of the whole surface brings, mean over directions and
   /// the fitted photos: how sharp and how free of noise they are.
   double per_px2 = 0.0;
@@ -30,10 +27,5 @@ struct Floor {
 /// residual is no floor, and what a renderer gets wrong is rough. Needs pictures. Without compared
 /// rest photos: 1, "noise model".
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation);
-
-/// Share of a photo's numbers that count as independent: by its own residual or by the rest
-/// photos', whichever is correlated farther. A misfit that looks white hides errors that every
-/// photo has.
-double effective_share(const FlowStatistics& flow, const Floor& floor);
 
 }  // namespace hookeye

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "estimation/floor.h"
 #include "estimation/registration.h"
 
 namespace hookeye {
@@ -139,19 +138,6 @@ TEST(Flow, OneMotionEverywhereIsOneObservation) {
   EXPECT_GT(s.variance, 10.0);
   EXPECT_LT(s.effective, 0.1 * s.count);
   EXPECT_LT(s.whiteness_p, 1e-6);
-}
-
-TEST(Flow, APhotoCountsByItsOwnErrorsOrThoseOfTheRestPhotos) {
-  FlowStatistics flow;
-  flow.count = 100.0;
-  flow.effective = 90.0;
-  Floor floor;
-  EXPECT_DOUBLE_EQ(effective_share(flow, floor), 0.9);
-  // What a renderer gets wrong at rest is in every photo, also where a misfit hides it.
-  floor.effective_share = 0.2;
-  EXPECT_DOUBLE_EQ(effective_share(flow, floor), 0.2);
-  flow.effective = 5.0;
-  EXPECT_DOUBLE_EQ(effective_share(flow, floor), 0.05);
 }
 
 TEST(Registration, MakesAMotionOfManyPixelsLinear) {
