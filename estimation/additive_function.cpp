@@ -32,7 +32,7 @@ class AdditiveFunction final : public Ingredient {
     return true;
   }
   AddedFunctions at(const VectorXd& values) const {
-    AddedFunctions out{spec_.functions(values), {}, spec_.like_part};
+    AddedFunctions out{spec_.functions(values), {}};
     const VectorXd here = out.model.values();
     out.by_values.resize(here.size(), values.size());
     for (Eigen::Index k = 0; k < values.size(); ++k) {

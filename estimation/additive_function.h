@@ -30,7 +30,6 @@ std::shared_ptr<const Ingredient> additive_function(FunctionSpec spec);
 struct AddedFunctions {
   AdditiveModel model;
   Eigen::MatrixXd by_values;
-  int like_part = -1;
 };
 std::optional<AddedFunctions> added_functions(const Ingredient& ingredient, const VectorXd& values);
 

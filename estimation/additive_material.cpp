@@ -185,12 +185,20 @@ const AdditiveMaterial* as_material(const Ingredient& ingredient) {
 
 }  // namespace
 
+bool fits_capture(const Ingredient& additive_material, const Capture& capture) {
+  const AdditiveMaterial* own = as_material(additive_material);
+  if (!own || own->place().part >= static_cast<int>(capture.materials.size())) return false;
+  // a material alone needs no name
+  return capture.materials.size() == 1 ||
+         capture.materials[static_cast<size_t>(own->place().part)].region == own->place().label;
+}
+
 std::vector<AdditivePart> additive_parts(const ModelForm& form, const VectorXd& p) {
   std::vector<AdditivePart> out;
-  for_each_ingredient(form, [&](const Ingredient& one, int index, int offset, int n) {
+  for_each_ingredient(form, [&](const Ingredient& one, int, int offset, int n) {
     const AdditiveMaterial* material = as_material(one);
     if (!material) return;
-    out.push_back({index, offset, material->place(), material->model()});
+    out.push_back({offset, material->place(), material->model()});
     out.back().model.set_values(p.segment(offset, n));
   });
   return out;

@@ -28,10 +28,13 @@ std::shared_ptr<const Ingredient> additive_material(const AdditiveModel& model, 
 std::shared_ptr<const Ingredient> additive_material_from(const std::string& variant,
                                                          const Units& units);
 
+/// Its part of the energy is one of the capture's materials, of the same name.
+bool fits_capture(const Ingredient& additive_material, const Capture& capture);
+
 /// An additive material of a form, where its values begin among the parameters, and the model with
 /// the values of p. In the order of the form.
 struct AdditivePart {
-  int ingredient = 0, offset = 0;
+  int offset = 0;
   MaterialPlace place;
   AdditiveModel model;
 };

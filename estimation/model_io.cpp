@@ -58,7 +58,11 @@ std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, co
   const YamlNode* structure = section.find("variant");
   if (name == "material" && structure) {
     try {
-      return additive_material_from(read_string(*structure, "variant"), base.scene->capture.units);
+      auto material =
+          additive_material_from(read_string(*structure, "variant"), base.scene->capture.units);
+      if (!fits_capture(*material, base.scene->capture))
+        throw std::invalid_argument("the capture has no such material");
+      return material;
     } catch (const std::invalid_argument& error) {
       throw InputError(structure->place,
                        fmt::format("the material's variant is damaged: {}", error.what()),

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -72,8 +70,9 @@ class Anisotropy final : public Effect {
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
     const auto numbers = numbers_in(variant);
-    if (starts_with(variant, "across axis") && numbers.size() == 1 && additive_base(model))
-      return across(model, static_cast<int>(std::clamp(numbers[0], 1.0, 3.0)) - 1);
+    for (int axis = 0; axis < 3; ++axis)
+      if (additive_base(model) && variant == fmt::format("across axis {}", axis + 1))
+        return across(model, axis);
     if (numbers.size() != 3) return nullptr;
     const Vector3d a(numbers[0], numbers[1], numbers[2]);
     if (starts_with(variant, "along")) return along(model, a);

@@ -49,8 +49,9 @@ class StrainStiffening final : public Effect {
 
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    const auto at = numbers_in(variant);
-    if (!starts_with(variant, kAdditive) || at.empty() || !additive_base(model)) return nullptr;
+    if (!starts_with(variant, kAdditive) || !additive_base(model)) return nullptr;
+    const auto at = ramp_in(variant);
+    if (at.empty()) return nullptr;
     return of_additive(model, at);
   }
 
@@ -58,10 +59,9 @@ class StrainStiffening final : public Effect {
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
-    const auto at = numbers_in(scored->variant());
-    if (!starts_with(scored->variant(), kAdditive) || at.size() != 1) return scored;
-    values = Eigen::Vector2d(0.5 * values[0], values[0]);
-    return of_additive(model, {0.5 * at[0], at[0]});
+    if (!starts_with(scored->variant(), kAdditive)) return scored;
+    const auto at = refined_ramp(ramp_in(scored->variant()), values);
+    return of_additive(model, at);
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -73,7 +73,7 @@ class StrainStiffening final : public Effect {
       return fmt::format(
           "the material {} with strain: at an amount of shear of {} its modulus "
           "is {} % {} than at rest",
-          change >= 0 ? "stiffens" : "softens", figure(numbers_in(ingredient.variant()).front()),
+          change >= 0 ? "stiffens" : "softens", figure(ramp_in(ingredient.variant()).front()),
           figure(100.0 * std::abs(change)), change >= 0 ? "higher" : "lower");
     }
     // Uniaxial stretch 1.5: I1bar - 3 = 1.5^2 + 2/1.5 - 3; modulus 2 dW/dI1bar against its start.

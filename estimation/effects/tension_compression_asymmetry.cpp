@@ -115,8 +115,9 @@ class TensionCompressionAsymmetry final : public Effect {
 
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    const auto at = numbers_in(variant);
-    if (!starts_with(variant, kAdditive) || at.empty() || !additive_base(model)) return nullptr;
+    if (!starts_with(variant, kAdditive) || !additive_base(model)) return nullptr;
+    const auto at = ramp_in(variant);
+    if (at.empty()) return nullptr;
     return of_additive(model, starts_with(variant, kTension), at);
   }
 
@@ -124,10 +125,9 @@ class TensionCompressionAsymmetry final : public Effect {
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
-    const auto at = numbers_in(scored->variant());
-    if (!starts_with(scored->variant(), kAdditive) || at.size() != 1) return scored;
-    values = Eigen::Vector2d(0.5 * values[0], values[0]);
-    return of_additive(model, starts_with(scored->variant(), kTension), {0.5 * at[0], at[0]});
+    if (!starts_with(scored->variant(), kAdditive)) return scored;
+    const auto at = refined_ramp(ramp_in(scored->variant()), values);
+    return of_additive(model, starts_with(scored->variant(), kTension), at);
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -137,7 +137,7 @@ class TensionCompressionAsymmetry final : public Effect {
       return fmt::format("stiffer in {0} than in {1}: at {2} % strain by {3} % along an axis",
                          starts_with(ingredient.variant(), kTension) ? "tension" : "compression",
                          starts_with(ingredient.variant(), kTension) ? "compression" : "tension",
-                         figure(100.0 * numbers_in(ingredient.variant()).front()),
+                         figure(100.0 * ramp_in(ingredient.variant()).front()),
                          figure(100.0 * values[0] / (3.0 * mu)));
     if (ingredient.variant() == "by a fixed share") {
       const double share = 8.0 * values[0] / (3.0 * mu);

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "estimation/base_ingredients.h"
 
@@ -152,6 +155,21 @@ AdditiveModel in_frame_of(const AdditiveModel& base) {
   out.frame = base.frame;
   out.cylinder = base.cylinder;
   return out;
+}
+
+std::vector<double> ramp_in(const std::string& variant) {
+  std::vector<double> at = numbers_in(variant);
+  const bool rising = std::adjacent_find(at.begin(), at.end(), std::greater_equal<>()) == at.end();
+  if (at.empty() || at.size() >= kMostControlPoints || !(at[0] > 0.0) || !rising ||
+      !std::isfinite(at.back()))
+    return {};
+  return at;
+}
+
+std::vector<double> refined_ramp(const std::vector<double>& at, VectorXd& values) {
+  if (at.size() != 1) return at;
+  values = Eigen::Vector2d(0.5 * values[0], values[0]);
+  return {0.5 * at[0], at[0]};
 }
 
 void add_part(EnergyModel& energy, std::shared_ptr<const EnergyTerm> term) {

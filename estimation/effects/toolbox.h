@@ -55,6 +55,12 @@ double initial_shear_modulus(const EnergyModel& energy);
 const AdditiveModel* additive_base(const Model& model);
 /// A model without addends in the frame of another.
 AdditiveModel in_frame_of(const AdditiveModel& base);
+/// A function that is zero at rest and bends at control points on one side of it, as variants tell
+/// it: "... at 0.1 0.2", sizes of strain, rising. Empty: the variant is damaged.
+std::vector<double> ramp_in(const std::string& variant);
+/// The same function of one control point with another in its middle; `values` become those of
+/// both. Of more points: as it is.
+std::vector<double> refined_ramp(const std::vector<double>& at, VectorXd& values);
 /// Two unit axes normal to `direction` and to each other.
 std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction);
 Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector);

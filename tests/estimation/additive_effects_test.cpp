@@ -163,6 +163,21 @@ double added_energy(const Model& model, const std::string& effect, const std::st
   return additive(added_functions(*one, VectorXd::Ones(1))->model)->psi(F);
 }
 
+TEST(EffectsOnAdditive, DamagedVariantsAreNone) {
+  const ModelForm base = base_form(additive_block({}));
+  const Model model = base.realise(base.initial());
+  for (const char* at : {"0", "-0.1", "0.4 0.2", "0.2 0.2", "inf", ""})
+    for (const std::string start : {"strain_stiffening additive at ",
+                                    "tension_compression_asymmetry additive in tension at "}) {
+      const auto space = start.find(' ');
+      EXPECT_FALSE(
+          find_effect(start.substr(0, space))->candidate(model, start.substr(space + 1) + at))
+          << start << at;
+    }
+  EXPECT_FALSE(find_effect("anisotropy")->candidate(model, "across axis 9"));
+  EXPECT_TRUE(find_effect("anisotropy")->candidate(model, "across axis 2"));
+}
+
 TEST(EffectsOnAdditive, SayWhatTheirNamesSay) {
   const ModelForm base = base_form(additive_block({}));
   const Model model = base.realise(base.initial());

@@ -150,6 +150,19 @@ TEST(Blend, BothLawsAreToldAdditively) {
   const auto [again, values] = read_model(file, scene);
   EXPECT_EQ(values, fitted.p);
   EXPECT_EQ(forces(again, values), forces(fitted.form, fitted.p));
+  std::string damaged = write_model(fitted.form, fitted.p);
+  const std::string place = R"(\"material\":[1,\"head\"])";
+  ASSERT_NE(damaged.find(place), std::string::npos) << damaged;
+  for (const char* wrong : {R"(\"material\":[7,\"head\"])", R"(\"material\":[1,\"foot\"])"}) {
+    std::string text = damaged;
+    std::ofstream(file) << text.replace(text.find(place), place.size(), wrong);
+    try {
+      read_model(file, scene);
+      ADD_FAILURE() << "accepted " << wrong;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("the capture has no such material"));
+    }
+  }
   const auto finer = remeshed(*scene, 0.8, 0, false);
   const auto [moved, same] = transfer(fitted.form.realise(fitted.p), finer);
   EXPECT_EQ(names_of(moved), names_of(fitted.form));
