@@ -24,9 +24,14 @@ Matrix3d skew(const Vector3d& v) {
   return S;
 }
 
-void add_block(int a, int b, const Matrix3d& block, Triplets& K) {
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) K.emplace_back(3 * a + i, 3 * b + j, block(i, j));
+/// Adds the stiffness of one face, summed over its points: each entry is looked up in K once.
+void add_face(const TetMesh& mesh, int face, const MatrixXd& stiffness, Triplets& K) {
+  const auto unknown = [&](Eigen::Index i) {
+    return 3 * mesh.boundary(i / 3, face) + static_cast<int>(i % 3);
+  };
+  for (Eigen::Index j = 0; j < stiffness.cols(); ++j)
+    for (Eigen::Index i = 0; i < stiffness.rows(); ++i)
+      K.emplace_back(unknown(i), unknown(j), stiffness(i, j));
 }
 
 /// Force -p n da on the deformed faces. On a closed surface it has the potential p V. On an open
@@ -58,17 +63,16 @@ class FollowerPressure final : public ForceTerm {
     // d(t0 x t1) = dt0 x t1 + t0 x dt1 = (-[t1] N_b,0 + [t0] N_b,1) dq_b.
     for (const auto& [face, fraction] : faces_) {
       const MatrixXd x = face_nodes(mesh, q, face);
+      MatrixXd D = MatrixXd::Zero(x.size(), x.size());
       for (const FacePoint& g : face_rule(mesh.order)) {
         const Tangents t = x * g.dN;
         const Matrix3d S0 = skew(t.col(0)), S1 = skew(t.col(1));
-        const double w = 0.5 * s * p_ * fraction * g.weight;
+        const double w = s * p_ * fraction * g.weight;
         for (Eigen::Index a = 0; a < x.cols(); ++a)
-          for (Eigen::Index b = 0; b < x.cols(); ++b) {
-            const Matrix3d D = w * g.N[a] * (g.dN(b, 1) * S0 - g.dN(b, 0) * S1);
-            add_block(mesh.boundary(a, face), mesh.boundary(b, face), D, K);
-            add_block(mesh.boundary(b, face), mesh.boundary(a, face), D.transpose(), K);
-          }
+          for (Eigen::Index b = 0; b < x.cols(); ++b)
+            D.block<3, 3>(3 * a, 3 * b) += w * g.N[a] * (g.dN(b, 1) * S0 - g.dN(b, 0) * S1);
       }
+      add_face(mesh, face, 0.5 * (D + D.transpose()), K);
     }
   }
 
@@ -112,43 +116,52 @@ class ElasticFoundation final : public ForceTerm {
 
   double potential(const TetMesh& mesh, const VectorXd& q, double) const override {
     double sum = 0;
-    visit(mesh, [&](int face, const FacePoint& g, const Matrix3d& k) {
-      const Vector3d u = face_nodes(mesh, q - target_, face) * g.N;
-      sum += 0.5 * u.dot(k * u);
-    });
+    const VectorXd moved = q - target_;
+    for (const auto& face : faces_) {
+      const MatrixXd at = face_nodes(mesh, moved, face.first);
+      visit(mesh, face, [&](const FacePoint& g, const Matrix3d& k) {
+        const Vector3d u = at * g.N;
+        sum += 0.5 * u.dot(k * u);
+      });
+    }
     return sum;
   }
   void add_residual(const TetMesh& mesh, const VectorXd& q, double, VectorXd& R) const override {
-    const VectorXd u = q - target_;
-    visit(mesh, [&](int face, const FacePoint& g, const Matrix3d& k) {
-      const Vector3d t = k * (face_nodes(mesh, u, face) * g.N);
-      for (Eigen::Index a = 0; a < g.N.size(); ++a)
-        R.segment<3>(3 * mesh.boundary(a, face)) += g.N[a] * t;
-    });
+    const VectorXd moved = q - target_;
+    for (const auto& face : faces_) {
+      const MatrixXd at = face_nodes(mesh, moved, face.first);
+      visit(mesh, face, [&](const FacePoint& g, const Matrix3d& k) {
+        const Vector3d t = k * (at * g.N);
+        for (Eigen::Index a = 0; a < g.N.size(); ++a)
+          R.segment<3>(3 * mesh.boundary(a, face.first)) += g.N[a] * t;
+      });
+    }
   }
   void add_tangent(const TetMesh& mesh, const VectorXd&, double, Triplets& K) const override {
-    visit(mesh, [&](int face, const FacePoint& g, const Matrix3d& k) {
-      for (Eigen::Index a = 0; a < g.N.size(); ++a)
-        for (Eigen::Index b = 0; b < g.N.size(); ++b)
-          add_block(mesh.boundary(a, face), mesh.boundary(b, face), g.N[a] * g.N[b] * k, K);
-    });
+    const Eigen::Index size = 3 * mesh.boundary.rows();
+    for (const auto& face : faces_) {
+      MatrixXd stiffness = MatrixXd::Zero(size, size);
+      visit(mesh, face, [&](const FacePoint& g, const Matrix3d& k) {
+        for (Eigen::Index a = 0; a < g.N.size(); ++a)
+          for (Eigen::Index b = 0; b < g.N.size(); ++b)
+            stiffness.block<3, 3>(3 * a, 3 * b) += g.N[a] * g.N[b] * k;
+      });
+      add_face(mesh, face.first, stiffness, K);
+    }
   }
 
  private:
+  /// The points of a face with their share of the stiffness.
   template <class F>
-  void visit(const TetMesh& mesh, F&& f) const {
-    const VectorXd X = mesh.X.reshaped();
-    for (const auto& [face, fraction] : faces_) {
-      const MatrixXd x = face_nodes(mesh, X, face);
-      for (const FacePoint& g : face_rule(mesh.order)) {
-        const Tangents t = x * g.dN;
-        const Vector3d normal = t.col(0).cross(t.col(1));
-        const Vector3d n = normal.normalized();
-        const Matrix3d nn = n * n.transpose();
-        f(face, g,
-          Matrix3d((fraction * g.weight * normal.norm()) *
-                   (kn_ * nn + kt_ * (Matrix3d::Identity() - nn))));
-      }
+  void visit(const TetMesh& mesh, const Faces::value_type& face, F&& f) const {
+    const MatrixXd x = mesh.X(Eigen::all, mesh.boundary.col(face.first));
+    for (const FacePoint& g : face_rule(mesh.order)) {
+      const Tangents t = x * g.dN;
+      const Vector3d normal = t.col(0).cross(t.col(1));
+      const Vector3d n = normal.normalized();
+      const Matrix3d nn = n * n.transpose();
+      f(g, Matrix3d((face.second * g.weight * normal.norm()) *
+                    (kn_ * nn + kt_ * (Matrix3d::Identity() - nn))));
     }
   }
 
