@@ -65,31 +65,21 @@ std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates
   return out;
 }
 
-void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candidate>& candidates,
+void find_confusions(const Eigen::MatrixXd& H, const std::vector<ProjectedHypothesis>& projected,
                      const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores) {
-  const Eigen::MatrixXd H_aa_inverse =
-      base > 0 ? Eigen::MatrixXd(
-                     H.topLeftCorner(base, base).completeOrthogonalDecomposition().pseudoInverse())
-               : Eigen::MatrixXd(0, 0);
-  auto block = [&](const Hypothesis& a, const Hypothesis& b) -> Eigen::MatrixXd {
-    return H.block(a.first, b.first, a.count, b.count) -
-           H.block(0, a.first, base, a.count).transpose() * H_aa_inverse *
-               H.block(0, b.first, base, b.count);
-  };
   for (auto& score : scores) {
     if (!score.testable || score.evidence <= 0.0) continue;
-    const Hypothesis& mine = candidates[best.at(score.effect)].hypothesis;
+    const ProjectedHypothesis& mine = projected[best.at(score.effect)];
     VectorXd t = score.values;
     const auto parameters = score.best->parameters();
     for (int i = 0; i < t.size(); ++i) t[i] -= parameters[i].value;
-    const double length = t.dot(block(mine, mine) * t);
+    const double length = t.dot(mine.M * t);
     if (length <= 0.0) continue;
     for (const auto& other : scores) {
       if (!other.testable || other.effect == score.effect || other.evidence <= 0.0) continue;
-      const Hypothesis& theirs = candidates[best.at(other.effect)].hypothesis;
-      const VectorXd projection = block(theirs, mine) * t;
-      const double imitated =
-          projection.dot(block(theirs, theirs).completeOrthogonalDecomposition().solve(projection));
+      const ProjectedHypothesis& theirs = projected[best.at(other.effect)];
+      const VectorXd projection = theirs.projected_score(H.middleCols(mine.first, t.size()) * t);
+      const double imitated = projection.dot(theirs.inverse() * projection);
       const double cosine = std::sqrt(std::clamp(imitated / length, 0.0, 1.0));
       // A wrong cause at cosine 0.9 still removes 80 % of the removable error.
       if (cosine > 0.9) score.confused_with.push_back({other.effect, cosine});

@@ -26,9 +26,9 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
 std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
                                         const VectorXd& evidence);
 
-/// Share of each effect's signature that the others can imitate, beside the `base` first columns of
-/// H. `best`: each effect's candidate.
-void find_confusions(const Eigen::MatrixXd& H, int base, const std::vector<Candidate>& candidates,
+/// Share of each effect's signature that the others can imitate beside the base columns.
+/// `projected` from H, `best`: each effect's candidate.
+void find_confusions(const Eigen::MatrixXd& H, const std::vector<ProjectedHypothesis>& projected,
                      const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores);
 
 }  // namespace hookeye

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +10,7 @@
 #include "estimation/candidates.h"
 #include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
+#include "estimation/gram.h"
 
 namespace hookeye {
 
@@ -21,10 +21,8 @@ namespace {
 std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
                                   const std::vector<ProjectedHypothesis>& projected,
                                   const DiagnosisSums& sums, const DiagnosisOptions& options) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(sums.null_noise);
+  const Eigen::MatrixXd root = square_root(sums.null_noise);
   const double r2 = sums.effective.count * sums.effective.floor2;
-  const Eigen::MatrixXd root =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::mt19937 engine(options.seed);
   std::normal_distribution<double> normal;
   std::vector<double> largest;
@@ -131,7 +129,7 @@ EffectScore describe(const Context& context, const Candidate& candidate,
         -change(context.sums.held_out.JtJ, context.sums.held_out.Jtr, step) / held, -1.0, 1.0);
   const Eigen::MatrixXd V = context.sums.noise.block(
       candidate.hypothesis.first, candidate.hypothesis.first, score.dof, score.dof);
-  const Eigen::MatrixXd inverse = weighted.M.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = weighted.inverse();
   score.standard_error = (inverse * V * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
   const std::string sentence =
       candidate.effect->sentence(context.model, *candidate.ingredient, score.values);
@@ -309,7 +307,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     }
     out.effects.push_back(std::move(score));
   }
-  find_confusions(sums.effective.H, base, candidates, best, out.effects);
+  find_confusions(sums.effective.H, projected, best, out.effects);
   weigh(out.effects);
   std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
     return std::pair(a.testable, a.evidence) > std::pair(b.testable, b.evidence);

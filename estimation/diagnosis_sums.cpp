@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimation/gram.h"
+
 namespace hookeye {
 
 DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
@@ -59,7 +61,7 @@ double without_base(const EffectiveSums& sums, int base) {
   if (base == 0) return sums.r2;
   const VectorXd s = sums.s.head(base);
   const Eigen::MatrixXd H = sums.H.topLeftCorner(base, base);
-  const double gain = s.dot(H.completeOrthogonalDecomposition().solve(s));
+  const double gain = s.dot(pseudo_inverse(H) * s);
   return std::max(sums.r2 - gain, 0.1 * sums.r2);
 }
 

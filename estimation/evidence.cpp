@@ -3,21 +3,16 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "estimation/gram.h"
+
 namespace hookeye {
 
 namespace {
 
-Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
-  if (H.size() == 0) return H;
-  // scaled, because columns of different units differ by many powers of ten
-  const Eigen::VectorXd scale = H.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * H *
-                                                             scale.asDiagonal());
-  Eigen::VectorXd inverse = eigen.eigenvalues();
-  for (double& x : inverse) x = x > 1e-10 ? 1.0 / x : 0.0;
-  return scale.asDiagonal() * eigen.eigenvectors() * inverse.asDiagonal() *
-         eigen.eigenvectors().transpose() * scale.asDiagonal();
-}
+/// Share of a mode's sum of squares that the base columns must leave to be known: inverting them
+/// (kInverted) loses ten of a double's sixteen digits. A mode with less is a motion of the base
+/// columns; what would be told of it is what the fit left undone along them.
+constexpr double kOwn = 1e-6;
 
 }  // namespace
 
@@ -30,13 +25,18 @@ ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis
   out.most = hypothesis.most;
   const auto H_ac = H.block(0, hypothesis.first, base, hypothesis.count);
   out.to_base = pseudo_inverse(H.topLeftCorner(base, base)) * H_ac;
-  out.M = H.block(hypothesis.first, hypothesis.first, hypothesis.count, hypothesis.count) -
-          H_ac.transpose() * out.to_base;
-  out.M = 0.5 * (out.M + out.M.transpose()).eval();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      hypothesis.typical.asDiagonal() * out.M * hypothesis.typical.asDiagonal());
+  const auto D = hypothesis.typical.asDiagonal();
+  const Eigen::MatrixXd before =
+      D * H.block(hypothesis.first, hypothesis.first, hypothesis.count, hypothesis.count) * D;
+  const Eigen::MatrixXd after = before - D * H_ac.transpose() * out.to_base * D;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (after + after.transpose()));
   out.modes = eigen.eigenvectors();
-  out.eigenvalues = eigen.eigenvalues().cwiseMax(0.0);
+  out.eigenvalues = eigen.eigenvalues();
+  for (Eigen::Index i = 0; i < out.eigenvalues.size(); ++i)
+    if (out.eigenvalues[i] <= kOwn * out.modes.col(i).dot(before * out.modes.col(i)))
+      out.eigenvalues[i] = 0.0, out.modes.col(i).setZero();
+  const Eigen::MatrixXd back = D.inverse() * out.modes;
+  out.M = back * out.eigenvalues.asDiagonal() * back.transpose();
   return out;
 }
 
@@ -46,6 +46,13 @@ double ProjectedHypothesis::best_signal() const {
 
 Eigen::VectorXd ProjectedHypothesis::projected_score(const Eigen::VectorXd& s) const {
   return s.segment(first, M.cols()) - to_base.transpose() * s.head(base);
+}
+
+Eigen::MatrixXd ProjectedHypothesis::inverse() const {
+  const Eigen::MatrixXd forth = typical.asDiagonal() * modes;
+  const Eigen::VectorXd of_modes =
+      (eigenvalues.array() > 0.0).select(eigenvalues.cwiseInverse(), 0.0);
+  return forth * of_modes.asDiagonal() * forth.transpose();
 }
 
 Eigen::VectorXd ProjectedHypothesis::step(const Eigen::VectorXd& s) const {

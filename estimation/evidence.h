@@ -26,11 +26,12 @@ struct Hypothesis {
 };
 
 /// Quadratic form left after the base columns: M = H_cc - H_ca H_aa^+ H_ac, eigen-decomposed in
-/// units of `typical`.
+/// units of `typical`. Modes that the base columns can make (to rounding) are left out of all of
+/// it.
 struct ProjectedHypothesis {
   Eigen::MatrixXd M;        ///< count x count, parameter units
   Eigen::MatrixXd to_base;  ///< H_aa^+ H_ac: base x count
-  Eigen::MatrixXd modes;    ///< columns: eigenvectors of D M D
+  Eigen::MatrixXd modes;    ///< columns: eigenvectors of D M D; zero: left out
   Eigen::VectorXd eigenvalues;
   Eigen::VectorXd typical;
   int first = 0, base = 0;
@@ -40,6 +41,7 @@ struct ProjectedHypothesis {
   /// deviations) these photos cannot test an effect of that size.
   double best_signal() const;
   Eigen::VectorXd projected_score(const Eigen::VectorXd& s) const;  ///< s~
+  Eigen::MatrixXd inverse() const;                                  ///< M^+
   /// Step t = -M^+ s~ (directions without signal stay at the null).
   Eigen::VectorXd step(const Eigen::VectorXd& s) const;
   double fall(const Eigen::VectorXd& s) const;  ///< s~^T M^+ s~

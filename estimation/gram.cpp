@@ -1,0 +1,29 @@
+#include "estimation/gram.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace hookeye {
+
+GramEigen::GramEigen(const Eigen::MatrixXd& H) : scale(H.diagonal().cwiseMax(1e-300).cwiseSqrt()) {
+  if (H.size() == 0) return;
+  const Eigen::VectorXd unit = scale.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * H *
+                                                             unit.asDiagonal());
+  values = eigen.eigenvalues();
+  V = eigen.eigenvectors();
+}
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
+  const GramEigen of(H);
+  Eigen::VectorXd inverse = of.values;
+  for (double& x : inverse) x = x > kInverted ? 1.0 / x : 0.0;
+  const Eigen::MatrixXd back = of.scale.cwiseInverse().asDiagonal() * of.V;
+  return back * inverse.asDiagonal() * back.transpose();
+}
+
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& H) {
+  const GramEigen of(H);
+  return of.scale.asDiagonal() * of.V * of.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+}  // namespace hookeye

@@ -1,0 +1,54 @@
+// Sums over columns of any units: what is known of one does not depend on the units of another.
+#include "estimation/gram.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace hookeye {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Columns {
+  MatrixXd H;   ///< of columns of one unit
+  VectorXd of;  ///< units, twenty powers of ten apart
+  MatrixXd mixed() const { return of.asDiagonal() * H * of.asDiagonal(); }
+};
+
+Columns some_columns() {
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal;
+  MatrixXd J(60, 5);
+  for (double& x : J.reshaped()) x = normal(engine);
+  return {J.transpose() * J, (VectorXd(5) << 1e10, 1.0, 1e-3, 1e5, 1e-10).finished()};
+}
+
+TEST(Gram, ASquareRootKeepsTheColumnsOfEveryUnit) {
+  const Columns columns = some_columns();
+  const MatrixXd A = square_root(columns.mixed());
+  const VectorXd back = columns.of.cwiseInverse();
+  EXPECT_LT((back.asDiagonal() * A * A.transpose() * back.asDiagonal() - columns.H).norm(),
+            1e-10 * columns.H.norm());
+}
+
+TEST(Gram, APseudoInverseInvertsTheColumnsOfEveryUnit) {
+  const Columns columns = some_columns();
+  const MatrixXd one = pseudo_inverse(columns.H), mixed = pseudo_inverse(columns.mixed());
+  EXPECT_LT((one * columns.H - MatrixXd::Identity(5, 5)).norm(), 1e-10);
+  EXPECT_LT((columns.of.asDiagonal() * mixed * columns.of.asDiagonal() - one).norm(),
+            1e-10 * one.norm());
+}
+
+TEST(Gram, ColumnsThatSayNothingStayOut) {
+  MatrixXd H = MatrixXd::Zero(3, 3);
+  H(0, 0) = 4.0;
+  EXPECT_EQ(pseudo_inverse(H).row(1).norm() + pseudo_inverse(H).col(2).norm(), 0.0);
+  EXPECT_DOUBLE_EQ(pseudo_inverse(H)(0, 0), 0.25);
+  EXPECT_EQ(square_root(H).row(2).norm(), 0.0);
+  EXPECT_EQ(pseudo_inverse(MatrixXd(0, 0)).size(), 0);
+}
+
+}  // namespace
+}  // namespace hookeye
