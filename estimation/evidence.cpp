@@ -9,10 +9,10 @@ namespace hookeye {
 
 namespace {
 
-/// Share of a mode's sum of squares that the base columns must leave to be known: inverting them
-/// (kInverted) loses ten of a double's sixteen digits. A mode with less is a motion of the base
-/// columns; what would be told of it is what the fit left undone along them.
-constexpr double kOwn = 1e-6;
+/// Share of a mode's sum of squares that the base columns must leave to be known, ten times what
+/// their inverse errs by (kInverted). A mode with less is a motion of the base columns; what would
+/// be told of it is what the fit left undone along them.
+constexpr double kOwn = 1e-5;
 
 }  // namespace
 

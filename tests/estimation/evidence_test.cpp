@@ -71,8 +71,8 @@ TEST(Evidence, WhatAFitLeftUndoneIsNoEvidence) {
   std::mt19937 engine(10);
   Data data = noise(engine, 200, 3);
   const VectorXd hair = data.J.col(1);
-  data.J.col(1) = data.J.col(0) + 1e-6 * hair;
-  data.J.col(2) = data.J.col(0) + 1e-5 * hair;
+  data.J.col(1) = data.J.col(0) + 1e-5 * hair;
+  data.J.col(2) = data.J.col(0) + 1e-4 * hair;
   data.r -= hair;
   const MatrixXd H = data.J.transpose() * data.J;
   const auto projected = project(H, 2, {2, 1, VectorXd::Ones(1)});
