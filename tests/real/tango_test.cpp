@@ -65,8 +65,8 @@ TEST(ElastomerSheet, NotchedSheetIsPredicted) {
   }
 }
 
-/// The load cell's zero is not told: forces do not rise from nought, and that is named although the
-/// photos have misfits of their own.
+/// The load cell's zero is not told: forces do not rise from nought, and that is named before
+/// anything else although the photos have misfits of their own.
 TEST(ElastomerSheet, ForceZeroIsFound) {
   HOOKEYE_NEEDS_DATA(kData);
   const test::TemporaryFolder folder;
@@ -77,12 +77,11 @@ TEST(ElastomerSheet, ForceZeroIsFound) {
   real::Case sheet = two_holes(tension, folder.path());
   const Diagnosis diagnosis = real::diagnose_case(sheet);
   fmt::print("{}", real::table(diagnosis));
-  const auto zero = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
-                                 [](const auto& one) { return one.effect == "force_zero"; });
-  ASSERT_NE(zero, diagnosis.effects.end());
-  EXPECT_TRUE(nameable(*zero, diagnosis));
+  const EffectScore& zero = diagnosis.effects.front();
+  ASSERT_EQ(zero.effect, "force_zero");
+  EXPECT_TRUE(nameable(zero, diagnosis));
   // 0.15 N before the pull and 0.18 N after rupture, along the pull.
-  EXPECT_NEAR(zero->values[0], -0.165, 0.04);
+  EXPECT_NEAR(zero.values[0], -0.165, 0.04);
 }
 
 }  // namespace
