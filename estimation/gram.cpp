@@ -4,14 +4,26 @@
 
 namespace hookeye {
 
-GramEigen::GramEigen(const Eigen::MatrixXd& H) : scale(H.diagonal().cwiseMax(1e-300).cwiseSqrt()) {
-  if (H.size() == 0) return;
-  const Eigen::VectorXd unit = scale.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * H *
-                                                             unit.asDiagonal());
-  values = eigen.eigenvalues();
-  V = eigen.eigenvectors();
-}
+namespace {
+
+/// Eigen-decomposition H = D V diag(values) V^T D over the roots D of the diagonal: columns of
+/// different units differ by many powers of ten, and what a plain decomposition calls rounding of
+/// the large ones drowns the small ones.
+struct GramEigen {
+  Eigen::VectorXd scale, values;  ///< D, not zero where a column is; ascending
+  Eigen::MatrixXd V;
+
+  explicit GramEigen(const Eigen::MatrixXd& H) : scale(H.diagonal().cwiseMax(1e-300).cwiseSqrt()) {
+    if (H.size() == 0) return;
+    const Eigen::VectorXd unit = scale.cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * H *
+                                                               unit.asDiagonal());
+    values = eigen.eigenvalues();
+    V = eigen.eigenvectors();
+  }
+};
+
+}  // namespace
 
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
   const GramEigen of(H);
