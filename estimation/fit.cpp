@@ -19,9 +19,11 @@ namespace {
 struct Scope {
   bool held_out = false;     ///< the held-out examples, not the fitted ones
   std::vector<bool> moving;  ///< by parameter
+  int only = -1;             ///< this example alone, -1: all
   void choose(EvaluationOptions& options) const {
     options.fitted = !held_out;
     options.held_out = held_out;
+    if (only >= 0) options.only = {only};
   }
   /// A parameter that stands still has no column: condense() leaves such where they are.
   NormalEquations of(const Evaluation& evaluation) const {
@@ -335,6 +337,28 @@ void check_data(const Scene& scene, const Look& seen) {
                    "what every photo shows)");
 }
 
+/// Fits the numbers that concern one example alone, one example after the other: a jaw's tilt,
+/// which one camera sees by its square alone, would hold up all others' steps with its own.
+std::variant<VectorXd, NumericalFailure> settle_examples(Workspace& workspace,
+                                                         const ModelForm& form, VectorXd p,
+                                                         FitOptions options, const Scope& all,
+                                                         Stage stage, const Look& seen) {
+  options.progress = nullptr;
+  const auto parameters = form.parameters();
+  const int examples = static_cast<int>(form.scene->capture.examples.size());
+  for (int e = 0; e < examples; ++e) {
+    Scope scope{all.held_out, std::vector<bool>(parameters.size(), false), e};
+    bool any = false;
+    for (size_t i = 0; i < parameters.size(); ++i)
+      any |= scope.moving[i] = all.moving[i] && parameters[i].example == e;
+    if (!any || form.scene->capture.examples[e].validate != all.held_out) continue;
+    auto ran = run_stage(workspace, form, p, options, scope, stage, seen);
+    if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
+    p = std::get<StageResult>(ran).p;
+  }
+  return p;
+}
+
 /// From coarse to full size within a scope.
 std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& start,
@@ -352,6 +376,11 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
     const Look seen = *full_size;
     if (!stage.serves(seen.motion_px)) continue;
     full_size.reset();
+    if (stage.level == 0 && !stage.registered) {
+      auto settled = settle_examples(workspace, form, out.p, options, scope, stage, seen);
+      if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
+      out.p = std::get<VectorXd>(std::move(settled));
+    }
     auto ran = run_stage(workspace, form, out.p, options, scope, stage, seen);
     if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
     const auto& result = std::get<StageResult>(ran);
