@@ -1,6 +1,9 @@
 #include "estimation/floor.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "estimation/fit.h"
 
 namespace hookeye {
 
@@ -40,6 +43,35 @@ SmoothPart smooth_part(const FlowField& flow, int degree) {
   return {b.dot(A.completeOrthogonalDecomposition().solve(b)), static_cast<double>(size)};
 }
 
+/// |r|^2 of `pixels` pixels as the middle cell has them, its own motion and brightness out.
+double r2_of_middle_cell(const FlowField& flow, double pixels) {
+  std::vector<double> variance;
+  for (const auto& cell : flow.cells)
+    if (cell.pixels > cell.known)
+      variance.push_back((cell.r2 - cell.explained) / (cell.pixels - cell.known));
+  if (variance.empty()) return pixels;
+  const auto middle = variance.begin() + static_cast<std::ptrdiff_t>(variance.size() / 2);
+  std::nth_element(variance.begin(), middle, variance.end());
+  return pixels * *middle;
+}
+
+struct Left {
+  double r2 = 0.0, count = 0.0;
+};
+
+/// What is left of a photo at rest without what moved. Polynomials take the motion out where the
+/// picture is linear in it. Past that the pictures are aligned, and rims and what came into view
+/// are no noise: the middle cell speaks for all. (An aligned contour is where it should be,
+/// whatever the noise: silhouettes have polynomials alone.)
+Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
+  Left left;
+  for (const auto& cell : photo.flow.cells) left.r2 += cell.r2, left.count += cell.pixels;
+  if (!silhouette && photo.motion_px > kLinearPx)
+    return {r2_of_middle_cell(photo.aligned, left.count), left.count};
+  const SmoothPart moved = smooth_part(photo.flow, degree);
+  return {left.r2 - moved.explained, left.count - moved.numbers};
+}
+
 /// Highest degree for which a polynomial has a third of the cells' numbers at most, up to cubic;
 /// -1: too few cells.
 int degree_for(const FlowField& flow) {
@@ -73,10 +105,10 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
     for (const auto& photo : example.photos) {
       const int degree = degree_for(photo.flow);
       if (degree < 0) continue;
-      const SmoothPart moved = smooth_part(photo.flow, degree);
-      r2 -= moved.explained;
-      count -= moved.numbers;
-      for (const auto& cell : photo.flow.cells) r2 += cell.r2, count += cell.pixels;
+      const auto& spec = scene.capture.examples[example.example].photos[photo.photo];
+      const Left left = without_motion(photo, spec.kind == PhotoSpec::Kind::silhouette, degree);
+      r2 += left.r2;
+      count += left.count;
       // Cells are judged after the motion that the registration found, however rough, is out.
       const SmoothPart aligned = smooth_part(photo.aligned, degree);
       cells -= aligned.explained;

@@ -23,9 +23,9 @@ struct Floor {
 };
 
 /// From the rest photos, after motion and brightness that are smooth over a photo (up to cubic in
-/// the place) are taken out of them: weight, swelling and placement act at rest too, so the raw
-/// residual is no floor, and what a renderer gets wrong is rough. Needs pictures. Without compared
-/// rest photos: 1, "noise model".
+/// the place) are taken out of them: weight and swelling act at rest too, and what a renderer gets
+/// wrong is rough. Moved by more than kLinearPx (fit.h) they give the middle cell of the aligned
+/// pictures. Needs pictures. Without compared rest photos: 1, "noise model".
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation);
 
 }  // namespace hookeye
