@@ -5,23 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/contest.h"
+
 namespace hookeye {
 
 namespace {
-
-/// What texture and shading errors of another renderer leave over the floor of the rest photos.
-constexpr double kAtFloor = 1.3;
-
-bool numerical(const std::string& effect) {
-  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
-  return found && found->group() == EffectGroup::numerical;
-}
-
-/// Within 1.3 times the floor on the fitted photos and on the held-out ones.
-bool at_floor(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) <= kAtFloor * floor.chi;
-}
 
 /// The photos are explained but for what a finer mesh would change. That is told beside the
 /// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
@@ -117,122 +105,6 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
 }
 
 namespace {
-
-struct Refit {
-  std::string effect;
-  Fitted fitted;
-  double score = 0.0;
-};
-
-bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
-/// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
-/// none.
-bool may_tie(const Racer& rival, const Racer& winner) {
-  return rival.structured() < 1.5 * winner.structured();
-}
-
-/// Left with three times the misfit of the first after as many steps: nobody came from there to
-/// win, and the refit of a field costs as much as all others. Not asked of the effect of the
-/// largest evidence.
-bool out_of_reach(const Racer& rival, const Racer& winner) {
-  return rival.chi() > 3.0 * winner.chi();
-}
-
-/// The first `most` of a race, the effect of the largest evidence always among them: who is slow in
-/// two steps may still be right. So is a sensor's error, which moves no photo and so cannot win by
-/// them. A numerical error that comes near the first is refitted too, whatever its rank: nothing is
-/// named before the mesh is settled. Where it is that effect of the largest evidence it goes first:
-/// what it leaves tells early that others will not get there.
-void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
-  if (racers.empty()) return;
-  const std::string& first = diagnosis.effects.front().effect;
-  const Racer winner = racers.front();
-  std::vector<Racer> kept;
-  int places = most;
-  for (const Racer& racer : racers) places -= racer.effect == first;
-  for (Racer& racer : racers) {
-    const bool held = racer.effect == first || sensors_alone(*racer.form.ingredients.back());
-    if (!held && out_of_reach(racer, winner)) continue;
-    if (held || places-- > 0 || (numerical(racer.effect) && may_tie(racer, winner)))
-      kept.push_back(std::move(racer));
-  }
-  racers = std::move(kept);
-  if (numerical(first))
-    std::stable_partition(racers.begin(), racers.end(),
-                          [&](const Racer& racer) { return racer.effect == first; });
-}
-
-/// The mesh leads by more than a tie, and the step that it promises brings fitted and held-out
-/// photos to the floor. That step is no guess (the finer mesh was solved), the mesh is settled
-/// before anything is named, and what it leaves is diagnosed next: nobody needs to race.
-bool mesh_settles_it(const Step& step) {
-  const Diagnosis& diagnosis = step.diagnosis;
-  const auto& effects = diagnosis.effects;
-  if (effects.empty() || !numerical(effects[0].effect) || !nameable(effects[0], diagnosis))
-    return false;
-  if (effects.size() > 1 && effects[1].testable && effects[1].evidence > effects[0].evidence - kTie)
-    return false;
-  const double floor2 = diagnosis.floor.chi * diagnosis.floor.chi;
-  const auto at_floor_after = [&](bool held_out, double share) {
-    const double r2 = std::pow(step.fitted.evaluation.chi(held_out), 2);
-    return r2 - share * (r2 - floor2) <= kAtFloor * kAtFloor * floor2;
-  };
-  return at_floor_after(false, effects[0].explains) &&
-         at_floor_after(true, effects[0].explains_held_out);
-}
-
-struct Contest {
-  std::vector<Raced> raced;
-  std::vector<Refit> refits;  ///< best first
-};
-
-/// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
-/// of the best of them.
-std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
-                                                      const DiscoverOptions& options,
-                                                      const DiscoverEvents& events) {
-  Contest out;
-  auto& refits = out.refits;
-  Diagnosis entered = step.diagnosis;
-  if (mesh_settles_it(step)) entered.effects.resize(1);
-  auto raced = race(workspace, step.fitted, entered, options.fit, events.tried);
-  if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
-  auto& racers = std::get<std::vector<Racer>>(raced);
-  for (const Racer& racer : racers)
-    out.raced.push_back({racer.effect, racer.trial.chi_fit, racer.trial.chi_validate});
-  keep_leaders(racers, entered, options.leaders);
-  for (const Racer& racer : racers) {
-    // Nothing can do better than the floor; once it is reached only a tie is of use.
-    if (!refits.empty() && at_floor(refits.front().fitted, step.diagnosis.floor) &&
-        !may_tie(racer, racers.front()))
-      continue;
-    if (events.refitting) events.refitting(racer.effect);
-    FitOptions fit = options.fit;
-    for (const Refit& rival : refits) {
-      const double chi = rival.fitted.evaluation.chi(false);
-      fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
-    }
-    auto result = refit(workspace, racer, fit);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
-      continue;  // a model without equilibrium explains nothing
-    }
-    if (events.refitted) events.refitted(racer.effect, std::get<Fitted>(result));
-    refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
-  }
-  if (refits.empty()) return out;
-  auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
-  const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
-    return total_chi(a.fitted) < total_chi(b.fitted);
-  });
-  const Fitted reference = best->fitted;
-  for (auto& refit : refits)
-    refit.score = refit_score(refit.fitted, reference, step.diagnosis.floor);
-  std::stable_sort(refits.begin(), refits.end(),
-                   [](auto& a, auto& b) { return a.score > b.score; });
-  return out;
-}
 
 /// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
 /// with which no effect is idle.

@@ -154,7 +154,7 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
 }  // namespace
 
 double Racer::structured() const {
-  const double f2 = trial.floor * trial.floor, least = 1.1 * 1.1 - 1.0;
+  const double f2 = trial.floor * trial.floor, least = kLeftByRenderers * kLeftByRenderers - 1.0;
   const auto over = [&](double chi) { return std::sqrt(std::max(chi * chi - f2, least * f2)); };
   return over(trial.chi_fit) + (trial.chi_validate > 0.0 ? over(trial.chi_validate) : 0.0);
 }

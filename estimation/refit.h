@@ -16,14 +16,17 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
                                                   const EffectScore& score,
                                                   const FitOptions& options);
 
+/// Times the floor: what meshes and renderers leave at least.
+constexpr double kLeftByRenderers = 1.1;
+
 /// An effect after some steps of its refit.
 struct Racer {
   std::string effect;
   ModelForm form;
   Trial trial;
   double chi() const { return trial.chi_fit + trial.chi_validate; }
-  /// The part of it that is no noise, on fitted and on held-out photos; at least what 1.1 times the
-  /// floor is, which meshes and renderers leave.
+  /// The part of it that is no noise, on fitted and on held-out photos; at least what
+  /// kLeftByRenderers times the floor is.
   double structured() const;
 };
 

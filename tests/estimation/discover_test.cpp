@@ -70,6 +70,18 @@ TEST(Intervals, ReachForTheFinerMesh) {
   EXPECT_GE(fitted.high[0], 0.02);
 }
 
+/// A weight that nobody has told moves the photo at rest by several pixels, and not as a polynomial
+/// would at the rims. That is misfit, not noise.
+TEST(Floor, KnowsLargeMotionsAtRestFromNoise) {
+  const SmallScene small({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 12000, "
+                                    "gravity.z: -27000}}\n"});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const Fitted base = std::get<Fitted>(assess(workspace, form, form.initial()));
+  ASSERT_GT(base.evaluation.rms_px(false), 2.0);
+  EXPECT_LT(measure_floor(*small.scene, base.evaluation).chi, 2.0);  // 6.2 by polynomials
+}
+
 /// Noise alone: with other rays than the fit's the pixel filter differs by a hair, and `defocus`
 /// says so (bench/statistics --other-renderer).
 TEST(Discover, NothingIsMissingWhereNothingIsHidden) {
@@ -122,6 +134,21 @@ TEST(Discover, AMeshThatLeavesNothingRacesWithNobody) {
   ASSERT_EQ(found.steps.size(), 2u) << found.sentence;
   EXPECT_EQ(found.steps[1].added, "mesh_resolution");
   EXPECT_EQ(found.steps[1].raced.size(), 1u);
+  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+}
+
+/// A small weight beside a mesh that is too coarse: on the mesh that has that error, whatever
+/// resembles it would be refitted with it.
+TEST(Discover, SettlesTheMeshBeforeASmallEffectIsNamed) {
+  const Discovery found =
+      discover(SmallScene({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 300, "
+                                     "gravity.z: -700}}\n",
+                           .told = "0.021",
+                           .truth_mesh = "0.5"}));
+  ASSERT_EQ(found.steps.size(), 3u) << found.sentence;
+  EXPECT_EQ(found.steps[1].added, "mesh_resolution");
+  EXPECT_EQ(found.steps[1].rivals.size(), 1u);
+  EXPECT_EQ(found.steps[2].added, "gravity");
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }
 

@@ -45,5 +45,15 @@ TEST_F(OpenHole, ModelPlusResidualIsThePublishedDisplacement) {
   }
 }
 
+/// The laminate, not the camera, the jaws or the mesh.
+TEST_F(OpenHole, OrthotropyIsNamed) {
+  const Diagnosis diagnosis = real::diagnose_case(*bar_);
+  fmt::print("{}", real::table(diagnosis));
+  const EffectScore& first = diagnosis.effects.front();
+  EXPECT_EQ(first.effect, "anisotropy");
+  EXPECT_TRUE(nameable(first, diagnosis));
+  EXPECT_GT(first.evidence, diagnosis.effects[1].evidence + kTie);
+}
+
 }  // namespace
 }  // namespace hookeye

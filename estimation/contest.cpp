@@ -1,0 +1,146 @@
+#include "estimation/contest.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hookeye {
+
+bool numerical(const std::string& effect) {
+  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
+  return found && found->group() == EffectGroup::numerical;
+}
+
+bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
+  return fitted.evaluation.chi(false) <= times * floor.chi &&
+         fitted.evaluation.chi(true) <= times * floor.chi;
+}
+
+namespace {
+
+bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
+
+/// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
+/// none.
+bool may_tie(const Racer& rival, const Racer& winner) {
+  return rival.structured() < 1.5 * winner.structured();
+}
+
+/// Left with three times the misfit of the first after as many steps: nobody came from there to
+/// win, and the refit of a field costs as much as all others. Not asked of the effect of the
+/// largest evidence.
+bool out_of_reach(const Racer& rival, const Racer& winner) {
+  return rival.chi() > 3.0 * winner.chi();
+}
+
+/// The mesh, where it stands out and no other effect by more than `margin` before it; else null.
+const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
+  for (const EffectScore& score : diagnosis.effects)
+    if (numerical(score.effect) && nameable(score, diagnosis) &&
+        std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& other) {
+          return &other == &score || !other.testable || other.evidence <= score.evidence + margin;
+        }))
+      return &score;
+  return nullptr;
+}
+
+/// The first `most` of a race and the effect of the largest evidence: who is slow in two steps may
+/// still be right. So may a sensor's error, which moves no photo and so cannot win by them. A
+/// numerical error that comes near the first is refitted too, whatever its rank: nothing is named
+/// before the mesh is settled. Where nobody is ahead of it by more than a tie it goes first.
+void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
+  if (racers.empty()) return;
+  const std::string& first = diagnosis.effects.front().effect;
+  const Racer winner = racers.front();
+  std::vector<Racer> kept;
+  int places = most;
+  for (size_t i = 0; i < racers.size() && static_cast<int>(i) < most; ++i)
+    places -= racers[i].effect == first;
+  for (Racer& racer : racers) {
+    const bool held = racer.effect == first || sensors_alone(*racer.form.ingredients.back());
+    if (!held && out_of_reach(racer, winner)) continue;
+    if (held || places-- > 0 || (numerical(racer.effect) && may_tie(racer, winner)))
+      kept.push_back(std::move(racer));
+  }
+  racers = std::move(kept);
+  if (const EffectScore* mesh = mesh_ahead(diagnosis, kTie))
+    std::stable_partition(racers.begin(), racers.end(),
+                          [&](const Racer& racer) { return racer.effect == mesh->effect; });
+}
+
+/// The mesh leads by more than a tie, and the step that it promises brings fitted and held-out
+/// photos to the floor. That step is no guess (the finer mesh was solved), the mesh is settled
+/// before anything is named, and what it leaves is diagnosed next: nobody needs to race.
+bool mesh_settles_it(const Step& step) {
+  const EffectScore* mesh = mesh_ahead(step.diagnosis, -kTie);
+  const double floor2 = step.diagnosis.floor.chi * step.diagnosis.floor.chi;
+  const auto at_floor_after = [&](bool held_out, double share) {
+    const double r2 = std::pow(step.fitted.evaluation.chi(held_out), 2);
+    return r2 - share * (r2 - floor2) <= kAtFloor * kAtFloor * floor2;
+  };
+  return mesh && at_floor_after(false, mesh->explains) &&
+         at_floor_after(true, mesh->explains_held_out);
+}
+
+/// Nobody was ahead of the mesh by more than a tie, it asked for what a mesh's error asks for (once
+/// the change that was solved where the truth is as fine, twice, 1/(1 - 0.7^2), where it is exact;
+/// half to double of that), and its refit took away at least half of the misfit that it promised
+/// to. On the mesh that is known to be wrong, whatever resembles its error would be named beside a
+/// small effect; what stands out on the finer one is diagnosed next.
+bool mesh_kept_its_word(const Step& step, const Fitted& refitted) {
+  const EffectScore* mesh = mesh_ahead(step.diagnosis, kTie);
+  if (!mesh || mesh->values[0] < 0.5 || mesh->values[0] > 4.0) return false;
+  const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(false), 2); };
+  const double structured = r2(step.fitted) - std::pow(step.diagnosis.floor.chi, 2);
+  return r2(step.fitted) - r2(refitted) >= 0.5 * mesh->explains * structured;
+}
+
+}  // namespace
+
+std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
+                                                      const DiscoverOptions& options,
+                                                      const DiscoverEvents& events) {
+  Contest out;
+  auto& refits = out.refits;
+  Diagnosis entered = step.diagnosis;
+  if (mesh_settles_it(step)) entered.effects.resize(1);
+  auto raced = race(workspace, step.fitted, entered, options.fit, events.tried);
+  if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
+  auto& racers = std::get<std::vector<Racer>>(raced);
+  for (const Racer& racer : racers)
+    out.raced.push_back({racer.effect, racer.trial.chi_fit, racer.trial.chi_validate});
+  keep_leaders(racers, entered, options.leaders);
+  for (const Racer& racer : racers) {
+    // Nothing can do better than the floor; once it is reached only a tie is of use.
+    if (!refits.empty() &&
+        at_floor(refits.front().fitted, step.diagnosis.floor, kLeftByRenderers) &&
+        !may_tie(racer, racers.front()))
+      continue;
+    if (events.refitting) events.refitting(racer.effect);
+    FitOptions fit = options.fit;
+    for (const Refit& rival : refits) {
+      const double chi = rival.fitted.evaluation.chi(false);
+      fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
+    }
+    auto result = refit(workspace, racer, fit);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (cancelled(*failure)) return *failure;
+      continue;  // a model without equilibrium explains nothing
+    }
+    if (events.refitted) events.refitted(racer.effect, std::get<Fitted>(result));
+    refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
+    if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
+  }
+  if (refits.empty()) return out;
+  auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
+  const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
+    return total_chi(a.fitted) < total_chi(b.fitted);
+  });
+  const Fitted reference = best->fitted;
+  for (auto& refit : refits)
+    refit.score = refit_score(refit.fitted, reference, step.diagnosis.floor);
+  std::stable_sort(refits.begin(), refits.end(),
+                   [](auto& a, auto& b) { return a.score > b.score; });
+  return out;
+}
+
+}  // namespace hookeye
