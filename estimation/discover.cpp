@@ -88,6 +88,24 @@ bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& flo
   return 0.5 * rise / std::max(floor.cell_variance, after.r2 / after.count) < kTie;
 }
 
+namespace {
+
+/// ", and ... stands out by less than a finer mesh would change": the largest evidence that is kept
+/// from being named by the mesh's error alone. "" where there is none.
+std::string hidden_by_mesh(const Diagnosis& diagnosis) {
+  if (diagnosis.mesh_fall < least_fall(diagnosis)) return "";
+  for (const EffectScore& effect : diagnosis.effects)
+    if (effect.testable && !numerical(effect.effect) &&
+        effect.evidence >= std::max(kNameable, diagnosis.gate))
+      return fmt::format(
+          ", and {} stands out by less than a mesh finer still would change: give the body one "
+          "(mesh: {{edge: ...}}) and run again",
+          effect.effect);
+  return "";
+}
+
+}  // namespace
+
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why) {
   const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
@@ -99,7 +117,9 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
         "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
         held_out > 0.0 ? fmt::format(" ({:.2f} on held-out photos)", held_out / diagnosis.floor.chi)
                        : "",
-        something ? ", and an effect of the catalogue still stands out" : "");
+        something                           ? ", and an effect of the catalogue still stands out"
+        : at_floor(fitted, diagnosis.floor) ? ""
+                                            : hidden_by_mesh(diagnosis));
   if (!tie.empty()) return Verdict::ambiguous;
   return at_floor(fitted, diagnosis.floor) ? Verdict::explained : Verdict::unexplained;
 }

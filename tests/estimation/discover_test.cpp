@@ -152,6 +152,29 @@ TEST(Discover, SettlesTheMeshBeforeASmallEffectIsNamed) {
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }
 
+/// What is smaller than the mesh's own error is not named, but the user hears what would show it.
+TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
+  Fitted fitted;
+  fitted.evaluation.examples.resize(1);
+  fitted.evaluation.examples[0].photos.resize(1);
+  fitted.evaluation.examples[0].photos[0].count = 100.0;
+  fitted.evaluation.examples[0].photos[0].r2 = 200.0;
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(1);
+  EffectScore& weight = diagnosis.effects[0];
+  weight.effect = "gravity", weight.evidence = 50.0, weight.fall = 0.2;
+  diagnosis.mesh_fall = 0.4;
+  std::string why;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
+  EXPECT_THAT(why, testing::HasSubstr("gravity stands out by less than a mesh finer still"));
+  weight.fall = 0.6;
+  judge(fitted, diagnosis, {}, &why);
+  EXPECT_THAT(why, testing::HasSubstr("an effect of the catalogue still stands out"));
+  weight.fall = 0.2, fitted.evaluation.examples[0].photos[0].r2 = 110.0;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained);
+  EXPECT_THAT(why, testing::EndsWith("the noise floor"));
+}
+
 TEST(Discover, CancelledSaysSo) {
   const SmallScene small({.told = "0.02"});
   Workspace workspace(small.scene);
