@@ -338,23 +338,28 @@ void check_data(const Scene& scene, const Look& seen) {
 }
 
 /// Fits the numbers that concern one example alone, one example after the other: a jaw's tilt,
-/// which one camera sees by its square alone, would hold up all others' steps with its own.
-std::variant<VectorXd, NumericalFailure> settle_examples(Workspace& workspace,
-                                                         const ModelForm& form, VectorXd p,
-                                                         FitOptions options, const Scope& all,
-                                                         Stage stage, const Look& seen) {
-  options.progress = nullptr;
+/// which one camera sees by its square alone, would hold up all others' steps with its own. Where
+/// that fails they stay where they are.
+VectorXd settle_examples(Workspace& workspace, const ModelForm& form, VectorXd p,
+                         const FitOptions& options, const Scope& all, Stage stage) {
   const auto parameters = form.parameters();
-  const int examples = static_cast<int>(form.scene->capture.examples.size());
-  for (int e = 0; e < examples; ++e) {
-    Scope scope{all.held_out, std::vector<bool>(parameters.size(), false), e};
+  const auto& examples = form.scene->capture.examples;
+  for (size_t e = 0; e < examples.size(); ++e) {
+    Scope scope{all.held_out, std::vector<bool>(parameters.size(), false), static_cast<int>(e)};
     bool any = false;
     for (size_t i = 0; i < parameters.size(); ++i)
-      any |= scope.moving[i] = all.moving[i] && parameters[i].example == e;
-    if (!any || form.scene->capture.examples[e].validate != all.held_out) continue;
-    auto ran = run_stage(workspace, form, p, options, scope, stage, seen);
-    if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
-    p = std::get<StageResult>(ran).p;
+      any |= scope.moving[i] = all.moving[i] && parameters[i].example == scope.only;
+    if (!any || examples[e].validate != all.held_out) continue;
+    FitOptions own = options;
+    if (options.progress)
+      own.progress = [&](FitProgress progress) {
+        progress.stage = "'" + examples[e].name + "' alone";
+        options.progress(progress);
+      };
+    const auto seen = look(workspace, form, p, options, scope, stage.level);
+    if (!std::holds_alternative<Look>(seen)) continue;
+    auto ran = run_stage(workspace, form, p, own, scope, stage, std::get<Look>(seen));
+    if (auto* settled = std::get_if<StageResult>(&ran)) p = std::move(settled->p);
   }
   return p;
 }
@@ -376,11 +381,8 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
     const Look seen = *full_size;
     if (!stage.serves(seen.motion_px)) continue;
     full_size.reset();
-    if (stage.level == 0 && !stage.registered) {
-      auto settled = settle_examples(workspace, form, out.p, options, scope, stage, seen);
-      if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
-      out.p = std::get<VectorXd>(std::move(settled));
-    }
+    if (stage.level == 0 && !stage.registered)
+      out.p = settle_examples(workspace, form, out.p, options, scope, stage);
     auto ran = run_stage(workspace, form, out.p, options, scope, stage, seen);
     if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
     const auto& result = std::get<StageResult>(ran);

@@ -12,7 +12,7 @@
 namespace hookeye {
 
 struct FitProgress {
-  std::string stage;  ///< "1/8 size", "motion", "full size", "final"
+  std::string stage;  ///< "1/8 size", "motion", "'pull' alone", "full size", "final"
   int iteration = 0, of = 0;
   double chi = 0.0;
 };
