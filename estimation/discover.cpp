@@ -45,12 +45,14 @@ namespace {
 
 struct EffectiveMisfit {
   double r2 = 0.0, count = 0.0;
+  EffectiveMisfit operator+(const EffectiveMisfit& other) const {
+    return {r2 + other.r2, count + other.count};
+  }
 };
 
-/// |z|^2 of `fitted` with the weights that the correlation in `reference` gives; of all examples or
-/// of those held out.
-EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference,
-                                 bool held_out_alone = false) {
+/// |z|^2 of the photos of `fitted` with the weights that the correlation in `reference` gives; of
+/// all examples or of those held out.
+EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool held_out_alone) {
   EffectiveMisfit out;
   for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
     const auto& example = fitted.evaluation.examples[e];
@@ -64,27 +66,37 @@ EffectiveMisfit effective_misfit(const Fitted& fitted, const Fitted& reference,
       out.r2 += w * own.variance * weight.count;
       out.count += w * weight.count;
     }
-    for (const auto& measured : example.measured) {
-      out.r2 += measured.r.squaredNorm();
-      out.count += 3.0;
-    }
   }
+  return out;
+}
+
+/// The same of forces, moments and positions.
+EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
+  EffectiveMisfit out;
+  for (const auto& example : fitted.evaluation.examples)
+    for (const auto& measured : example.measured)
+      if (!held_out_alone || example.held_out)
+        out = out + EffectiveMisfit{measured.r.squaredNorm(), 3.0};
   return out;
 }
 
 }  // namespace
 
 double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor) {
-  const EffectiveMisfit misfit = effective_misfit(fitted, reference);
+  const EffectiveMisfit misfit =
+      photo_misfit(fitted, reference, false) + measured_misfit(fitted, false);
   const double noise = std::max(floor.cell_variance, misfit.r2 / misfit.count);
   return -0.5 * misfit.count * std::log(noise) - 0.5 * misfit.r2 / noise -
          0.5 * fitted.form.size() * std::log(std::max(misfit.count, 2.0));
 }
 
-bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor) {
-  const EffectiveMisfit after = effective_misfit(with, with, true);
+bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor, double least) {
+  const EffectiveMisfit photos = photo_misfit(with, with, true);
+  const EffectiveMisfit measured = measured_misfit(with, true), after = photos + measured;
   if (after.count == 0.0) return true;
-  const double rise = after.r2 - effective_misfit(without, with, true).r2;
+  const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(true), 2); };
+  double rise = measured.r2 - measured_misfit(without, true).r2;
+  if (r2(with) > r2(without) + least) rise += photos.r2 - photo_misfit(without, with, true).r2;
   return 0.5 * rise / std::max(floor.cell_variance, after.r2 / after.count) < kTie;
 }
 
@@ -241,7 +253,8 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     const double fell = std::pow(step.fitted.evaluation.chi(false), 2) -
                         std::pow(winner.fitted.evaluation.chi(false), 2);
     if (winner.score < before + kNameable ||
-        !held_out_allows(winner.fitted, step.fitted, step.diagnosis.floor) ||
+        !held_out_allows(winner.fitted, step.fitted, step.diagnosis.floor,
+                         least_fall(step.diagnosis)) ||
         (fell < least_fall(step.diagnosis) &&
          !sensors_alone(*winner.fitted.form.ingredients.back())))
       break;

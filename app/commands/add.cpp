@@ -31,7 +31,7 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, Sess
   if (held > 0.0) {
     session.say(", {:.0f} % on the held-out ones ({:.3f} -> {:.3f})", removed(true), held,
                 after.fitted.evaluation.chi(true));
-    if (!held_out_allows(after.fitted, before.fitted, floor))
+    if (!held_out_allows(after.fitted, before.fitted, floor, least_fall(before.diagnosis)))
       session.warn(after.name +
                    " does not pay on the held-out photos; take it back with "
                    "--take-back");

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -109,6 +111,11 @@ TEST(Discover, NamesTheHiddenWeightAndTheErrorFalls) {
   EXPECT_TRUE(held_out_allows(last, base, found.floor));
   EXPECT_TRUE(held_out_allows(last, last, found.floor));  // no change is no word against it
   EXPECT_FALSE(held_out_allows(base, last, found.floor));
+  // No word either: what meshes and renderers err by, were that as much as the base is worse.
+  const double rise =
+      std::pow(base.evaluation.chi(true), 2) - std::pow(last.evaluation.chi(true), 2);
+  EXPECT_TRUE(held_out_allows(base, last, found.floor, 1.01 * rise));
+  EXPECT_FALSE(held_out_allows(base, last, found.floor, 0.99 * rise));
   double g = 0.0;
   parameter(last, "gravity.z", &g);
   EXPECT_NEAR(g, -9000.0, 300.0);
