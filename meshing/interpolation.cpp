@@ -26,7 +26,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation(const TetMesh& mesh,
                                                            const Matrix3Xd& X) {
   const Eigen::MatrixXd maps = barycentric_maps(mesh);
   const int count = static_cast<int>(X.cols());
-  constexpr int kBlock = 64;  // all elements times so many points at once
+  constexpr int kBlock = 8;  // all elements times so many points at once: they stay in the cache
   std::vector<Eigen::Triplet<double>> entries;
   for (int first = 0; first < count; first += kBlock) {
     const int n = std::min(kBlock, count - first);

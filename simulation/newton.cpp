@@ -138,7 +138,8 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
                      VectorXd& q) {
   NewtonOutcome out;
   const bool use_potential = problem.has_potential();
-  bool reuse = goal.reuse_factor && state.factor && state.factor->positive();
+  const bool factored = state.factor && state.factor->positive();
+  bool reuse = false;
   bool projected = false;
   VectorXd R = problem.residual(q, goal.s);
   double last_error = std::numeric_limits<double>::infinity();
@@ -151,6 +152,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
       return out;
     }
     if (i == goal.max_iterations) break;
+    if (i == 0) reuse = factored && (goal.reuse_factor || out.error < kNear);
     ++state.iterations;
     const VectorXd b = -select(R, state.free);
     VectorXd x;
