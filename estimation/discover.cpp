@@ -48,6 +48,11 @@ struct EffectiveMisfit {
   EffectiveMisfit operator+(const EffectiveMisfit& other) const {
     return {r2 + other.r2, count + other.count};
   }
+  /// Variance, `least` at least.
+  double noise(double least) const { return count > 0.0 ? std::max(least, r2 / count) : least; }
+  double log_likelihood(double least) const {
+    return -0.5 * count * std::log(noise(least)) - 0.5 * r2 / noise(least);
+  }
 };
 
 /// |z|^2 of the photos of `fitted` with the weights that the correlation in `reference` gives; of
@@ -70,7 +75,8 @@ EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool
   return out;
 }
 
-/// The same of forces, moments and positions.
+/// The same of forces, moments and positions. Their noise is told: what a renderer gets wrong in
+/// the photos is none of it, and a force zero shows in no photo.
 EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
   EffectiveMisfit out;
   for (const auto& example : fitted.evaluation.examples)
@@ -83,21 +89,20 @@ EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
 }  // namespace
 
 double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor) {
-  const EffectiveMisfit misfit =
-      photo_misfit(fitted, reference, false) + measured_misfit(fitted, false);
-  const double noise = std::max(floor.cell_variance, misfit.r2 / misfit.count);
-  return -0.5 * misfit.count * std::log(noise) - 0.5 * misfit.r2 / noise -
-         0.5 * fitted.form.size() * std::log(std::max(misfit.count, 2.0));
+  const EffectiveMisfit photos = photo_misfit(fitted, reference, false);
+  const EffectiveMisfit measured = measured_misfit(fitted, false);
+  return photos.log_likelihood(floor.cell_variance) + measured.log_likelihood(1.0) -
+         0.5 * fitted.form.size() * std::log(std::max(photos.count + measured.count, 2.0));
 }
 
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor, double least) {
   const EffectiveMisfit photos = photo_misfit(with, with, true);
-  const EffectiveMisfit measured = measured_misfit(with, true), after = photos + measured;
-  if (after.count == 0.0) return true;
+  const EffectiveMisfit measured = measured_misfit(with, true);
   const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(true), 2); };
-  double rise = measured.r2 - measured_misfit(without, true).r2;
-  if (r2(with) > r2(without) + least) rise += photos.r2 - photo_misfit(without, with, true).r2;
-  return 0.5 * rise / std::max(floor.cell_variance, after.r2 / after.count) < kTie;
+  double loss = (measured.r2 - measured_misfit(without, true).r2) / measured.noise(1.0);
+  if (r2(with) > r2(without) + least)
+    loss += (photos.r2 - photo_misfit(without, with, true).r2) / photos.noise(floor.cell_variance);
+  return 0.5 * loss < kTie;
 }
 
 namespace {

@@ -84,6 +84,27 @@ TEST(Floor, KnowsLargeMotionsAtRestFromNoise) {
   EXPECT_LT(measure_floor(*small.scene, base.evaluation).chi, 2.0);  // 6.2 by polynomials
 }
 
+/// Errors of the renderer in the photos, however large, are none of the sensors': their misfit
+/// counts as told, or a force zero would never pay.
+TEST(RefitScore, ForcesCountByTheirOwnNoise) {
+  const SmallScene small({});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const Fitted right = std::get<Fitted>(assess(workspace, form, form.initial()));
+  Fitted wrong = right;
+  int moved = 0;
+  for (auto& example : wrong.evaluation.examples)
+    for (auto& measured : example.measured) measured.r.z() += 6.0, ++moved;
+  ASSERT_GT(moved, 0);
+  Floor exact, rough;
+  rough.cell_variance = 100.0;
+  const auto loss = [&](const Floor& floor) {
+    return refit_score(right, right, floor) - refit_score(wrong, right, floor);
+  };
+  EXPECT_GT(loss(exact), 2.0);
+  EXPECT_NEAR(loss(rough), loss(exact), 1e-9);
+}
+
 /// Noise alone: with other rays than the fit's the pixel filter differs by a hair, and `defocus`
 /// says so (bench/statistics --other-renderer).
 TEST(Discover, NothingIsMissingWhereNothingIsHidden) {
