@@ -54,9 +54,10 @@ void write_diffcal(const fs::path& data, const fs::path& capture, const Silicone
   const fs::path photo = data / "rgb" / fmt::format("{}_frame{}.png", experiment, red ? 31 : 20);
   const Image stored = stored_values(photo);
   // Ecoflex is red, Mold Star blue-green, nothing near them is; their faces turned away from the
-  // light are dark, but of the same colour.
+  // light are dark, but of the same colour. Red over the next channel is 1 behind the bar and 2.5
+  // to 6 on it, 1.9 where the sky glances off it, and least often 1.5.
   const Image inside = silhouette(stored, 560, red ? 380 : 450, [&](const float* p) {
-    return red ? p[0] > 0.2f && p[0] > 2.0f * std::max(p[1], p[2])
+    return red ? p[0] > 0.2f && p[0] > 1.5f * std::max(p[1], p[2])
                : p[2] > 0.12f && p[0] < 0.4f * std::min(p[1], p[2]);
   });
   write_image(capture / "photos" / "silhouette.png", inside);
