@@ -31,9 +31,18 @@ Json describe_region(const Region& region) {
           {"normal", describe_vector(region.normal)}};
 }
 
+std::string motion_text(const SupportSpec& support) {
+  const RigidMotion& rigid = support.rigid;
+  std::string text = "rigid";
+  if (rigid.degrees != 0.0)
+    text += fmt::format(" {:+.4g} degrees about {}", rigid.degrees, vector_text(rigid.axis));
+  if (!rigid.move.isZero(0.0)) text += " moved " + vector_text(rigid.move);
+  return text;
+}
+
 std::string support_text(const SupportSpec& support) {
   if (support.kind == SupportSpec::Kind::rigid_fit) return support.region + ": rigid, fitted";
-  if (support.kind == SupportSpec::Kind::rigid) return support.region + ": rigid, told";
+  if (support.kind == SupportSpec::Kind::rigid) return support.region + ": " + motion_text(support);
   std::string text = support.region + ":";
   for (int i = 0; i < 3; ++i)
     if (support.displacement[i])
@@ -66,6 +75,61 @@ std::string joined(const Json& texts) {
   return line.empty() ? "-" : line;
 }
 
+std::string texture_text(const BodySpec& body) {
+  const std::string normals = body.flat_shading ? "flat facets" : "smooth normals";
+  switch (body.texture) {
+    case BodySpec::Texture::none:
+      return "none told";
+    case BodySpec::Texture::image:
+      return body.texture_image.filename().string() + ", " + normals;
+    case BodySpec::Texture::rest:
+      return "the photos of example " + body.texture_example;
+    case BodySpec::Texture::uniform:
+      return (body.uniform_albedo ? fmt::format("uniform albedo {:.4g}", *body.uniform_albedo)
+                                  : "uniform albedo, fitted") +
+             ", " + normals;
+  }
+  return {};
+}
+
+std::string light_text(const Capture& capture) {
+  if (capture.body.texture == BodySpec::Texture::rest) return "in the photos";
+  if (!capture.light.given) return "not told: fitted";
+  const Vector3d& sun = capture.light.sun;
+  return fmt::format("ambient {:.4g}, {}", capture.light.ambient,
+                     sun.isZero(0.0) ? "no sun"
+                                     : fmt::format("sun {:.4g} from {}", sun.norm(),
+                                                   vector_text(sun.normalized())));
+}
+
+std::string background_text(const BackgroundSpec& background) {
+  switch (background.kind) {
+    case BackgroundSpec::Kind::ignore:
+      return "ignored";
+    case BackgroundSpec::Kind::level:
+      return background.level == 0.0 ? "black" : fmt::format("{:.4g}", background.level);
+    case BackgroundSpec::Kind::fit:
+      return "fitted";
+    case BackgroundSpec::Kind::photo:
+      return background.photo.filename().string();
+  }
+  return {};
+}
+
+/// As the file's values are read: empty by the format's own rule.
+std::string encoding_text(const PhotoSpec& spec) {
+  if (!spec.encoding) return "by format";
+  switch (spec.encoding->kind) {
+    case Encoding::Kind::linear:
+      return "linear";
+    case Encoding::Kind::srgb:
+      return "srgb";
+    case Encoding::Kind::gamma:
+      return fmt::format("gamma {:.4g}", spec.encoding->gamma);
+  }
+  return {};
+}
+
 Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
   const auto valid = std::count(photo.valid.begin(), photo.valid.end(), 1);
   double mean = 0.0;
@@ -75,6 +139,9 @@ Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
           {"file", spec.file.string()},
           {"kind", photo.kind == PhotoSpec::Kind::image ? "image" : "silhouette"},
           {"planes", photo.planes.size()},
+          {"encoding", encoding_text(spec)},
+          {"behind", photo.kind == PhotoSpec::Kind::image ? background_text(spec.background) : "-"},
+          {"mask", spec.mask.filename().string()},
           {"counted", valid / std::max(1.0, static_cast<double>(photo.valid.size()))},
           {"mean", mean},
           {"noise",
@@ -138,6 +205,8 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
   session.say("\nbody\n{}", mesh_lines(scene.body->mesh));
   session.say("  surface of {} triangles, as it is photographed\n",
               scene.body->surface.mesh.triangles.size());
+  session.say("  texture: {}\n  light: {}\n", d["texture"].get<std::string>(),
+              d["light"].get<std::string>());
   std::vector<std::vector<std::string>> rows{{"law", "region", "parameters"}};
   for (const auto& material : d["materials"])
     rows.push_back({material["law"], material["where"], material["text"]});
@@ -169,10 +238,13 @@ void say_examples(const Session& session, const Json& examples) {
     rows.push_back(
         {e["name"], e["use"], joined(e["supports"]), joined(e["loads"]), joined(e["measured"])});
   session.say("\nexamples\n{}", table(rows));
-  rows = {{"example", "camera", "kind", "counted", "mean", "noise at mean", "noise is"}};
+  rows = {{"example", "camera", "kind", "stored", "behind", "counted", "mean", "noise at mean",
+           "noise is"}};
   for (const auto& e : examples)
     for (const auto& photo : e["photos"])
-      rows.push_back({e["name"], photo["camera"], photo["kind"],
+      rows.push_back({e["name"], photo["camera"],
+                      photo["planes"] == 3 ? "rgb" : photo["kind"].get<std::string>(),
+                      photo["encoding"], photo["behind"],
                       fmt::format("{:.1f} %", 100.0 * photo["counted"].get<double>()),
                       fmt::format("{:.4f}", photo["mean"].get<double>()),
                       fmt::format("{:.2g}", photo["noise"]["sigma_at_mean"].get<double>()),
@@ -230,6 +302,8 @@ void run_check(const std::string& path, Session& session) {
   const Model model = form.realise(form.initial());
   warn_of_doubts(*scene, session);
   d["body"] = describe_mesh(scene->body->mesh);
+  d["texture"] = texture_text(capture.body);
+  d["light"] = light_text(capture);
   d["body"]["surface_triangles"] = scene->body->surface.mesh.triangles.size();
   for (const char* key : {"parameters", "cameras", "regions", "examples"}) d[key] = Json::array();
   for (const auto& p : form.parameters()) d["parameters"].push_back(describe_parameter(p));

@@ -80,11 +80,10 @@ void run_compare(const std::string& folder, Session& session) {
   const json metrics = metrics_of(step);
   const double floor = metrics["floor"]["chi"];
   session.document = metrics;
-  session.say("{}",
-              wrapped(fmt::format("step {}: chi {:.3f} fitted, {:.3f} held out; floor {:.3f} ({})",
-                                  step.filename().string(), metrics["chi_fit"].get<double>(),
-                                  metrics["chi_validate"].get<double>(), floor,
-                                  metrics["floor"]["source"].get<std::string>())));
+  session.say("{}", wrapped(fmt::format("step {}: chi {} fitted, {} held out; floor {:.3f} ({})",
+                                        step.filename().string(), chi_text(metrics["chi_fit"]),
+                                        chi_text(metrics["chi_validate"]), floor,
+                                        metrics["floor"]["source"].get<std::string>())));
   session.say("{}\n", photo_rows(metrics["photos"], floor));
   session.say("{}\n", chi_rows(metrics["chi_by_example"], "by example", floor));
   session.say("{}\n", chi_rows(metrics["chi_by_camera"], "by camera", floor));

@@ -25,21 +25,21 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
     else
       record(run, step);
     *recorded = false;
-    spdlog::info("{}: chi {:.3f} fitted, {:.3f} held out (floor {:.3f})", name_of(step),
-                 step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true),
-                 step.diagnosis.floor.chi);
+    spdlog::info("{}: chi {} fitted, {} held out (floor {:.3f})", name_of(step),
+                 chi_text(step.fitted.evaluation.chi(false)),
+                 chi_text(step.fitted.evaluation.chi(true)), step.diagnosis.floor.chi);
     for (const auto& effect : step.diagnosis.effects)
       if (nameable(effect, step.diagnosis))
         spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
   };
   events.tried = [](const Racer& racer) {
-    spdlog::info("a step with {}: half-size chi {:.3f} fitted, {:.3f} held out", racer.effect,
-                 racer.trial.chi_fit, racer.trial.chi_validate);
+    spdlog::info("a step with {}: half-size chi {} fitted, {} held out", racer.effect,
+                 chi_text(racer.trial.chi_fit), chi_text(racer.trial.chi_validate));
   };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
   events.refitted = [](const std::string& effect, const Fitted& fitted) {
-    spdlog::info("  {}: chi {:.3f} fitted, {:.3f} held out", effect, fitted.evaluation.chi(false),
-                 fitted.evaluation.chi(true));
+    spdlog::info("  {}: chi {} fitted, {} held out", effect, chi_text(fitted.evaluation.chi(false)),
+                 chi_text(fitted.evaluation.chi(true)));
   };
   return events;
 }

@@ -62,6 +62,8 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
          sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
 }
 
+std::string chi_text(double chi) { return chi > 0.0 ? fmt::format("{:.3f}", chi) : "-"; }
+
 std::string name_of(const Step& step) {
   return step.dropped.empty()
              ? step.name
@@ -74,8 +76,8 @@ std::string steps_table(const Discovery& discovery) {
   const double top = discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
   for (const auto& step : discovery.steps) {
     const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
-    rows.push_back({name_of(step), fmt::format("{:.3f}", step.fitted.evaluation.chi(false)),
-                    fmt::format("{:.3f}", step.fitted.evaluation.chi(true)),
+    rows.push_back({name_of(step), chi_text(step.fitted.evaluation.chi(false)),
+                    chi_text(step.fitted.evaluation.chi(true)),
                     fmt::format("{:.3f}", step.fitted.evaluation.rms_px(false)),
                     fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
   }

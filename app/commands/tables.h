@@ -18,5 +18,7 @@ std::string choice_table(const Step& before, const Step& step);
 
 /// "gravity", "strain_stiffening, without softening".
 std::string name_of(const Step& step);
+/// "1.234"; "-" where no photo counts (chi 0), as where nothing is held out.
+std::string chi_text(double chi);
 
 }  // namespace hookeye

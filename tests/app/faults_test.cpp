@@ -1,7 +1,7 @@
 // What is most likely not meant is said; what cannot be done ends in one sentence and exit 2.
 #include <gmock/gmock.h>
 
-#include "app/cli.h"
+#include "app/fitted_run.h"
 
 namespace hookeye::test {
 namespace {
@@ -60,6 +60,61 @@ TEST_F(Faults, MeasurementsOffTheBodyOrItsSupportsAreTold) {
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, AllOf(HasSubstr("lies 90 mm off the body"),
                                 HasSubstr("a force is measured on `side`")));
+}
+
+TEST_F(Faults, WhatCannotBeIsToldInFull) {
+  const std::string text = read(folder_ / "capture.yaml");
+  const struct {
+    std::string what, by, err;
+  } faults[] = {
+      {"top: {box: [[-1, -1, 9.9], [11, 11, 10.1]]}", "top: {box: [[20, 20, 20], [30, 30, 30]]}",
+       "./capture.yaml:12:3: region 'top' selects no point of the surface\n"
+       "  a patch of the body, which reaches from (0, 0, 0) to (10, 10, 10)\n"},
+      {"mu: 0.05", "mu: -0.05",
+       "./capture.yaml:8:36: `mu` is -0.05\n"
+       "  a number above 0\n"}};
+  for (const auto& fault : faults) {
+    write("capture.yaml", text);
+    change(fault.what, fault.by);
+    const Result result = hookeye("check .");
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, fault.err);
+  }
+}
+
+/// No error: a body that is free may swell where it lies. But it is hardly meant.
+TEST_F(Faults, AFreeRigidMotionIsTold) {
+  write_cube("{z: 1}");
+  change("fix: [x, y, z]", "fix: [z]");
+  const Result result = hookeye("check .");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(
+      result.err,
+      HasSubstr("warning: example pull leaves the body free: rotation about (0, 0, 1) through "
+                "(5, 5, 5); translation along (1, 0, 0); translation along (0, 1, 0)\n"));
+}
+
+using FaultsOfPhotos = FittedRun;
+
+TEST_F(FaultsOfPhotos, AFileCutInHalfIsToldWhereTheCaptureNamesIt) {
+  const fs::path photo = folder_ / "capture/photos/pull_cam0.png";
+  ASSERT_TRUE(fs::exists(photo));
+  fs::resize_file(photo, fs::file_size(photo) / 2);
+  const std::string text = read(folder_ / "capture/capture.yaml");
+  const size_t at = text.find("photos/pull_cam0.png");
+  ASSERT_NE(at, std::string::npos);
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
+  const auto column = at - text.rfind('\n', at);
+  for (const char* command : {"check capture", "fit capture -o again"}) {
+    const Result result = hookeye(command);
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_THAT(result.err,
+                HasSubstr("capture.yaml:" + std::to_string(line) + ":" + std::to_string(column) +
+                          ": pull_cam0.png: the picture is truncated or damaged\n"))
+        << command;
+    EXPECT_FALSE(fs::exists(folder_ / "again"));
+  }
 }
 
 TEST_F(Faults, AMeshFarTooFineIsRefusedAtOnce) {
