@@ -234,7 +234,7 @@ json energy_curves(const Scene& scene, const Fitted& fitted) {
   json out = json::array();
   const auto parameters = fitted.form.parameters();
   const Eigen::MatrixXd covariance =
-      parameter_covariance(fitted.evaluation, parameters, fitted.p, nullptr, true);
+      parameter_covariance(fitted.evaluation, parameters, fitted.p).all();
   const Model realised = fitted.form.realise(fitted.p);
   for (const Drawn& of : drawn(fitted)) {
     const VisitedStrains visited = visited_strains(fitted.form, fitted, of.model, of.part);

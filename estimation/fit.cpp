@@ -47,16 +47,17 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
   out.p = p;
   out.evaluation = std::get<Evaluation>(std::move(result));
   const auto parameters = form.parameters();
-  const Eigen::MatrixXd covariance =
-      parameter_covariance(out.evaluation, parameters, p, &out.undetermined);
+  const ParameterCovariance covariance = parameter_covariance(out.evaluation, parameters, p);
+  out.undetermined = covariance.directions;
   out.low = out.high = p;
   for (int i = 0; i < p.size(); ++i) {
-    const double half = kNormal95 * std::sqrt(std::max(0.0, covariance(i, i)));
+    const double half = kNormal95 * std::sqrt(std::max(0.0, covariance.determined(i, i)));
     // positive parameters: the interval is symmetric in the logarithm
     out.low[i] = parameters[i].positive ? p[i] * std::exp(-half / p[i]) : p[i] - half;
     out.high[i] = parameters[i].positive ? p[i] * std::exp(half / p[i]) : p[i] + half;
-    // nothing in the data moves with it: anything may be
-    if (half == 0.0) out.low[i] = parameters[i].low, out.high[i] = parameters[i].high;
+    // nothing in the data holds it: anything may be
+    if (half == 0.0 || covariance.open[i])
+      out.low[i] = parameters[i].low, out.high[i] = parameters[i].high;
   }
   return out;
 }

@@ -116,7 +116,7 @@ json law_curves(const Scene& scene, const Fitted& fitted) {
   if (model.energy.parts.empty()) return out;
   const MeanEnergy energy(model.energy);
   const Eigen::MatrixXd covariance =
-      parameter_covariance(fitted.evaluation, fitted.form.parameters(), fitted.p, nullptr, true);
+      parameter_covariance(fitted.evaluation, fitted.form.parameters(), fitted.p).all();
   std::vector<double> step;
   const auto near = neighbours(fitted.form, fitted.p, covariance, step);
   const auto [stretch, volume] = visited(scene, model, fitted);

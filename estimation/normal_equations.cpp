@@ -58,13 +58,18 @@ CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
 
 namespace {
 
+/// Whether the direction moves parameter i by a tenth of what it moves most.
+bool moves(const VectorXd& direction, Eigen::Index i) {
+  return std::abs(direction[i]) >= 0.1 * direction.cwiseAbs().maxCoeff();
+}
+
 /// "mu", or "mu together with kappa": what a direction without information moves.
 std::string name_direction(const std::vector<Parameter>& parameters, const VectorXd& direction) {
   std::vector<std::string> names;
   bool all_stiffness = true;
   double lo = 1e300, hi = 0.0;
   for (size_t i = 0; i < parameters.size(); ++i) {
-    if (std::abs(direction[i]) < 0.1 * direction.cwiseAbs().maxCoeff()) continue;
+    if (!moves(direction, static_cast<Eigen::Index>(i))) continue;
     names.push_back(parameters[i].name);
     all_stiffness &= parameters[i].positive;
     lo = std::min(lo, std::abs(direction[i]));
@@ -77,15 +82,15 @@ std::string name_direction(const std::vector<Parameter>& parameters, const Vecto
 
 }  // namespace
 
-Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
-                                     const std::vector<Parameter>& parameters, const VectorXd& p,
-                                     std::vector<std::string>* undetermined,
-                                     bool keep_undetermined) {
+ParameterCovariance parameter_covariance(const Evaluation& evaluation,
+                                         const std::vector<Parameter>& parameters,
+                                         const VectorXd& p) {
   const int n = static_cast<int>(parameters.size());
   const Scaling scaling{parameters};
   const VectorXd scale = scaling.dp_dx(p);
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n), V = H;
-  if (n == 0) return H;  // nothing may move: a model that is only looked at
+  ParameterCovariance out{H, H, {}, std::vector<bool>(n, false)};
+  if (n == 0) return out;  // nothing may move: a model that is only looked at
   for (const auto& example : evaluation.examples) {
     std::vector<bool> counts(n, !example.held_out);
     for (int i = 0; i < n; ++i)
@@ -110,13 +115,16 @@ Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
     // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
     const VectorXd v = eigen.eigenvectors().col(i);
     if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
-      if (undetermined) undetermined->push_back(name_direction(parameters, v));
-      if (keep_undetermined) unknown += 900.0 * v * v.transpose();
+      out.directions.push_back(name_direction(parameters, v));
+      unknown += 900.0 * v * v.transpose();
+      for (int k = 0; k < n; ++k) out.open[k] = out.open[k] || moves(v, k);
       continue;
     }
     inverse += v * v.transpose() / eigen.eigenvalues()[i];
   }
-  return scale.asDiagonal() * (inverse * V * inverse + unknown) * scale.asDiagonal();
+  out.determined = scale.asDiagonal() * (inverse * V * inverse) * scale.asDiagonal();
+  out.undetermined = scale.asDiagonal() * unknown * scale.asDiagonal();
+  return out;
 }
 
 }  // namespace hookeye

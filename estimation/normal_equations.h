@@ -57,14 +57,18 @@ struct CondensedResidual {
 /// `scale`: dp/dx of the units that z and R are in.
 CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale);
 
-/// Covariance H^-1 (sum_k lambda_k H_k) H^-1 of the first `size` parameters: lambda_k is how much
-/// the variance of a smooth signature in photo k exceeds that under white noise (flow.h).
-/// Directions without information are left out (pseudo-inverse). Numbers of a held-out example
-/// alone have what its photos say of them with the model as it is. With `keep_undetermined` they
-/// stay in, with a standard deviation of 30 times what matters.
-Eigen::MatrixXd parameter_covariance(const Evaluation& evaluation,
-                                     const std::vector<Parameter>& parameters, const VectorXd& p,
-                                     std::vector<std::string>* undetermined,
-                                     bool keep_undetermined = false);
+/// Covariance H^-1 (sum_k lambda_k H_k) H^-1: lambda_k is how much the variance of a smooth
+/// signature in photo k exceeds that under white noise (flow.h). Numbers of a held-out example
+/// alone have what its photos say of them with the model as it is.
+struct ParameterCovariance {
+  Eigen::MatrixXd determined;           ///< without the directions that have no information
+  Eigen::MatrixXd undetermined;         ///< of those: a standard deviation of 30 times what matters
+  std::vector<std::string> directions;  ///< those, a sentence each
+  std::vector<bool> open;               ///< for every parameter: named by one of those sentences
+  Eigen::MatrixXd all() const { return determined + undetermined; }
+};
+ParameterCovariance parameter_covariance(const Evaluation& evaluation,
+                                         const std::vector<Parameter>& parameters,
+                                         const VectorXd& p);
 
 }  // namespace hookeye

@@ -1,0 +1,73 @@
+// What an interval says of what the data leave open.
+#include <gmock/gmock.h>
+
+#include "estimation/normal_equations.h"
+
+namespace hookeye {
+namespace {
+
+Parameter stiffness(const std::string& name) {
+  Parameter one;
+  one.name = name, one.value = 1.0, one.low = 0.0;
+  one.high = std::numeric_limits<double>::infinity(), one.typical = 1.0, one.positive = true;
+  return one;
+}
+
+Parameter level(const std::string& name) {
+  Parameter one;
+  one.name = name, one.value = 0.0, one.low = -1.0, one.high = 10.0, one.typical = 0.1;
+  one.positive = false;
+  return one;
+}
+
+/// One photo with these derivatives of its residuals.
+Evaluation seen(const Eigen::MatrixXd& J) {
+  PhotoEvaluation photo;
+  photo.sums.JtJ = J.transpose() * J;
+  ExampleEvaluation example;
+  example.photos.push_back(photo);
+  Evaluation out;
+  out.examples.push_back(example);
+  out.columns = static_cast<int>(J.cols());
+  return out;
+}
+
+/// Photos under prescribed motions know ratios of stiffness alone: each modulus may be anything,
+/// although its ratio to the other is known to a thousandth.
+TEST(ParameterCovariance, ARatioAloneLeavesBothModuliOpen) {
+  const VectorXd p = Eigen::Vector3d(0.02, 0.3, 0.2);
+  const std::vector<Parameter> all{stiffness("mu"), stiffness("kappa"), level("background.cam0")};
+  Eigen::MatrixXd J(2, 3);
+  J << 1000.0 / p[0], -1000.0 / p[1], 50.0,  //
+      0.0, 0.0, 1e5;
+  const ParameterCovariance known = parameter_covariance(seen(J), all, p);
+  EXPECT_THAT(known.directions,
+              testing::ElementsAre("stiffness scale not determined; only ratios (mu, kappa)"));
+  EXPECT_THAT(known.open, testing::ElementsAre(true, true, false));
+  // The ratio, in logarithms, and the level have what the photo says of them.
+  const Eigen::Vector3d ratio(1.0 / p[0], -1.0 / p[1], 0.0);
+  EXPECT_NEAR(std::sqrt(ratio.dot(known.determined * ratio)), 1e-3, 1e-5);
+  EXPECT_NEAR(std::sqrt(known.all()(2, 2)), 1e-5, 1e-7);
+  EXPECT_GT(std::sqrt(known.all()(0, 0)), 10.0 * p[0]);
+}
+
+TEST(ParameterCovariance, OneModulusThatNothingMoves) {
+  const VectorXd p = Eigen::Vector2d(0.02, 0.2);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(1, 2);
+  J(0, 1) = 1e4;
+  const auto known = parameter_covariance(seen(J), {stiffness("mu"), level("background.cam0")}, p);
+  EXPECT_THAT(known.open, testing::ElementsAre(true, false));
+}
+
+TEST(ParameterCovariance, WhatAForceFixesIsNotOpen) {
+  const VectorXd p = Eigen::Vector2d(0.02, 0.3);
+  Eigen::MatrixXd J(2, 2);
+  J << 1000.0 / p[0], -1000.0 / p[1], 30.0 / p[0], 0.0;
+  const auto known = parameter_covariance(seen(J), {stiffness("mu"), stiffness("kappa")}, p);
+  EXPECT_TRUE(known.directions.empty());
+  EXPECT_THAT(known.open, testing::ElementsAre(false, false));
+  EXPECT_NEAR(std::sqrt(known.determined(0, 0)) / p[0], 1.0 / 30.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace hookeye
