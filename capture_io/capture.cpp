@@ -142,7 +142,6 @@ Capture read_capture(const fs::path& path) {
   if (const YamlNode* light = top.find("light")) capture.light = read_light(*light);
   PhotoDefaults defaults;
   if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);
-  capture.background = defaults.photo.background;
   if (const YamlNode* regions = top.find("regions"))
     capture.regions = read_regions(*regions, folder);
   capture.examples =

@@ -132,7 +132,7 @@ struct PhotoSpec {
   std::optional<Encoding> encoding;
   std::optional<NoiseModel> noise;  ///< empty: estimated
   bool rgb = false;                 ///< channels: rgb; default luminance
-  BackgroundSpec background;        ///< the photo's own, else the capture's
+  BackgroundSpec background;        ///< the photo's own, else that of `photos:`
   Place place;
 };
 
@@ -167,7 +167,6 @@ struct Capture {
   std::optional<Vector3d> gravity;  ///< [length/s^2]
   std::vector<Camera> cameras;
   LightSpec light;
-  BackgroundSpec background;
   std::vector<RegionSpec> regions;
   std::vector<ExampleSpec> examples;
 
@@ -188,6 +187,7 @@ struct Photo {
   std::vector<Image> sigma;          ///< 1-channel, same shape: noise standard deviation, from the
                                      ///< mean of the pixel's neighbours
   std::vector<unsigned char> valid;  ///< per pixel: 0 masked out (or saturated), 1 counts
+  std::vector<Image> backdrop;       ///< the planes of background: {photo}, else empty
   NoiseModel noise;
   std::vector<double> channel_weights;  ///< planes[k] = channel k (rgb) or the luminance weights
 };

@@ -68,8 +68,7 @@ PhotoState told_photo(const Capture& capture, const PhotoSpec& spec) {
     state.ambient = albedo * capture.light.ambient;
     state.sun = albedo * capture.light.sun;
   }
-  if (capture.background.kind == BackgroundSpec::Kind::level)
-    state.background = capture.background.level;
+  if (spec.background.kind == BackgroundSpec::Kind::level) state.background = spec.background.level;
   return state;
 }
 
@@ -116,8 +115,7 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
   else if (shaded && capture.body.texture == BodySpec::Texture::uniform &&
            !capture.body.uniform_albedo)
     form.ingredients.push_back(albedo_ingredient());
-  if (capture.background.kind == BackgroundSpec::Kind::fit)
-    form.ingredients.push_back(background_ingredient(*scene));
+  if (auto levels = background_ingredient(*scene)) form.ingredients.push_back(levels);
   if (capture.body.fit_placement) form.ingredients.push_back(placement_ingredient(*scene));
   // Gravity last: it is told in the world, and the placement turns the body against it.
   if (capture.gravity) form.ingredients.push_back(self_weight_ingredient(*capture.gravity));

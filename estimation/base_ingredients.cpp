@@ -153,10 +153,16 @@ class Background final : public Ingredient {
   }
   Touches touches() const override { return {.photos = true}; }
   void apply(const Eigen::VectorXd& values, Model& model) const override {
-    for (auto& example : model.examples)
-      for (auto& photo : example.photos)
+    for (size_t e = 0; e < model.examples.size(); ++e) {
+      const auto& specs = model.scene->capture.examples[e].photos;
+      for (size_t k = 0; k < specs.size(); ++k)
         for (size_t c = 0; c < cameras_.size(); ++c)
-          if (photo.camera.name == cameras_[c]) photo.background = values[c];
+          if (is_fitted(specs[k]) && specs[k].camera == cameras_[c])
+            model.examples[e].photos[k].background = values[c];
+    }
+  }
+  static bool is_fitted(const PhotoSpec& photo) {
+    return photo.background.kind == BackgroundSpec::Kind::fit;
   }
 
  private:
@@ -289,7 +295,14 @@ std::shared_ptr<const Ingredient> albedo_ingredient() { return std::make_shared<
 
 std::shared_ptr<const Ingredient> background_ingredient(const Scene& scene) {
   std::vector<std::string> cameras;
-  for (const auto& camera : scene.capture.cameras) cameras.push_back(camera.name);
+  for (const auto& camera : scene.capture.cameras) {
+    bool any = false;
+    for (const auto& example : scene.capture.examples)
+      for (const auto& photo : example.photos)
+        any |= photo.camera == camera.name && Background::is_fitted(photo);
+    if (any) cameras.push_back(camera.name);
+  }
+  if (cameras.empty()) return nullptr;
   return std::make_shared<Background>(std::move(cameras));
 }
 

@@ -19,7 +19,7 @@ std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene);
 std::shared_ptr<const Ingredient> light_ingredient(const Scene& scene);
 /// One uniform albedo.
 std::shared_ptr<const Ingredient> albedo_ingredient();
-/// One background level a camera.
+/// One background level a camera, of its photos with `background: fit`. Null: there are none.
 std::shared_ptr<const Ingredient> background_ingredient(const Scene& scene);
 /// Rigid pose of the whole set-up: rotation vector about the body's centroid and a translation.
 std::shared_ptr<const Ingredient> placement_ingredient(const Scene& scene);

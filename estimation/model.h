@@ -23,7 +23,6 @@ struct Scene : std::enable_shared_from_this<Scene> {
   std::vector<std::vector<Photo>> photos;  ///< [example][photo], order of the capture
   /// Planes of the texture image (1 or 3), each at full size, half, quarter (coarse levels).
   std::vector<std::vector<std::shared_ptr<const Image>>> albedo;
-  std::vector<Image> backgrounds;  ///< of background: {photo}, else empty
   std::shared_ptr<const TetMesh> mesh() const { return {body, &body->mesh}; }
   int example_index(const std::string& name) const;  ///< -1: none
 };

@@ -115,6 +115,7 @@ PhotoState coverage_state(PhotoState state) {
   state.sun.setZero();
   state.specular = 0.0;
   state.background = 0.0;
+  state.backdrop = nullptr;
   return state;
 }
 
@@ -165,8 +166,8 @@ void add_reference_photo(const Camera& camera, const Matrix3Xd& x_reference,
 
 /// Where the photo shows something that is not the told background although the model has none
 /// there: such pixels count, else a body that left the model's silhouette would cost nothing.
-bool shows_body(const PhotoPlane& photo, size_t i, double background) {
-  return std::abs(photo.I.values[i] - background) > 6.0 * photo.sigma.values[i];
+bool shows_body(const PhotoPlane& photo, size_t i, const PhotoState& state) {
+  return std::abs(photo.I.values[i] - state.behind(i)) > 6.0 * photo.sigma.values[i];
 }
 
 struct Comparison {
@@ -194,7 +195,7 @@ Image compared_sigma(const PhotoPlane& photo, const Texture& texture) {
 }
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
-                          bool silhouette, bool mask, double background) {
+                          bool silhouette, bool mask, const PhotoState& state) {
   Comparison out;
   out.residual = Image{photo.I.width, photo.I.height, 1, {}};
   out.residual.values.assign(photo.I.pixels(), std::numeric_limits<float>::quiet_NaN());
@@ -203,7 +204,7 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
     if (!photo.valid.empty() && !photo.valid[i]) continue;
     const double coverage = rendering.coverage.values[i];
     const bool counts = mask         ? telling[i] != 0
-                        : silhouette ? coverage > 0.0 || shows_body(photo, i, background)
+                        : silhouette ? coverage > 0.0 || shows_body(photo, i, state)
                                      : coverage > 1.0 - 1e-6;
     if (!counts) continue;
     const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
@@ -238,15 +239,6 @@ NodeNormalEquations condense(const Rendering& rendering, const Image& residuals,
   return NodeNormalEquations::accumulate(surface, rendering.dI, r, w, Bt_r, second);
 }
 
-/// A photographed background: the part of the pixel that the body leaves free shows it.
-void composite_background(const Scene& scene, Rendering& rendering) {
-  if (scene.backgrounds.empty()) return;
-  const Image& background = scene.backgrounds.front();
-  if (background.pixels() != rendering.I.pixels()) return;
-  for (size_t i = 0; i < background.pixels(); ++i)
-    rendering.I.values[i] += (1.0f - rendering.coverage.values[i]) * background.values[i];
-}
-
 }  // namespace
 
 Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const VectorXd* q_reference,
@@ -259,6 +251,9 @@ Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const Vec
   Matrix3Xd x_reference;
   if (q_reference) x_reference = surface.deformed(scene.body->mesh, *q_reference);
   PhotoState state = model.examples[impl_->example].photos[photo];
+  const auto& photos = scene.photos[impl_->example];
+  if (photo < static_cast<int>(photos.size()) && !photos[photo].backdrop.empty())
+    state.backdrop = {std::shared_ptr<const Scene>(impl_->scene), &photos[photo].backdrop[plane]};
   if (is_silhouette(scene, impl_->example, photo)) state = coverage_state(state);
   return impl_->renderer.render(x, q_reference ? &x_reference : nullptr, texture, state,
                                 at_level(options, 0, texture), true);
@@ -293,12 +288,13 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
                           options.level, texture))
         continue;
       const bool mask_photo = is_silhouette(scene, e, static_cast<int>(k));
-      const bool silhouette =
-          mask_photo || scene.capture.background.kind != BackgroundSpec::Kind::ignore;
+      const bool silhouette = mask_photo || scene.capture.examples[e].photos[k].background.kind !=
+                                                BackgroundSpec::Kind::ignore;
       // A photo texture is interpolated from the full-size photo at every level.
       const PhotoPlane& photo =
           impl_->plane(static_cast<int>(k), static_cast<int>(plane), options.level);
       PhotoState state = state_at_level(model.examples[e].photos[k], options.level);
+      state.backdrop = photo.backdrop;
       if (mask_photo) state = coverage_state(state);
       RenderOptions render_options = at_level(base_options, options.level, texture);
       render_options.derivatives = columns != nullptr;
@@ -307,10 +303,9 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       Rendering rendering =
           impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
                                  render_options, silhouette, &photo.valid);
-      composite_background(scene, rendering);
       const Image sigma = compared_sigma(photo, texture);
       const Comparison comparison =
-          compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state.background);
+          compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state);
       PhotoEvaluation one;
       one.example = e;
       one.photo = static_cast<int>(k);

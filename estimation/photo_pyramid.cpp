@@ -33,7 +33,9 @@ std::vector<unsigned char> halved(const std::vector<unsigned char>& valid, const
 
 std::vector<PhotoPlane> photo_pyramid(const Photo& photo, int plane, int levels) {
   std::vector<PhotoPlane> pyramid;
-  pyramid.push_back({photo.planes[plane], photo.sigma[plane], photo.valid});
+  pyramid.push_back({photo.planes[plane], photo.sigma[plane], photo.valid, nullptr});
+  if (!photo.backdrop.empty())
+    pyramid[0].backdrop = std::make_shared<const Image>(photo.backdrop[plane]);
   for (int level = 1; level < levels; ++level) {
     const PhotoPlane& fine = pyramid.back();
     PhotoPlane coarse;
@@ -43,6 +45,7 @@ std::vector<PhotoPlane> photo_pyramid(const Photo& photo, int plane, int levels)
     coarse.sigma = halved(variance);
     for (float& v : coarse.sigma.values) v = 0.5f * std::sqrt(v);
     coarse.valid = halved(fine.valid, fine.I);
+    if (fine.backdrop) coarse.backdrop = std::make_shared<const Image>(halved(*fine.backdrop));
     pyramid.push_back(std::move(coarse));
   }
   // Coarse levels only bring the fit near. Their averaged noise is far below what sampling and a

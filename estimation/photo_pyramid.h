@@ -1,6 +1,7 @@
 // Photos at half, quarter, ... size for coarse-to-fine fits.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "capture_io/capture.h"
@@ -11,6 +12,7 @@ namespace hookeye {
 struct PhotoPlane {
   Image I, sigma;
   std::vector<unsigned char> valid;
+  std::shared_ptr<const Image> backdrop;  ///< what is behind the body; null: nobody took it
 };
 
 /// Means over squares of two by two pixels.

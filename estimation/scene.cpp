@@ -74,8 +74,6 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos
   for (size_t e = 0; e < capture.examples.size(); ++e)
     for (const auto& spec : capture.examples[e].photos)
       scene->photos[e].push_back(read_photo(spec, capture.camera(spec.camera)));
-  if (capture.background.kind == BackgroundSpec::Kind::photo)
-    scene->backgrounds.push_back(luminance(read_image(capture.background.photo)));
   return scene;
 }
 
@@ -88,7 +86,6 @@ std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, in
   if (!with_photos) return out;
   out->photos = scene.photos;
   out->albedo = scene.albedo;
-  out->backgrounds = scene.backgrounds;
   return out;
 }
 

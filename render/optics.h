@@ -14,7 +14,7 @@ namespace hookeye {
 /// The numbers of one photo with which its intensities change at fixed geometry.
 ///   I = gain * blur_v[ albedo * (ambient * visibility + max(0, n.sun) * lit)
 ///                      + specular * lit * |sun| * max(0, n.h)^shininess ]  on the body,
-///   I = background elsewhere (before blur and gain; background is not multiplied by gain).
+///   I = background elsewhere (before blur; background is not multiplied by gain).
 /// h: half vector between the directions to the sun and to the camera.
 struct PhotoState {
   Camera camera;
@@ -25,7 +25,10 @@ struct PhotoState {
   double shininess = 30.0;
   double blur_variance = 0.0;  ///< added to the pixel filter [px^2], >= 0
   double background = 0.0;     ///< linear intensity where the body does not cover
-  bool shaded = true;          ///< false: texture is the picture itself (sampled from photos)
+  /// The same by pixel: a picture of the camera's size that takes the place of `background`.
+  std::shared_ptr<const Image> backdrop;
+  double behind(size_t pixel) const { return backdrop ? backdrop->values[pixel] : background; }
+  bool shaded = true;  ///< false: texture is the picture itself (sampled from photos)
 };
 
 /// Order of the photo-side derivative columns.

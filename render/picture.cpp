@@ -79,7 +79,7 @@ class Tile {
   void keep(const Samples& samples, const Shading& shading, int lane, size_t at) {
     const bool hit = samples.triangle[lane] >= 0;
     store_.triangle[at] = samples.triangle[lane];
-    store_.I[at] = hit ? shading.I[lane] : static_cast<float>(task_.frame.photo.background);
+    store_.I[at] = hit ? shading.I[lane] : 0.0f;  // what is behind comes in with the pixel
     if (!hit) return;
     store_.uv[at] = {samples.bary[1][lane], samples.bary[2][lane]};
     if (task_.frame.options.derivatives) store_.rays[at] = shading.ray[lane];
@@ -127,7 +127,7 @@ class PixelSum {
     const auto [I, missing] = filter_rays(taps, task_.filter);
     if (missing > 1 - 1e-6f) return;
     const int pixel = y * out->I.width + x;
-    out->I.at(x, y) = I;
+    out->I.at(x, y) = I + missing * static_cast<float>(task_.frame.photo.behind(pixel));
     out->coverage.at(x, y) = 1 - missing;
     if (!task_.frame.options.derivatives || (!task_.silhouette && missing > 1e-6f) ||
         (task_.count && !(*task_.count)[pixel]))

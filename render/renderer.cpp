@@ -122,6 +122,7 @@ Rendering empty_rendering(const PhotoState& photo) {
   out.I.height = out.coverage.height = photo.camera.height;
   out.I.channels = out.coverage.channels = 1;
   out.I.values.assign(out.I.pixels(), static_cast<float>(photo.background));
+  if (photo.backdrop) out.I.values = photo.backdrop->values;
   out.coverage.values.assign(out.I.pixels(), 0.0f);
   out.triangle.assign(out.I.pixels(), -1);
   out.uv.assign(out.I.pixels(), Eigen::Vector2f::Zero());
@@ -160,6 +161,9 @@ Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, con
                            const std::vector<unsigned char>* count) {
   Impl& m = *impl_;
   if (x.cols() != m.surface.X.cols()) throw std::invalid_argument("render: wrong vertex count");
+  if (photo.backdrop && (photo.backdrop->width != photo.camera.width ||
+                         photo.backdrop->height != photo.camera.height))
+    throw std::invalid_argument("render: the backdrop has another size than the camera's pictures");
   const bool from_photo = texture.source == Texture::Source::photo;
   if (from_photo && photo.shaded)
     throw std::invalid_argument("render: a texture that is a photo has its light in it");

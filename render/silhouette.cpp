@@ -22,7 +22,12 @@ std::vector<SurfaceEdge> surface_edges(const SurfaceMesh& surface) {
 
 namespace {
 
-constexpr double kStepPx = 0.02;  ///< how far beside an edge its two sides are looked at
+/// How far beside an edge its two sides are looked at. Light from behind the camera falls with the
+/// root of the distance to a rim: at 0.02 px there is 6 % left of what it is a facet further in,
+/// which the interior term has already counted.
+constexpr double kStepPx = 0.002;
+/// Of the distance to the camera: what a ray of floats must be off an edge to be beside it.
+constexpr double kRayError = 1e-6;
 
 /// A point on a silhouette edge that may be visible.
 struct EdgePoint {
@@ -33,7 +38,8 @@ struct EdgePoint {
   Vector2d px, normal;  ///< in the picture; normal away from the triangle
   double depth;         ///< as Sample::depth
   double facet_size;    ///< longest edge of the triangle [length]
-  Vector2d h, step_h;   ///< ray through the point, and the change of h for kStepPx along the normal
+  Vector2d h,
+      step_h;  ///< ray through the point, and the change of h for a step beside it along the normal
   Eigen::Matrix<double, 1, 3> n_by_point;  ///< normal motion [px] by camera-space position
   Eigen::Matrix<double, 1, 7> n_by_camera;
 };
@@ -84,22 +90,29 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
     q.depth = view.perspective ? p.z() : p.z() - view.start;
     const double scale = view.perspective ? p.z() : 1.0;
     const Eigen::Matrix2d px_by_h = scale * by_point.leftCols<2>();
-    q.step_h = px_by_h.inverse() * q.normal * kStepPx;
+    const double step_px = std::max(kStepPx, kRayError * p.norm() * by_point.leftCols<2>().norm());
+    q.step_h = px_by_h.inverse() * q.normal * step_px;
     out->push_back(q);
   }
 }
 
+/// The body's intensity and the share of what is behind it.
+struct Side {
+  double I, behind;
+  Side operator-(const Side& other) const { return {I - other.I, behind - other.behind}; }
+};
+
 /// What lane i sees; NaN where that lies in front of the edge.
-double beside(const Frame& f, const EdgePoint& q, const Samples& s, const Shading& shading, int i) {
-  if (s.triangle[i] < 0) return f.photo.background;
+Side beside(const EdgePoint& q, const Samples& s, const Shading& shading, int i) {
+  if (s.triangle[i] < 0) return {0.0, 1.0};
   // Beside a contour the surface is seen edge-on: within a facet's size nothing counts as in front
   // (and what lies there hides both sides alike, so that the contrast vanishes anyhow).
-  return s.depth[i] < q.depth - q.facet_size ? std::nan("") : shading.I[i];
+  return {s.depth[i] < q.depth - q.facet_size ? std::nan("") : shading.I[i], 0.0};
 }
 
 /// Adds to all pixels whose filter reaches the point. The filter is what the fixed rays amount to
 /// in the mean over their position: the weight of a ray over its cell of 1/n px.
-void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, double weight,
+void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, const Side& jump,
             std::vector<EdgeSegment>* out) {
   const int n = filter.n, taps = filter.taps();
   const double at_x = q.px.x() * n + (n - 1) / 2.0, at_y = q.px.y() * n + (n - 1) / 2.0;
@@ -115,15 +128,16 @@ void spread(const Frame& f, const PixelFilter& filter, const EdgePoint& q, doubl
   const Vector3d by_point = f.view.camera.R.transpose() * q.n_by_point.transpose();
   segment.d_position.setZero();
   for (int k = 0; k < 3; ++k) {
-    if (t[k] == q.a) segment.d_position.col(k) = (1 - q.s) * weight * by_point;
-    if (t[k] == q.b) segment.d_position.col(k) = q.s * weight * by_point;
+    if (t[k] == q.a) segment.d_position.col(k) = (1 - q.s) * by_point;
+    if (t[k] == q.b) segment.d_position.col(k) = q.s * by_point;
   }
-  segment.d_camera = weight * q.n_by_camera.transpose();
+  segment.d_camera = q.n_by_camera.transpose();
   for (int y = floor_div(iy - taps, n) + 1; y <= floor_div(iy, n); ++y)
     for (int x = floor_div(ix - taps, n) + 1; x <= floor_div(ix, n); ++x) {
       if (x < 0 || y < 0 || x >= f.view.camera.width || y >= f.view.camera.height) continue;
-      const double w = filter.weight(ix - x * n, iy - y * n) * n * n;
       const int pixel = y * f.view.camera.width + x;
+      const double contrast = jump.I + jump.behind * f.photo.behind(pixel);
+      const double w = contrast * q.length_px * filter.weight(ix - x * n, iy - y * n) * n * n;
       // Neighbouring points of one edge mostly meet the same pixel.
       EdgeSegment* same = nullptr;
       for (size_t back = 1; back <= 4 && back <= out->size(); ++back) {
@@ -163,9 +177,8 @@ void silhouette_segments(const Frame& f, const PixelFilter& filter,
     shade(f, samples, false, &shading);
     for (int i = 0; i < count; ++i) {
       const EdgePoint& q = points[begin + i];
-      const double jump =
-          beside(f, q, samples, shading, 2 * i) - beside(f, q, samples, shading, 2 * i + 1);
-      if (jump != 0 && !std::isnan(jump)) spread(f, filter, q, jump * q.length_px, out);
+      const Side jump = beside(q, samples, shading, 2 * i) - beside(q, samples, shading, 2 * i + 1);
+      if ((jump.I != 0 || jump.behind != 0) && !std::isnan(jump.I)) spread(f, filter, q, jump, out);
     }
   }
 }

@@ -70,8 +70,9 @@ TEST(CaptureTest, CamerasAndLight) {
   EXPECT_EQ(c.light.ambient, 0.4);
   EXPECT_NEAR(c.light.sun.norm(), 0.6, 1e-15);
   EXPECT_LT(c.light.sun.x(), 0);
-  EXPECT_EQ(c.background.kind, BackgroundSpec::Kind::level);
-  EXPECT_EQ(c.background.level, 0);
+  const BackgroundSpec& background = c.examples[0].photos[0].background;
+  EXPECT_EQ(background.kind, BackgroundSpec::Kind::level);
+  EXPECT_EQ(background.level, 0);
 }
 
 TEST(CaptureTest, Regions) {
@@ -139,8 +140,8 @@ TEST(CaptureTest, BackgroundsAndTextures) {
     CaptureFixture fixture;
     fixture.replace("background: black", "background: " + text);
     const Capture c = read_fixture(fixture);
-    EXPECT_EQ(c.background.kind, kind) << text;
-    EXPECT_EQ(c.background.level, level) << text;
+    EXPECT_EQ(c.examples[0].photos[0].background.kind, kind) << text;
+    EXPECT_EQ(c.examples[0].photos[0].background.level, level) << text;
   }
   CaptureFixture from, uniform, fitted;
   from.replace("{image: albedo.png, encoding: srgb}", "{from: rest}");

@@ -116,6 +116,60 @@ TEST_F(Contours, camera) {
   }
 }
 
+TEST_F(Contours, before_a_picture) {
+  // Bright here and dark there: the ball's contrast changes its sign along the contour.
+  state.backdrop = test::waves(state.camera.width, state.camera.height, 2);
+  Renderer renderer(surface);
+  const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+  EXPECT_EQ(r.I.at(0, 0), state.backdrop->at(0, 0));
+  const Matrix3Xd u = test::field(surface.X, 0.3);
+  compare(
+      test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
+      [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1, "positions");
+  // Every pixel is its share of the body and its share of the picture behind.
+  PhotoState dark = state;
+  dark.backdrop = nullptr, dark.background = 0.0;
+  const Rendering body = renderer.render(surface.X, nullptr, texture, dark, options, true);
+  for (size_t i = 0; i < r.I.pixels(); ++i)
+    ASSERT_NEAR(r.I.values[i],
+                body.I.values[i] + (1.0f - body.coverage.values[i]) * state.backdrop->values[i],
+                1e-5);
+  state.backdrop = test::waves(state.camera.width, state.camera.height + 1, 2);
+  EXPECT_THROW(renderer.render(surface.X, nullptr, texture, state, options, true),
+               std::invalid_argument);
+}
+
+TEST_F(Contours, lit) {
+  state.shaded = true;
+  state.specular = 0.0;
+  // Held constant (render/README.md): where shadows fall, the jump of the sky's share at facets.
+  options.cast_shadows = false;
+  const double ambient = std::exchange(state.ambient, 0.0);
+  Renderer renderer(surface);
+  Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+  const Matrix3Xd u = test::field(surface.X, 0.3);
+  compare(
+      test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
+      [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1, "positions");
+  // Light and exposure, at the rim too.
+  state.ambient = ambient;
+  r = renderer.render(surface.X, nullptr, texture, state, options, true);
+  const auto column = [&](int k, const std::function<void(PhotoState&, double)>& change) {
+    compare(
+        test::directional(renderer, r, surface.X, nullptr, nullptr,
+                          VectorXd::Unit(kPhotoColumns, k)),
+        [&](double h) {
+          PhotoState s = state;
+          change(s, h);
+          return picture(renderer, surface.X, s);
+        },
+        0.01, "column " + std::to_string(k));
+  };
+  column(kLogGain, [](PhotoState& s, double h) { s.gain *= std::exp(h); });
+  column(kAmbient, [](PhotoState& s, double h) { s.ambient += h; });
+  for (int i = 0; i < 3; ++i) column(kSun + i, [i](PhotoState& s, double h) { s.sun[i] += h; });
+}
+
 TEST_F(Contours, background_and_blur) {
   state.blur_variance = 0.4;
   options.rays_per_axis = 3;
