@@ -109,8 +109,8 @@ TEST_P(SmoothInterior, positions) {
 }
 
 // Flat shading jumps at the facets' edges, and so does the share of the sky that lies below a
-// facet. A ray that changes facets within the step measures that jump and not a derivative: the
-// median pixel has none.
+// facet. A ray that changes facets within the step measures that jump and not a derivative: with so
+// small a step nine pixels in ten have none, and rounding of floats is 5e-3 of a derivative.
 TEST_P(Interior, positions_where_facets_matter) {
   state.ambient = 0.4;
   const Rendering r = render(x, x_reference, state, true);
@@ -119,12 +119,13 @@ TEST_P(Interior, positions_where_facets_matter) {
   const VectorXd analytic =
       pick(test::directional(renderer, r, x, &u, still(), VectorXd::Zero(kPhotoColumns)));
   const auto f = [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); };
-  const VectorXd numeric = (f(1e-3) - f(-1e-3)) / 2e-3;
+  const VectorXd numeric = (f(3e-4) - f(-3e-4)) / 6e-4;
   ASSERT_GT(numeric.cwiseAbs().mean(), 0);
   std::vector<double> error;
   for (int i = 0; i < numeric.size(); ++i) error.push_back(std::abs(numeric[i] - analytic[i]));
-  std::nth_element(error.begin(), error.begin() + error.size() / 2, error.end());
-  EXPECT_LT(error[error.size() / 2], 2e-3 * numeric.cwiseAbs().mean());
+  const auto tenth = error.begin() + static_cast<std::ptrdiff_t>(error.size() * 9 / 10);
+  std::nth_element(error.begin(), tenth, error.end());
+  EXPECT_LT(*tenth, 6e-3 * numeric.cwiseAbs().mean());
 }
 
 TEST_P(PhotoInterior, reference) {
