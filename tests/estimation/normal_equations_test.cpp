@@ -1,7 +1,10 @@
-// What an interval says of what the data leave open.
+// Residuals condensed to as many as there are parameters, and what an interval says of what the
+// data leave open.
+#include "estimation/normal_equations.h"
+
 #include <gmock/gmock.h>
 
-#include "estimation/normal_equations.h"
+#include <Eigen/QR>
 
 namespace hookeye {
 namespace {
@@ -67,6 +70,43 @@ TEST(ParameterCovariance, WhatAForceFixesIsNotOpen) {
   EXPECT_TRUE(known.directions.empty());
   EXPECT_THAT(known.open, testing::ElementsAre(false, false));
   EXPECT_NEAR(std::sqrt(known.determined(0, 0)) / p[0], 1.0 / 30.0, 1e-3);
+}
+
+/// All residuals of some pixels.
+struct Residuals {
+  Eigen::MatrixXd J = Eigen::MatrixXd::Random(60, 4);
+  VectorXd r = VectorXd::Random(60);
+  NormalEquations sums() const { return {J.transpose() * J, J.transpose() * r, r.squaredNorm()}; }
+};
+
+TEST(Condense, IsTheFactorizationOfAllResiduals) {
+  const Residuals all;
+  const Eigen::Vector4d scale(2.0, 0.1, 30.0, 1.0);
+  const CondensedResidual few = condense(all.sums(), scale);
+  Eigen::MatrixXd Jr(60, 5);
+  Jr << all.J * scale.asDiagonal(), all.r;
+  const Eigen::MatrixXd qr =
+      Jr.householderQr().matrixQR().topRows(5).triangularView<Eigen::Upper>();
+  EXPECT_NEAR(few.z.norm(), qr.col(4).head(4).norm(), 1e-9);
+  EXPECT_NEAR(std::abs(few.rho), std::abs(qr(4, 4)), 1e-9);
+  for (int i = 0; i < 5; ++i) {
+    const VectorXd dx = VectorXd::Random(4);
+    const double all_r2 = (all.J * scale.asDiagonal() * dx + all.r).squaredNorm();
+    EXPECT_NEAR((few.R * dx + few.z).squaredNorm() + few.rho * few.rho, all_r2, 1e-9 * all_r2);
+  }
+}
+
+/// Two parameters that do the same: their sum is fitted, their difference stays where it is.
+TEST(Condense, SingularDirectionsCostNothingAndStayPut) {
+  Residuals all;
+  all.J.col(3) = all.J.col(1);
+  const CondensedResidual few = condense(all.sums(), VectorXd::Ones(4));
+  ASSERT_TRUE(few.R.allFinite());
+  const Eigen::Vector4d difference(0.0, 1.0, 0.0, -1.0);
+  EXPECT_LT((few.R * difference).norm(), 1e-6);
+  const VectorXd dx = -few.R.completeOrthogonalDecomposition().solve(few.z);
+  EXPECT_NEAR(dx.dot(difference), 0.0, 1e-6);
+  EXPECT_NEAR((all.J.transpose() * (all.J * dx + all.r)).norm(), 0.0, 1e-6);
 }
 
 }  // namespace
