@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/QR>
+#include <random>
 
 namespace hookeye {
 namespace {
@@ -27,6 +28,7 @@ Parameter level(const std::string& name) {
 Evaluation seen(const Eigen::MatrixXd& J) {
   PhotoEvaluation photo;
   photo.sums.JtJ = J.transpose() * J;
+  photo.sums.Jtr = VectorXd::Zero(J.cols());
   ExampleEvaluation example;
   example.photos.push_back(photo);
   Evaluation out;
@@ -70,6 +72,40 @@ TEST(ParameterCovariance, WhatAForceFixesIsNotOpen) {
   EXPECT_TRUE(known.directions.empty());
   EXPECT_THAT(known.open, testing::ElementsAre(false, false));
   EXPECT_NEAR(std::sqrt(known.determined(0, 0)) / p[0], 1.0 / 30.0, 1e-3);
+}
+
+/// Ten photos whose errors move together within a photo, five times as far as their white noise
+/// would: the scatter from photo to photo tells, and widens the interval as far.
+TEST(ParameterCovariance, ScatterFromPhotoToPhotoWidensIt) {
+  std::mt19937 engine(7);
+  std::normal_distribution<double> normal;
+  const auto interval = [&](double common) {
+    Evaluation seen;
+    seen.columns = 1;
+    ExampleEvaluation example;
+    double sum = 0.0;
+    for (int k = 0; k < 10; ++k) {
+      PhotoEvaluation photo;
+      photo.sums.JtJ = Eigen::MatrixXd::Constant(1, 1, 1e4);
+      photo.sums.Jtr = VectorXd::Constant(1, 100.0 * common * normal(engine));
+      sum += photo.sums.Jtr[0] / 10.0;
+      example.photos.push_back(photo);
+    }
+    for (auto& photo : example.photos) photo.sums.Jtr.array() -= sum;  // at the optimum
+    seen.examples.push_back(example);
+    const VectorXd p = VectorXd::Constant(1, 0.2);
+    return std::sqrt(parameter_covariance(seen, {level("a")}, p).determined(0, 0));
+  };
+  const double white = 1.0 / std::sqrt(10.0 * 1e4);
+  double least = 1e9, most = 0.0, mean = 0.0;
+  for (int i = 0; i < 50; ++i) {
+    const double wide = interval(5.0) / white;
+    least = std::min(least, wide), most = std::max(most, wide), mean += wide / 50.0;
+    EXPECT_GE(interval(0.1), white);
+  }
+  EXPECT_NEAR(mean, 5.0 * (1.0 + 1.5 / 9.0), 0.8);
+  EXPECT_GT(least, 2.0);
+  EXPECT_LT(most, 12.0);
 }
 
 /// All residuals of some pixels.
