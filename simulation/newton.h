@@ -24,7 +24,7 @@ struct NewtonGoal {
   double s = 1.0;
   double tolerance = 1e-9;  ///< |R_free|_inf over the largest nodal force
   int max_iterations = 60;
-  bool reuse_factor = false;  ///< start with conjugate gradients on the factor at hand
+  bool reuse_factor = false;  ///< start by conjugate gradients on the factor at hand, however far
   std::function<bool()> cancelled;
 };
 

@@ -93,6 +93,7 @@ std::string texture_text(const BodySpec& body) {
 }
 
 std::string light_text(const Capture& capture) {
+  if (capture.body.texture == BodySpec::Texture::none) return "none needed";
   if (capture.body.texture == BodySpec::Texture::rest) return "in the photos";
   if (!capture.light.given) return "not told: fitted";
   const Vector3d& sun = capture.light.sun;
@@ -116,9 +117,9 @@ std::string background_text(const BackgroundSpec& background) {
   return {};
 }
 
-/// As the file's values are read: empty by the format's own rule.
+/// As the file's values are read (read_photo).
 std::string encoding_text(const PhotoSpec& spec) {
-  if (!spec.encoding) return "by format";
+  if (!spec.encoding) return spec.kind == PhotoSpec::Kind::silhouette ? "linear" : "by format";
   switch (spec.encoding->kind) {
     case Encoding::Kind::linear:
       return "linear";
