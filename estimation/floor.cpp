@@ -69,6 +69,10 @@ Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
   if (!silhouette && photo.motion_px > kLinearPx)
     return {r2_of_middle_cell(photo.aligned, left.count), left.count};
   const SmoothPart moved = smooth_part(photo.flow, degree);
+  // Cells have the residual made linear, which grows with a contour's motion where its pixels have
+  // long changed all they can: of those it is the share that is left.
+  if (silhouette && left.r2 > 0.0)
+    return {photo.r2 * (1.0 - moved.explained / left.r2), photo.count - moved.numbers};
   return {left.r2 - moved.explained, left.count - moved.numbers};
 }
 

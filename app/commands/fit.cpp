@@ -3,6 +3,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
+#include "app/commands/tables.h"
 #include "estimation/additive_material.h"
 #include "estimation/progressive.h"
 #include "estimation/step_json.h"
@@ -61,9 +62,9 @@ void run_fit(const FitArguments& arguments, Session& session) {
   session.document = run.timeline();
   session.say("{}", parameter_table(step.fitted));
   if (additive) say_refinements(step.fitted, session);
-  session.say("chi {:.3f} on the fitted photos, {:.3f} on the held-out ones; floor {:.3f} ({})\n",
-              step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true), floor.chi,
-              floor.source);
+  session.say("chi {} on the fitted photos, {} on the held-out ones; floor {:.3f} ({})\n",
+              chi_text(step.fitted.evaluation.chi(false)),
+              chi_text(step.fitted.evaluation.chi(true)), floor.chi, floor.source);
   session.say("written to {}\n", folder.string());
 }
 
