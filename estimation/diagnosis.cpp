@@ -160,47 +160,65 @@ std::shared_ptr<const EffectScore> other_form(const Context& context,
   return out;
 }
 
+/// Those that `mesh_shift` takes beyond their intervals for noise.
+std::string moved_by_mesh(const Fitted& fitted, const VectorXd& mesh_shift) {
+  const auto parameters = fitted.form.parameters();
+  std::vector<std::string> moved;
+  for (int i = 0; i < mesh_shift.size(); ++i) {
+    const double half = 0.5 * (fitted.high[i] - fitted.low[i]);
+    if (std::abs(mesh_shift[i]) > half)
+      moved.push_back(fmt::format("{} by {:+.2g}{}{}", parameters[i].name, mesh_shift[i],
+                                  parameters[i].unit.empty() ? "" : " ", parameters[i].unit));
+  }
+  return fmt::format("{}", fmt::join(moved, ", "));
+}
+
 /// mesh_shift and mesh_note: what the fitted parameters do once the change `mesh` is there in full.
 void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagnosis& out) {
   if (base == 0) return;
   out.mesh_shift = -project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
-  const auto parameters = context.fitted.form.parameters();
-  std::vector<std::string> moved;
-  for (int i = 0; i < base; ++i) {
-    const double half = 0.5 * (context.fitted.high[i] - context.fitted.low[i]);
-    if (std::abs(out.mesh_shift[i]) > half)
-      moved.push_back(fmt::format("{} by {:+.2g}{}{}", parameters[i].name, out.mesh_shift[i],
-                                  parameters[i].unit.empty() ? "" : " ", parameters[i].unit));
-  }
+  const std::string moved = moved_by_mesh(context.fitted, out.mesh_shift);
   if (!moved.empty())
     out.mesh_note = fmt::format(
         "a mesh of {} times the edge would move {}; the intervals reach there, and adding "
         "mesh_resolution fits on it",
-        kFinerEdge, fmt::join(moved, ", "));
+        kFinerEdge, moved);
 }
 
-/// Diagnosis::mesh_fall. The refined mesh has one parameter, a share of what it changed; typical of
-/// it is what the next refinement would change.
-double next_mesh_fall(const ModelForm& form, const DiagnosisSums& sums) {
+/// mesh_fall, mesh_shift and mesh_note of a model whose mesh has been refined. It has one
+/// parameter, a share of what the refinement changed; typical of it is what the next refinement
+/// would change. The photos fit the share, and what they fit is no bound of the mesh's error in a
+/// modulus, which falls at a rate of its own: the intervals reach for what the rule leaves.
+void tell_of_refined_mesh(const Fitted& fitted, const DiagnosisSums& sums, Diagnosis& out) {
   Eigen::Index at = 0;
-  for (const auto& ingredient : form.ingredients) {
+  for (const auto& ingredient : fitted.form.ingredients) {
     const auto parameters = ingredient->parameters();
     const Effect* effect = find_effect(ingredient->name());
     if (effect && parameters.size() == 1 && effect->remeshes(ingredient->variant())) {
       // last of the base columns, so that the others are what it is projected against
-      const Eigen::Index last = form.size() - 1;
-      Eigen::MatrixXd H = sums.fitted.JtJ.topLeftCorner(form.size(), form.size());
+      const Eigen::Index last = fitted.form.size() - 1;
+      Eigen::MatrixXd H = sums.fitted.JtJ.topLeftCorner(last + 1, last + 1);
       H.row(at).swap(H.row(last));
       H.col(at).swap(H.col(last));
       Hypothesis change;
       change.first = static_cast<int>(last), change.count = 1;
       change.typical = VectorXd::Ones(1);
-      const double M = project(H, static_cast<int>(last), change).M(0, 0);
-      return std::pow(parameters[0].typical, 2) * M / std::max(sums.photo_count, 1.0);
+      const ProjectedHypothesis share = project(H, static_cast<int>(last), change);
+      const double next = parameters[0].typical;
+      out.mesh_fall = std::pow(next, 2) * share.M(0, 0) / std::max(sums.photo_count, 1.0);
+      VectorXd by_share = VectorXd::Zero(last + 1);
+      by_share.head(last) = -share.to_base.col(0);
+      std::swap(by_share[at], by_share[last]);
+      out.mesh_shift = (next - fitted.p[at] * (1.0 - next)) * by_share;
+      const std::string moved = moved_by_mesh(fitted, out.mesh_shift);
+      if (!moved.empty())
+        out.mesh_note = fmt::format(
+            "a still finer mesh would move {}, by what the refinement changed; the intervals reach "
+            "there",
+            moved);
     }
     at += static_cast<Eigen::Index>(parameters.size());
   }
-  return 0.0;
 }
 
 void weigh(std::vector<EffectScore>& scores) {
@@ -263,7 +281,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
   out.whiteness_p = sums.whiteness_p;
-  out.mesh_fall = next_mesh_fall(fitted.form, sums);
+  tell_of_refined_mesh(fitted, sums, out);
 
   std::vector<ProjectedHypothesis> projected;
   VectorXd evidence(candidates.size());

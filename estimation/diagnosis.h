@@ -50,8 +50,9 @@ struct Diagnosis {
   double effective_count = 0.0;
   double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
-  /// Change of the fitted parameters that a mesh of 0.7 times the edge would bring, to first order.
-  /// Empty: not known (the mesh cannot be made finer, or has been).
+  /// Change of the fitted parameters that a mesh of 0.7 times the edge would bring, to first order;
+  /// where the mesh has been refined, by Richardson's rule, less the share of it that the model
+  /// has. Empty: not known (the mesh cannot be made finer).
   VectorXd mesh_shift;
   std::string mesh_note;  ///< those that move beyond their intervals for noise; empty: none
   /// Change of chi^2 by what the next finer mesh would do to a model whose mesh has been refined:

@@ -12,15 +12,28 @@ namespace hookeye::test {
 struct Repeat {
   double p_value = 1.0;  ///< of the largest evidence
   std::string first;     ///< effect of the largest evidence
-  /// First effect that would be refitted, with the motion in px that would fall by as much.
+  /// First effect that would be refitted, with the motion in px that would fall by as much; the
+  /// mesh where it is not the truth's is none.
   std::string named;
-  double gravity_fall = 0.0;    ///< of sum (residual / noise)^2, as self-weight is scored
-  bool covered = false;         ///< the true mu lies in the interval for noise
+  double gravity_fall = 0.0;  ///< of sum (residual / noise)^2, as self-weight is scored
+  /// The true mu lies in the interval: that for noise, or, where the truth has another mesh, that
+  /// which reaches for the mesh.
+  bool covered = false;
   double over_deviation = 0.0;  ///< log(mu/true) over the standard error that the interval tells
 };
 
 /// Fits mu and diagnoses, as a user would. The true mu is SmallCapture's.
 Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options = {});
+
+struct Searched {
+  std::string wrong;  ///< names that a search found, but for the mesh; empty: none
+  std::string verdict;
+  double mu = 0.0, low = 0.0, high = 0.0;  ///< of the last model
+  bool covered = false;
+};
+
+/// discover() on a capture that hides nothing.
+Searched search(const SmallCapture& capture);
 
 /// Forces at random all over the body, other ones in every example: it explains nothing that is.
 class Placebo final : public Effect {
