@@ -37,7 +37,7 @@ struct Contours : testing::Test {
     RenderOptions o = options;
     o.derivatives = false;
     return Eigen::Map<Eigen::VectorXf>(
-               renderer.render(x, nullptr, texture, s, o, true).I.values.data(),
+               renderer.render(x, &surface.X, texture, s, o, true).I.values.data(),
                state.camera.width * state.camera.height)
         .cast<double>();
   }
@@ -49,6 +49,34 @@ struct Contours : testing::Test {
     ASSERT_GT(numeric.norm(), 0) << what;
     EXPECT_LT((numeric - ours).norm(), 0.02 * numeric.norm())
         << what << ": analytic " << ours.norm() << ", difference " << numeric.norm();
+  }
+
+  /// All columns of the camera.
+  void compare_camera(const std::string& what) {
+    Renderer renderer(surface);
+    const Rendering r = renderer.render(surface.X, &surface.X, texture, state, options, true);
+    const bool orthographic = state.camera.projection == Camera::Projection::orthographic;
+    for (int column = 0; column < kLogGain; ++column) {
+      if (orthographic && column == kMove + 2) continue;  // along the line of sight: nothing moves
+      const auto f = [&](double h) {
+        PhotoState s = state;
+        if (column < kMove)
+          s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
+        else if (column < kZoom)
+          s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
+        else
+          s.camera = s.camera.zoomed(h);
+        return picture(renderer, surface.X, s);
+      };
+      const double h = column < 2    ? 0.002
+                       : column == 2 ? 0.03
+                       : column < 5  ? 0.1
+                       : column == 5 ? 0.5
+                                     : 0.01;
+      compare(test::directional(renderer, r, surface.X, nullptr, nullptr,
+                                VectorXd::Unit(kPhotoColumns, column)),
+              f, h, what + ", column " + std::to_string(column));
+    }
   }
 
   SurfaceMesh front, surface;
@@ -91,29 +119,30 @@ TEST_F(Contours, inner_edge_alone) {
       0.1, "inner edge");
 }
 
-TEST_F(Contours, camera) {
-  Renderer renderer(surface);
-  const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
-  for (int column = 0; column < kLogGain; ++column) {
-    const auto f = [&](double h) {
-      PhotoState s = state;
-      if (column < kMove)
-        s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
-      else if (column < kZoom)
-        s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
-      else
-        s.camera = s.camera.zoomed(h);
-      return picture(renderer, surface.X, s);
-    };
-    const double h = column < 2    ? 0.002
-                     : column == 2 ? 0.03
-                     : column < 5  ? 0.1
-                     : column == 5 ? 0.5
-                                   : 0.01;
-    compare(test::directional(renderer, r, surface.X, nullptr, nullptr,
-                              VectorXd::Unit(kPhotoColumns, column)),
-            f, h, "column " + std::to_string(column));
-  }
+TEST_F(Contours, camera) { compare_camera("image"); }
+
+TEST_F(Contours, orthographic_camera) {
+  state.camera = test::camera(Camera::Projection::orthographic, false);
+  compare_camera("orthographic");
+}
+
+TEST_F(Contours, camera_before_uniform_bodies) {
+  texture.source = Texture::Source::uniform;
+  texture.albedo = 0.8;
+  // Lit, so that the balls differ where one is before the other.
+  state.shaded = true;
+  state.ambient = state.specular = 0.0;
+  options.cast_shadows = false;
+  compare_camera("uniform");
+}
+
+TEST_F(Contours, camera_of_photographed_bodies) {
+  // The reference stands still while the camera moves; what it does not see stays uncovered.
+  surface = front;
+  texture.source = Texture::Source::photo;
+  texture.photo = test::waves(state.camera.width, state.camera.height, 3);
+  texture.reference_camera = state.camera;
+  compare_camera("photo");
 }
 
 TEST_F(Contours, before_a_picture) {
