@@ -163,6 +163,13 @@ TEST(Discover, AMeshThatLeavesNothingRacesWithNobody) {
   EXPECT_EQ(found.steps[1].added, "mesh_resolution");
   EXPECT_EQ(found.steps[1].raced.size(), 1u);
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+  // The told modulus' interval reaches for the finer mesh, the refined one's for a still finer one.
+  for (const Step& step : found.steps) {
+    EXPECT_LE(step.fitted.low[0], 0.02) << step.name;
+    EXPECT_GE(step.fitted.high[0], 0.02) << step.name;
+  }
+  EXPECT_LT(found.steps[1].fitted.high[0] - found.steps[1].fitted.low[0],
+            0.5 * (found.steps[0].fitted.high[0] - found.steps[0].fitted.low[0]));
 }
 
 /// A small weight beside a mesh that is too coarse: on the mesh that has that error, whatever
