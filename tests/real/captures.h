@@ -54,4 +54,8 @@ void write_tango_holes(const fs::path& data, const fs::path& capture, const Tens
 /// The sheet with two notches; no force is told.
 void write_tango_notched(const fs::path& data, const fs::path& capture, const Tension& tension);
 
+/// A block that CalculiX solved (shared data, reference/), read from its deck: MESH_A, stretched
+/// and bent, or MESH_B, a heavy cantilever. No photo; a camera that can look at it.
+void write_reference(const fs::path& data, const fs::path& capture, const std::string& deck);
+
 }  // namespace hookeye::real

@@ -6,6 +6,9 @@
 #include <map>
 #include <stdexcept>
 
+#include "estimation/photo_evaluation.h"
+#include "simulation/blocks.h"
+
 namespace hookeye::real {
 
 Case::Value Case::parameter(const std::string& name) const {
@@ -32,6 +35,44 @@ Diagnosis diagnose_case(Case& fitted) {
   if (auto* failure = std::get_if<NumericalFailure>(&result))
     throw std::runtime_error(failure->example + ": " + failure->reason);
   return std::get<Diagnosis>(std::move(result));
+}
+
+ReferenceBlock solve_reference(const fs::path& data, const fs::path& capture,
+                               const std::string& deck) {
+  write_reference(data, capture, deck);
+  Capture told = read_capture(capture);
+  PhotoSpec view;  // no photo: what `hookeye render` looks at
+  view.camera = told.cameras.front().name;
+  view.place = told.examples.front().place;
+  told.examples.front().photos.push_back(view);
+  const auto scene = load_scene(told, false);
+  const ModelForm form = base_form(scene);
+  const Model model = form.realise(form.initial());
+  const TetMesh& mesh = scene->body->mesh;
+  const auto solved = solve_equilibrium(mesh, model.energy_of(0), model.examples.front().loading);
+  if (auto* failure = std::get_if<NumericalFailure>(&solved))
+    throw std::runtime_error(deck + ": " + failure->reason);
+  const VectorXd& q = std::get<Equilibrium>(solved).q;
+  ReferenceBlock out;
+  out.nodes = mesh.nodes();
+  out.distance_mm = test::distance_to_reference(data / (deck + ".csv"), mesh, q);
+  out.largest_mm = (q - mesh.X.reshaped()).cwiseAbs().maxCoeff();
+  RenderOptions options = render_options(*scene);
+  options.derivatives = false;
+  out.picture = PhotoComparer(scene, 0).render(model, q, nullptr, 0, 0, options).I;
+  return out;
+}
+
+ChiByKind chi_by_kind(const Case& fitted) {
+  double r2[3] = {}, count[3] = {};
+  for (const auto& example : fitted.fitted.evaluation.examples) {
+    const int kind = example.held_out                                           ? 2
+                     : is_rest(fitted.scene->capture.examples[example.example]) ? 0
+                                                                                : 1;
+    for (const auto& photo : example.photos) r2[kind] += photo.r2, count[kind] += photo.count;
+  }
+  const auto chi = [&](int kind) { return std::sqrt(r2[kind] / count[kind]); };
+  return {chi(0), chi(1), chi(2)};
 }
 
 std::string table(const Diagnosis& diagnosis) {

@@ -26,6 +26,22 @@ Diagnosis diagnose_case(Case& fitted);
 /// Every effect that could be tested, best first: evidence, share, sentence. One line each.
 std::string table(const Diagnosis& diagnosis);
 
+/// A block that CalculiX solved, solved from its deck: largest component [mm] by which a node
+/// misses CalculiX's, largest that a node moves, and what the camera sees.
+struct ReferenceBlock {
+  double distance_mm = 0, largest_mm = 0;
+  int nodes = 0;
+  Image picture;
+};
+ReferenceBlock solve_reference(const fs::path& data, const fs::path& capture,
+                               const std::string& deck);
+
+/// chi over the photos at rest, the loaded fitted and the held-out ones.
+struct ChiByKind {
+  double rest = 0, loaded = 0, held_out = 0;
+};
+ChiByKind chi_by_kind(const Case& fitted);
+
 /// Published displacements of an openhole step against the model's, and against the model's plus
 /// the residual displacement that its picture shows [px rms of a component].
 struct DicDifference {

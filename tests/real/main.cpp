@@ -51,6 +51,35 @@ void openhole(const fs::path& data, const fs::path& out) {
   }
 }
 
+void reference(const fs::path& data, const fs::path& out) {
+  std::vector<Image> pictures;
+  for (const std::string mesh : {"b10k", "q10k", "q30k"})
+    for (const std::string load : {"A", "B"}) {
+      const std::string deck = mesh + "_" + load;
+      const auto block = real::solve_reference(data, out / "capture" / deck, deck);
+      fmt::print("{}: {} nodes, {:.1e} mm from CalculiX, of {:.2f} mm\n", deck, block.nodes,
+                 block.distance_mm, block.largest_mm);
+      if (mesh == "q30k") pictures.push_back(block.picture);
+    }
+  write_image(out / "reference.png", real::side_by_side(pictures));
+}
+
+void hidden(const fs::path& data, const fs::path& out) {
+  const real::Case block = real::fit_capture(data / "case_b4");
+  print_parameters(block);
+  const real::ChiByKind chi = real::chi_by_kind(block);
+  fmt::print("  chi at rest {:.3f}, loaded {:.3f}, held out {:.3f}\n", chi.rest, chi.loaded,
+             chi.held_out);
+  std::vector<Image> pictures;
+  for (const auto& example : block.fitted.evaluation.examples) {
+    const std::string& name = block.scene->capture.examples[example.example].name;
+    const PhotoEvaluation& seen = example.photos.at(0);
+    fmt::print("  {}: residual motion {:.3f} px rms\n", name, seen.flow.rms_px());
+    if (pictures.size() < 3 && !example.held_out) pictures.push_back(real::residual_picture(seen));
+  }
+  write_image(out / "hidden-b4.png", real::side_by_side(pictures));
+}
+
 void silicone(const fs::path& data, const fs::path& out, real::Silicone told) {
   const std::string name = fmt::format("silicone-{}", told.material);
   real::write_diffcal(data, out / "capture" / name, told);
@@ -79,6 +108,8 @@ void tango(const fs::path& data, const fs::path& out) {
 void run(const fs::path& data, const fs::path& out, const std::string& only) {
   fs::create_directories(out);
   auto wanted = [&](const char* name) { return only.empty() || only == name; };
+  if (wanted("reference")) reference(data.parent_path() / "reference", out);
+  if (wanted("hidden")) hidden(data.parent_path() / "hidden", out);
   if (wanted("openhole")) openhole(data / "openhole_cfrp", out);
   real::Silicone red, blue;
   blue.material = 'm', blue.density_si = 1180.0, blue.start_mu_si = 80000.0;
@@ -93,7 +124,8 @@ void run(const fs::path& data, const fs::path& out, const std::string& only) {
 int main(int argc, char** argv) {
   if (argc != 3 && argc != 4) {
     fmt::print(stderr,
-               "usage: real_data_figures SHARED_DATA/real OUT [openhole|red|blue|tango|laws]\n");
+               "usage: real_data_figures SHARED_DATA/real OUT "
+               "[reference|hidden|openhole|red|blue|tango|laws]\n");
     return 2;
   }
   try {

@@ -63,4 +63,31 @@ void write_overlay(const std::filesystem::path& png, const Image& model, const I
   write_image(png, image);
 }
 
+Image side_by_side(const std::vector<Image>& pictures) {
+  constexpr int kGap = 8;
+  int width = -kGap;
+  for (const auto& one : pictures) width += one.width + kGap;
+  Image all{width, pictures.at(0).height, 3, {}};
+  all.values.assign(all.pixels() * 3, 1.0f);
+  int left = 0;
+  for (const auto& one : pictures) {
+    for (int y = 0; y < one.height; ++y)
+      for (int x = 0; x < one.width; ++x)
+        for (int c = 0; c < 3; ++c)
+          all.at(left + x, y, c) = one.at(x, y, one.channels == 3 ? c : 0);
+    left += one.width + kGap;
+  }
+  return all;
+}
+
+Image residual_picture(const PhotoEvaluation& seen) {
+  Image image = grey_picture(seen.residual.width / 2, seen.residual.height / 2);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const float residual = seen.residual.at(2 * x, 2 * y);
+      if (std::isfinite(residual)) paint(image, x, y, diverging(residual / kResidualScale));
+    }
+  return image;
+}
+
 }  // namespace hookeye::real

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
-#include "estimation/flow.h"
+#include "estimation/compare_picture.h"
 
 namespace hookeye::real {
 
@@ -16,5 +17,12 @@ void write_motion(const std::filesystem::path& png, const FlowField& flow, doubl
 /// grey where the photo does not count. Half size.
 void write_overlay(const std::filesystem::path& png, const Image& model, const Image& photo,
                    const std::vector<unsigned char>& valid);
+
+/// Pictures of one height in a row, a gap between them.
+Image side_by_side(const std::vector<Image>& pictures);
+
+/// Residual in units of noise, blue -8 .. red +8 as `compare` has it, grey where a pixel does not
+/// count. Half size.
+Image residual_picture(const PhotoEvaluation& seen);
 
 }  // namespace hookeye::real

@@ -114,6 +114,29 @@ TetMesh read_reference_mesh(const std::filesystem::path& file) {
   return mesh;
 }
 
+double distance_to_reference(const std::filesystem::path& csv, const TetMesh& mesh,
+                             const VectorXd& q) {
+  std::ifstream in(csv);
+  std::string line;
+  std::getline(in, line);
+  double most = 0;
+  int rows = 0;
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream cells(line);
+    int node;
+    Eigen::Vector3d X, u;
+    cells >> node >> X[0] >> X[1] >> X[2] >> u[0] >> u[1] >> u[2];
+    const int a = node - 1;
+    if (!cells || a < 0 || a >= mesh.nodes() || (mesh.X.col(a) - X).norm() > 1e-6)
+      throw std::runtime_error(csv.string() + " is of another mesh: " + line);
+    most = std::max(most, (q.segment<3>(3 * a) - mesh.X.col(a) - u).cwiseAbs().maxCoeff());
+    ++rows;
+  }
+  if (rows != mesh.nodes()) throw std::runtime_error(csv.string() + " misses nodes");
+  return most;
+}
+
 Region region_where(const TetMesh& mesh,
                     const std::function<bool(const Eigen::Vector3d&)>& inside) {
   Region region;

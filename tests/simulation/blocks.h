@@ -17,6 +17,11 @@ TetMesh block(int nx, int ny, int nz, Eigen::Vector3d size, int order, double sh
 /// "nnodes ntets nodes_per_tet" text of the reference data.
 TetMesh read_reference_mesh(const std::filesystem::path& file);
 
+/// Largest component [mm] by which the places `q` miss those of the reference's table (node, X, u;
+/// CalculiX). Throws std::runtime_error where it lists other nodes than the mesh has.
+double distance_to_reference(const std::filesystem::path& csv, const TetMesh& mesh,
+                             const VectorXd& q);
+
 /// Boundary faces all of whose nodes satisfy `inside` make the region.
 Region region_where(const TetMesh& mesh, const std::function<bool(const Eigen::Vector3d&)>& inside);
 

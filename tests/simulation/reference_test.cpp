@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <fstream>
 
 #include "simulation/blocks.h"
 #include "simulation/equilibrium.h"
@@ -52,27 +51,6 @@ Loading heavy_cantilever(const TetMesh& mesh) {
   return loading;
 }
 
-double worst_displacement(const std::filesystem::path& csv, const TetMesh& mesh,
-                          const VectorXd& q) {
-  std::ifstream in(csv);
-  std::string line;
-  std::getline(in, line);
-  double worst = 0;
-  int rows = 0;
-  while (std::getline(in, line)) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream cells(line);
-    int node;
-    Vector3d X, u;
-    cells >> node >> X[0] >> X[1] >> X[2] >> u[0] >> u[1] >> u[2];
-    const int a = node - 1;
-    worst = std::max(worst, (q.segment<3>(3 * a) - mesh.X.col(a) - u).cwiseAbs().maxCoeff());
-    ++rows;
-  }
-  EXPECT_EQ(rows, mesh.nodes());
-  return worst;
-}
-
 TEST_P(CalculiX, DisplacementsReactionsEnergy) {
   HOOKEYE_NEEDS_DATA("reference");
   const Reference& reference = GetParam();
@@ -88,7 +66,7 @@ TEST_P(CalculiX, DisplacementsReactionsEnergy) {
       << std::get<NumericalFailure>(result).load_fraction;
   const Equilibrium& e = std::get<Equilibrium>(result);
   EXPECT_TRUE(e.stable);
-  EXPECT_LE(worst_displacement(folder / (reference.name + ".csv"), mesh, e.q), 2e-5);
+  EXPECT_LE(test::distance_to_reference(folder / (reference.name + ".csv"), mesh, e.q), 2e-5);
 
   // CalculiX leaves out the load that acts directly on fixed nodes, so compare internal forces.
   VectorXd R = residual(mesh, energy, Loading{}, e.q);
