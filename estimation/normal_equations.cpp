@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 namespace hookeye {
@@ -151,7 +152,9 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
     // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
     const VectorXd v = eigen.eigenvectors().col(i);
     if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
-      out.directions.push_back(name_direction(parameters, v));
+      const std::string sentence = name_direction(parameters, v);
+      if (std::find(out.directions.begin(), out.directions.end(), sentence) == out.directions.end())
+        out.directions.push_back(sentence);
       unknown += 900.0 * v * v.transpose();
       for (int k = 0; k < n; ++k) out.open[k] = out.open[k] || moves(v, k);
       continue;

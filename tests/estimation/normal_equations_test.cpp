@@ -64,6 +64,18 @@ TEST(ParameterCovariance, OneModulusThatNothingMoves) {
   EXPECT_THAT(known.open, testing::ElementsAre(true, false));
 }
 
+/// Four depths of which the photos know two combinations: two directions are open, and both are the
+/// same four names.
+TEST(ParameterCovariance, WhatIsOpenIsSaidOnce) {
+  Eigen::MatrixXd J(2, 4);
+  J << 1e4, 1.3e4, 0.7e4, 0.9e4,  //
+      0.8e4, -0.9e4, 1.2e4, -1.1e4;
+  const auto known = parameter_covariance(seen(J), {level("a"), level("b"), level("c"), level("d")},
+                                          VectorXd::Constant(4, 0.1));
+  EXPECT_THAT(known.directions, testing::SizeIs(1));
+  EXPECT_THAT(known.open, testing::ElementsAre(true, true, true, true));
+}
+
 TEST(ParameterCovariance, WhatAForceFixesIsNotOpen) {
   const VectorXd p = Eigen::Vector2d(0.02, 0.3);
   Eigen::MatrixXd J(2, 2);
