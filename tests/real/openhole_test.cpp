@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "real/cases.h"
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
@@ -43,6 +45,26 @@ TEST_F(OpenHole, ModelPlusResidualIsThePublishedDisplacement) {
     EXPECT_GE(seen.points, 225);
     EXPECT_LT(seen.with_residual_px, 0.05) << "step " << step;
   }
+}
+
+/// What an isotropic sheet cannot do stands in the residual displacement that `compare` draws:
+/// around the hole, where the fields of the two differ, and far less elsewhere.
+TEST_F(OpenHole, TheIsotropicMisfitIsVisibleAroundTheHole) {
+  const FlowField& lacking =
+      bar_->fitted.evaluation.find(bar_->scene->example_index("step11"))->photos.at(0).flow;
+  const Vector2d hole(193.0, 541.0);  // px; radius 5 mm of 0.095 a pixel
+  double sum[2] = {}, count[2] = {};
+  for (const auto& cell : lacking.cells) {
+    if (!cell.reliable) continue;
+    const bool near = (cell.centre_px - hole).norm() < 2.5 * 5.0 / 0.095;
+    sum[near] += cell.estimate.head<2>().squaredNorm() / 2.0;
+    count[near] += 1.0;
+  }
+  const double around = std::sqrt(sum[1] / count[1]), elsewhere = std::sqrt(sum[0] / count[0]);
+  fmt::print("residual displacement at step 11: {:.4f} px around the hole, {:.4f} px elsewhere\n",
+             around, elsewhere);
+  EXPECT_GT(around, 1.5 * elsewhere);
+  EXPECT_LT(flow_statistics(lacking).whiteness_p, 1e-6);
 }
 
 /// The laminate, not the camera, the jaws or the mesh.
