@@ -1,6 +1,7 @@
 // Commands on a run: what they say, what they write into run.json, what they make of a broken one.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "app/fitted_run.h"
@@ -227,6 +228,26 @@ TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   EXPECT_THAT(added.err, Not(HasSubstr("diagnosing")));
   // 01-gravity has no diagnosis yet.
   EXPECT_THAT(hookeye("add run swelling").err, HasSubstr("diagnosing the newest step"));
+}
+
+/// Arrays by name in the file's header, with finite ranges: ParaView shows nothing of NaN.
+TEST_F(FittedRun, DeformedFilesHaveWhatParaViewShows) {
+  for (const std::string example : {"rest", "pull", "push"}) {
+    const std::string vtu = read(folder_ / "run/steps/00-base/deformed" / (example + ".vtu"));
+    for (const std::string name : {"displacement", "residual", "reaction", "cauchy_stress",
+                                   "green_strain", "von_mises", "J"}) {
+      const size_t at = vtu.find("Name=\"" + name + "\"");
+      ASSERT_NE(at, std::string::npos) << example << ": " << name;
+      const std::string array = vtu.substr(at, vtu.find("/>", at) - at);
+      EXPECT_THAT(array, Not(HasSubstr("nan"))) << example;
+      const std::string key = "RangeMax=\"";
+      const double most = std::stod(array.substr(array.find(key) + key.size()));
+      EXPECT_TRUE(std::isfinite(most)) << array;
+      if (example != "rest") {
+        EXPECT_GT(most, 0.0) << array;
+      }
+    }
+  }
 }
 
 TEST_F(FittedRun, OnlyWhatStandsIsTakenBack) {
