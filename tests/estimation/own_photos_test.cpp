@@ -2,6 +2,7 @@
 // photos or for one, as a level or as a picture), and a blot on one of them moves next to nothing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <regex>
@@ -24,17 +25,23 @@ std::string text_of(const fs::path& file) {
 
 class OwnPhotos : public testing::Test {
  protected:
-  /// Every photo anew: the model's picture, and `behind(x, y)` where the body is not.
+  /// Every photo anew: the model's picture, and `behind(x, y)` where the body is not. `tint`: one
+  /// channel each, the picture times that.
   template <class Behind>
-  void photograph(const Behind& behind) {
-    const Scene& scene = *small_.scene;
-    const ModelForm form = base_form(small_.scene);
+  void photograph(const Behind& behind, const std::vector<float>& tint = {1.0f}) {
+    photograph(small_.scene, behind, tint);
+  }
+  template <class Behind>
+  void photograph(const std::shared_ptr<const Scene>& before, const Behind& behind,
+                  const std::vector<float>& tint = {1.0f}) {
+    const Scene& scene = *before;
+    const ModelForm form = base_form(before);
     const Model model = form.realise(form.initial());
     for (size_t e = 0; e < model.examples.size(); ++e) {
       EquilibriumSolver solver(scene.mesh());
       const auto solved =
           solver.solve(model.energy_of(static_cast<int>(e)), model.examples[e].loading);
-      PhotoComparer comparer(small_.scene, static_cast<int>(e));
+      PhotoComparer comparer(before, static_cast<int>(e));
       for (size_t k = 0; k < scene.photos[e].size(); ++k) {
         const Rendering seen = comparer.render(model, std::get<Equilibrium>(solved).q, nullptr,
                                                static_cast<int>(k), 0, render_options(scene));
@@ -43,16 +50,25 @@ class OwnPhotos : public testing::Test {
           for (int x = 0; x < photo.width; ++x)
             photo.at(x, y) += (1.0f - seen.coverage.at(x, y)) * static_cast<float>(behind(x, y));
         fs::path file = scene.capture.examples[e].photos[k].file;
-        write_image(file.replace_extension(".exr"), photo);
+        write_image(file.replace_extension(".exr"), tinted(photo, tint));
       }
     }
   }
+  static Image tinted(const Image& grey, const std::vector<float>& tint) {
+    Image out{grey.width, grey.height, static_cast<int>(tint.size()), {}};
+    for (const float value : grey.values)
+      for (const float t : tint) out.values.push_back(t * value);
+    return out;
+  }
   /// The capture with these photos and `background` for all of them; `more`: a photo's own keys.
-  std::shared_ptr<const Scene> told(const std::string& background, const std::string& more = "") {
+  std::shared_ptr<const Scene> told(const std::string& background, const std::string& more = "",
+                                    const std::string& texture = "") {
     std::string text = text_of(small_.scene->capture.file);
     text = std::regex_replace(text, std::regex("background: black"), "background: " + background);
     text = std::regex_replace(text, std::regex(R"((photos/\w+)\.png)"),
                               more.empty() ? "$1.exr" : "{file: $1.exr, " + more + "}");
+    if (!texture.empty())
+      text = std::regex_replace(text, std::regex(R"(texture: \{[^}]*\})"), "texture: " + texture);
     const fs::path file = small_.scene->capture.folder / "told.yaml";
     std::ofstream(file) << text;
     return load_scene(read_capture(file));
@@ -127,6 +143,48 @@ TEST_F(OwnPhotos, BeforeALevelThatIsFitted) {
     }
   EXPECT_EQ(levels, 2);
   EXPECT_LT(fitted.evaluation.chi(false), 0.2);
+}
+
+/// A body of one colour, which the fit finds with the modulus: shading and contours tell both.
+TEST_F(OwnPhotos, OfABodyOfOneColourThatIsFitted) {
+  const auto black = [](int, int) { return 0.0; };
+  photograph(black);
+  photograph(told("black", "", "{uniform: 0.62}"), black);
+  const auto scene = told("black", "", "{uniform: fit}");
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto result = fit(workspace, form, 1.05 * form.initial());
+  ASSERT_TRUE(std::holds_alternative<Fitted>(result));
+  const Fitted& fitted = std::get<Fitted>(result);
+  const auto parameters = form.parameters();
+  const auto albedo = std::find_if(parameters.begin(), parameters.end(),
+                                   [](const auto& one) { return one.name == "albedo"; });
+  ASSERT_NE(albedo, parameters.end());
+  EXPECT_NEAR(fitted.p[albedo - parameters.begin()], 0.62, 1e-3);
+  EXPECT_NEAR(fitted.p[0], 0.02, 2e-4);
+  EXPECT_LT(fitted.evaluation.chi(false), 0.2);
+}
+
+/// Channels of a coloured body, compared one by one with those of its albedo.
+TEST_F(OwnPhotos, InColour) {
+  const std::vector<float> tint{0.9f, 0.6f, 0.3f};
+  photograph([](int, int) { return 0.0; }, tint);
+  const fs::path folder = small_.scene->capture.folder;
+  const Image albedo = *small_.scene->albedo[0][0];
+  write_image(folder / "albedo_rgb.exr", tinted(albedo, tint));
+  const std::string texture = "{image: albedo_rgb.exr}";
+  const Evaluation luminance = seen(told("black", "", texture));
+  EXPECT_LT(luminance.chi(false), 0.2);
+  const auto scene = told("black", "channels: rgb", texture);
+  const Evaluation by_channel = seen(scene);
+  EXPECT_LT(by_channel.chi(false), 0.2);
+  EXPECT_EQ(pixels(by_channel), 3.0 * pixels(luminance));
+  EXPECT_GT(seen(told("black", "channels: rgb")).chi(false), 2.0) << "a grey albedo";
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto result = fit(workspace, form, 1.2 * form.initial());
+  ASSERT_TRUE(std::holds_alternative<Fitted>(result));
+  EXPECT_NEAR(std::get<Fitted>(result).p[0], 0.02, 2e-5);
 }
 
 /// From half a stiffness away, through the coarse sizes: contours pull towards where the photo
