@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
@@ -32,11 +33,18 @@ std::string photo_rows(const json& photos, double floor) {
   std::vector<std::vector<std::string>> rows = {
       {"example", "camera", "use", "chi", "|: floor", "over floor", "rms px", "what is left"}};
   std::vector<double> all;
-  for (const auto& photo : photos) all.push_back(photo.at("chi"));
+  std::set<std::pair<std::string, std::string>> coloured;  // one row a channel
+  for (const auto& photo : photos) {
+    all.push_back(photo.at("chi"));
+    if (photo.value("plane", 0) > 0) coloured.emplace(photo.at("example"), photo.at("camera"));
+  }
   for (const auto& photo : photos) {
     const double chi = photo.at("chi");
-    rows.push_back({photo.at("example"), photo.at("camera"), photo.at("use"),
-                    fmt::format("{:.2f}", chi), marked_bar(chi, floor, scale_of(all, floor)),
+    std::string camera = photo.at("camera");
+    if (coloured.contains({photo.at("example"), camera}))
+      camera += std::string(" ") + "rgb"[photo.at("plane").get<int>()];
+    rows.push_back({photo.at("example"), camera, photo.at("use"), fmt::format("{:.2f}", chi),
+                    marked_bar(chi, floor, scale_of(all, floor)),
                     fmt::format("{:.2f}", chi / floor),
                     fmt::format("{:.3f}", photo.at("rms_px").get<double>()),
                     photo.at("only_noise").get<bool>() ? "noise" : "structure"});

@@ -102,6 +102,19 @@ TEST_F(WrittenRun, CompareDrawsABarWithTheFloorForEveryPhoto) {
   EXPECT_THAT(result.out, HasSubstr(".|............."));  // 0.5: below it
 }
 
+TEST_F(WrittenRun, CompareNamesTheChannelsOfAColourPhoto) {
+  const fs::path file = folder_ / "run/steps/01-gravity/metrics.json";
+  json metrics = json::parse(read(file));
+  for (auto& photo : metrics["photos"]) photo["example"] = "pull", photo["camera"] = "front";
+  std::ofstream(file) << metrics;
+  EXPECT_THAT(hookeye("compare run").out, Not(HasSubstr("front r ")));
+  for (int plane = 0; plane < 3; ++plane) metrics["photos"][plane]["plane"] = plane;
+  std::ofstream(file) << metrics;
+  const std::string out = hookeye("compare run").out;
+  for (const char* channel : {"front r ", "front g ", "front b "})
+    EXPECT_THAT(out, HasSubstr(channel));
+}
+
 TEST_F(WrittenRun, CompareSaysWhereAFileIsDamaged) {
   const fs::path file = folder_ / "run/steps/01-gravity/metrics.json";
   fs::resize_file(file, 40);
