@@ -7,6 +7,7 @@
 #include <random>
 
 #include "estimation/registration.h"
+#include "tests/estimation/repeats.h"
 
 namespace hookeye {
 namespace {
@@ -79,20 +80,20 @@ TEST(Flow, WhiteNoiseIsWhite) {
   std::normal_distribution<float> normal;
   const Image model = speckle(0, 0);
   double variance = 0, effective = 0, count = 0;
-  int refused = 0;
-  for (int repeat = 0; repeat < 40; ++repeat) {
+  constexpr int kRepeats = 200;
+  std::vector<double> p;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
     Image r = constant(0);
     for (float& x : r.values) x = normal(engine);
     const FlowStatistics s = flow_statistics(residual_flow(model, r, constant(0.01f)));
-    variance += s.variance / 40;
-    effective += s.effective / 40;
-    count += s.count / 40;
-    refused += s.whiteness_p < 0.05;
+    variance += s.variance / kRepeats;
+    effective += s.effective / kRepeats;
+    count += s.count / kRepeats;
+    p.push_back(s.whiteness_p);
   }
   EXPECT_NEAR(variance, 1.0, 0.05);
   EXPECT_GT(effective, 0.9 * count);
-  // 5 % of 40 is 2; ten or more would happen once in 30,000 such tests
-  EXPECT_LT(refused, 10);
+  EXPECT_LE(test::excess_over_uniform(p), test::excess_95(kRepeats));
 }
 
 /// The picture bent: moved along x by an amount that changes sign from left to right.
