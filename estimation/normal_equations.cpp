@@ -64,21 +64,53 @@ bool moves(const VectorXd& direction, Eigen::Index i) {
   return std::abs(direction[i]) >= 0.1 * direction.cwiseAbs().maxCoeff();
 }
 
+/// A positive number in units of stress ("MPa", "N/cm^2"); lengths and factors are positive too.
+bool is_modulus(const Parameter& one) {
+  return one.positive && (one.unit.ends_with("Pa") || one.unit.ends_with("^2"));
+}
+
 /// "mu", or "mu together with kappa": what a direction without information moves.
 std::string name_direction(const std::vector<Parameter>& parameters, const VectorXd& direction) {
   std::vector<std::string> names;
-  bool all_stiffness = true;
-  double lo = 1e300, hi = 0.0;
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    if (!moves(direction, static_cast<Eigen::Index>(i))) continue;
-    names.push_back(parameters[i].name);
-    all_stiffness &= parameters[i].positive;
-    lo = std::min(lo, std::abs(direction[i]));
-    hi = std::max(hi, std::abs(direction[i]));
-  }
-  if (all_stiffness && hi < 1.1 * lo)
-    return fmt::format("stiffness scale not determined; only ratios ({})", fmt::join(names, ", "));
+  for (size_t i = 0; i < parameters.size(); ++i)
+    if (moves(direction, static_cast<Eigen::Index>(i))) names.push_back(parameters[i].name);
   return fmt::format("not determined by this capture: {}", fmt::join(names, " together with "));
+}
+
+/// The directions without information, a sentence each. No force is known where all moduli may grow
+/// by one factor and no other direction moves any: then their ratios are, and that is said.
+std::vector<std::string> name_directions(const std::vector<Parameter>& parameters,
+                                         const std::vector<VectorXd>& directions) {
+  std::vector<Eigen::Index> moduli;
+  std::vector<std::string> names;
+  for (size_t i = 0; i < parameters.size(); ++i)
+    if (is_modulus(parameters[i])) {
+      moduli.push_back(static_cast<Eigen::Index>(i));
+      names.push_back(parameters[i].name);
+    }
+  const auto moves_any = [&](const VectorXd& v) {
+    return std::any_of(moduli.begin(), moduli.end(), [&](Eigen::Index i) { return moves(v, i); });
+  };
+  const auto only_scale = [&](const VectorXd& v) {
+    if (moduli.empty()) return false;
+    double rest = v.squaredNorm();
+    for (const auto i : moduli) rest -= v[i] * v[i];
+    return rest < 0.01 * v.squaredNorm() &&
+           std::all_of(moduli.begin(), moduli.end(), [&](Eigen::Index i) {
+             return std::abs(v[i] / v[moduli.front()] - 1.0) < 0.1;
+           });
+  };
+  const auto of_moduli = std::count_if(directions.begin(), directions.end(), moves_any);
+  std::vector<std::string> out;
+  for (const VectorXd& v : directions) {
+    const std::string sentence =
+        of_moduli == 1 && only_scale(v)
+            ? fmt::format("stiffness scale not determined; only ratios ({})",
+                          fmt::join(names, ", "))
+            : name_direction(parameters, v);
+    if (std::find(out.begin(), out.end(), sentence) == out.end()) out.push_back(sentence);
+  }
+  return out;
 }
 
 /// One photo's, or one measurement's, share of the normal equations at the fitted values.
@@ -148,19 +180,19 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
   V = scale.asDiagonal() * V * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
   Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(n, n), unknown = inverse;
+  std::vector<VectorXd> without;
   for (int i = 0; i < n; ++i) {
     // A standard deviation above 30 (a factor e^30, or 30 times what matters) determines nothing.
     const VectorXd v = eigen.eigenvectors().col(i);
     if (eigen.eigenvalues()[i] < 1.0 / 900.0) {
-      const std::string sentence = name_direction(parameters, v);
-      if (std::find(out.directions.begin(), out.directions.end(), sentence) == out.directions.end())
-        out.directions.push_back(sentence);
+      without.push_back(v);
       unknown += 900.0 * v * v.transpose();
       for (int k = 0; k < n; ++k) out.open[k] = out.open[k] || moves(v, k);
       continue;
     }
     inverse += v * v.transpose() / eigen.eigenvalues()[i];
   }
+  out.directions = name_directions(parameters, without);
   const Eigen::MatrixXd covariance = inverse * V * inverse;
   VectorXd wider = scale;
   for (int i = 0; i < n; ++i) wider[i] *= excess_of_scatter(clusters, inverse, covariance, i);

@@ -12,7 +12,7 @@ namespace {
 
 Parameter stiffness(const std::string& name) {
   Parameter one;
-  one.name = name, one.value = 1.0, one.low = 0.0;
+  one.name = name, one.unit = "MPa", one.value = 1.0, one.low = 0.0;
   one.high = std::numeric_limits<double>::infinity(), one.typical = 1.0, one.positive = true;
   return one;
 }
@@ -62,6 +62,26 @@ TEST(ParameterCovariance, OneModulusThatNothingMoves) {
   J(0, 1) = 1e4;
   const auto known = parameter_covariance(seen(J), {stiffness("mu"), level("background.cam0")}, p);
   EXPECT_THAT(known.open, testing::ElementsAre(true, false));
+  EXPECT_THAT(known.directions,
+              testing::ElementsAre("stiffness scale not determined; only ratios (mu)"));
+}
+
+/// Two moduli that nothing moves have no known ratio either, and a length is no stiffness.
+TEST(ParameterCovariance, NoRatioIsToldWhereNoneIsKnown) {
+  const auto none =
+      parameter_covariance(seen(Eigen::MatrixXd::Zero(1, 2)), {stiffness("mu"), stiffness("kappa")},
+                           Eigen::Vector2d(0.02, 0.3));
+  EXPECT_THAT(none.directions,
+              testing::UnorderedElementsAre("not determined by this capture: mu",
+                                            "not determined by this capture: kappa"));
+  Parameter reach = stiffness("stiffness_field.radius");
+  reach.unit = "mm";
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(1, 2);
+  J(0, 0) = 1e4;
+  const auto length =
+      parameter_covariance(seen(J), {stiffness("mu"), reach}, Eigen::Vector2d(0.02, 5.0));
+  EXPECT_THAT(length.directions,
+              testing::ElementsAre("not determined by this capture: stiffness_field.radius"));
 }
 
 /// Four depths of which the photos know two combinations: two directions are open, and both are the
