@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "app/fitted_run.h"
+#include "capture_io/image.h"
 
 namespace hookeye::test {
 namespace {
@@ -241,6 +242,36 @@ TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   EXPECT_THAT(added.err, Not(HasSubstr("diagnosing")));
   // 01-gravity has no diagnosis yet.
   EXPECT_THAT(hookeye("add run swelling").err, HasSubstr("diagnosing the newest step"));
+}
+
+/// For every photo one picture and its residual: photo, model, residual and arrows side by side.
+TEST_F(FittedRun, CompareHasAPictureOfEveryPhoto) {
+  const fs::path step = folder_ / "run/steps/00-base";
+  const Encoding as_stored{Encoding::Kind::linear, 1.0};
+  for (const std::string photo : {"rest-cam0", "pull-cam0", "push-cam0"}) {
+    const Image drawn = read_image(step / "compare" / (photo + ".png"), as_stored);
+    EXPECT_EQ(drawn.channels, 3);
+    EXPECT_GE(drawn.width, 2 * 120);
+    EXPECT_GE(drawn.height, 2 * 120);
+    const Image residual = read_image_with_holes(step / "residuals" / (photo + ".exr"));
+    const Image coloured = read_image(step / "residuals" / (photo + ".png"), as_stored);
+    ASSERT_EQ(residual.pixels(), coloured.pixels());
+    // Where the model is too bright the colour is red, where it is too dark blue; on one scale.
+    int red = 0, blue = 0, wrong = 0;
+    for (size_t i = 0; i < residual.pixels(); ++i) {
+      const float r = residual.values[i], *colour = &coloured.values[i * coloured.channels];
+      if (!(std::abs(r) > 4.0f)) continue;
+      (r > 0.0f ? red : blue) += 1;
+      wrong += (colour[0] > colour[2]) != (r > 0.0f);
+    }
+    EXPECT_GT(red, 10) << photo;
+    EXPECT_GT(blue, 10) << photo;
+    EXPECT_EQ(wrong, 0) << photo;
+  }
+  const Result said = hookeye("compare run");
+  ASSERT_EQ(said.status, 0) << said.err;
+  for (const char* what : {"by example", "by camera", "by region", "what is left"})
+    EXPECT_THAT(said.out, HasSubstr(what));
 }
 
 /// Arrays by name in the file's header, with finite ranges: ParaView shows nothing of NaN.
