@@ -128,15 +128,19 @@ int main_of(int argc, char** argv) {
   const Counts counts = count(options);
   fmt::print("{} captures\nplacebo named: {}\n", n, counts.placebo);
   if (gravity) return counts.placebo == 0 && counts.named == n ? 0 : 1;
-  const double ks = test::excess_over_uniform(counts.p);
+  const double rms = std::sqrt(counts.spread / n);
   fmt::print(
-      "p-values: largest excess over uniform {:.3f} (5 % point {:.3f})\n"
       "false alarms: {} (5 % of them, at most {})\n"
       "intervals that miss: {} (5 % of them, at most {}); rms of (mu - true)/standard error "
       "{:.2f}\n",
-      ks, test::excess_95(n), counts.named, most, counts.missed, most,
-      std::sqrt(counts.spread / n));
-  return ks <= test::excess_95(n) && counts.named <= most && counts.missed <= most ? 0 : 1;
+      counts.named, most, counts.missed, most, rms);
+  const bool held = counts.named <= most && counts.missed <= most && rms > 0.3;
+  // Where the photos hold more than noise p-values tell so; what is not named is told by the fall.
+  if (options.other_renderer || options.other_mesh) return held ? 0 : 1;
+  const double ks = test::excess_over_uniform(counts.p);
+  fmt::print("p-values: largest excess over uniform {:.3f} (5 % point {:.3f})\n", ks,
+             test::excess_95(n));
+  return held && ks <= test::excess_95(n) ? 0 : 1;
 }
 
 }  // namespace

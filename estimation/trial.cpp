@@ -73,9 +73,9 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
     if (auto* evaluation = std::get_if<Evaluation>(&seen))
       if (share == 0.0 || evaluation->linear_chi(false) < from)
         return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true), scale.floor};
-    if (options.cancel && options.cancel->load()) break;
+    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
   }
-  return NumericalFailure{"", 0.0, "cancelled"};
+  return std::get<NumericalFailure>(std::move(seen));  // not even the start: a held-out example
 }
 
 }  // namespace hookeye

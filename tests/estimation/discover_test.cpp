@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "estimation/trial.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -103,6 +104,24 @@ TEST(RefitScore, ForcesCountByTheirOwnNoise) {
   };
   EXPECT_GT(loss(exact), 2.0);
   EXPECT_NEAR(loss(rough), loss(exact), 1e-9);
+}
+
+/// A trial whose held-out example has no equilibrium, not even at its start, is out of the race.
+/// It was told as cancelled, and that ended the whole search.
+TEST(Race, AHeldOutExampleWithoutEquilibriumIsNoEnd) {
+  const SmallScene small({});
+  const auto scene = std::make_shared<Scene>(*small.scene);
+  for (ExampleSpec& example : scene->capture.examples)
+    if (example.validate)
+      for (LoadSpec& load : example.loads) *load.force *= -1e4;
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto scale = trial_scale(workspace, form, form.initial(), {});
+  ASSERT_TRUE(std::holds_alternative<TrialScale>(scale));
+  const auto result = try_step(workspace, form, form.initial(), std::get<TrialScale>(scale), {});
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  EXPECT_EQ(std::get<NumericalFailure>(result).example, "poke");
+  EXPECT_NE(std::get<NumericalFailure>(result).reason, "cancelled");
 }
 
 /// Noise alone: with other rays than the fit's the pixel filter differs by a hair, and `defocus`

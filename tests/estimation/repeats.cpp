@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "estimation/effects/toolbox.h"
 
@@ -44,8 +45,10 @@ Searched search(const SmallCapture& capture) {
   const SmallScene small(capture);
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
-  const auto found =
-      std::get<Discovery>(discover(workspace, form, form.initial(), DiscoverOptions{}));
+  auto result = discover(workspace, form, form.initial(), DiscoverOptions{});
+  if (const auto* failure = std::get_if<NumericalFailure>(&result))
+    throw std::runtime_error(failure->example + ": " + failure->reason);
+  const auto found = std::get<Discovery>(std::move(result));
   const Fitted& last = found.steps.back().fitted;
   Searched out;
   for (const std::string& name : found.missing)
