@@ -221,25 +221,46 @@ void write_photo(const std::filesystem::path& folder, const Scene& scene, const 
                         scene.capture.units.length);
 }
 
-/// Residual of the photos on the nodes: root mean square over the photos that see the node, of the
-/// cells it projects into.
-VectorXd nodal_residual(const Scene& scene, const Model& model, const ExampleEvaluation& example) {
-  const int n = scene.body->mesh.nodes();
+struct NodalResidual {
+  VectorXd rms, pixels;  ///< over noise, and how many pixels it is of; 0: no photo sees the node
+};
+
+/// Residual of the photos on the nodes of the boundary: root mean square over 9 x 9 pixels around
+/// the node in the photos that see it: what the picture shows there lies no nearer to the camera.
+NodalResidual nodal_residual(const Scene& scene, const Model& model,
+                             const ExampleEvaluation& example) {
+  constexpr int kReach = 4;
+  const TetMesh& mesh = scene.body->mesh;
+  const int n = mesh.nodes();
+  const std::set<int> boundary(mesh.boundary.data(), mesh.boundary.data() + mesh.boundary.size());
+  const Matrix3Xd x = scene.body->surface.deformed(mesh, example.equilibrium->q);
   VectorXd sum = VectorXd::Zero(n), count = VectorXd::Zero(n);
   for (const auto& photo : example.photos) {
     const Camera& camera = model.examples[photo.example].photos[photo.photo].camera;
     const Image& r = photo.residual;
-    for (int a = 0; a < n; ++a) {
-      const Eigen::Vector2d px = camera.project(example.equilibrium->q.segment<3>(3 * a));
+    const double per_px = length_per_px(scene, model.examples[photo.example].photos[photo.photo]);
+    const auto deepest = [&](int triangle) {
+      double depth = -1e300;
+      for (const int corner : scene.body->surface.mesh.triangles[triangle])
+        depth = std::max(depth, camera.depth(x.col(corner)));
+      return depth;
+    };
+    for (const int a : boundary) {
+      const Vector3d node = example.equilibrium->q.segment<3>(3 * a);
+      const Eigen::Vector2d px = camera.project(node);
       if (!px.allFinite()) continue;
-      const int cx = static_cast<int>(std::lround(px.x())),
-                cy = static_cast<int>(std::lround(px.y()));
-      for (int y = std::max(0, cy - 4); y <= std::min(r.height - 1, cy + 4); ++y)
-        for (int x = std::max(0, cx - 4); x <= std::min(r.width - 1, cx + 4); ++x)
-          if (!std::isnan(r.at(x, y))) sum[a] += r.at(x, y) * r.at(x, y), count[a] += 1.0;
+      const auto u = std::lround(px.x()), v = std::lround(px.y());
+      if (u < 0 || v < 0 || u >= r.width || v >= r.height) continue;
+      const int shown = photo.triangle[v * r.width + u];
+      if (shown < 0 || camera.depth(node) > deepest(shown) + kReach * per_px) continue;
+      for (auto y = std::max(0L, v - kReach); y <= std::min<long>(r.height - 1, v + kReach); ++y)
+        for (auto c = std::max(0L, u - kReach); c <= std::min<long>(r.width - 1, u + kReach); ++c) {
+          const float value = r.at(static_cast<int>(c), static_cast<int>(y));
+          if (!std::isnan(value)) sum[a] += value * value, count[a] += 1.0;
+        }
     }
   }
-  return (sum.array() / count.array().max(1.0)).sqrt();
+  return {(sum.array() / count.array().max(1.0)).sqrt(), count};
 }
 
 void write_deformed(const std::filesystem::path& file, const Scene& scene, const Model& model,
@@ -250,14 +271,15 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
   const Eigen::MatrixXd reaction =
       Eigen::Map<const Matrix3Xd>(example.equilibrium->R.data(), 3, mesh.nodes());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
-  std::vector<VtuArray> arrays = {
-      {"displacement", u, true},
-      {"reaction", reaction, true},
-      {"residual", nodal_residual(scene, model, example).transpose(), true},
-      {"green_strain", state.green_strain, false},
-      {"cauchy_stress", state.cauchy_stress, false},
-      {"von_mises", state.von_mises.transpose(), false},
-      {"J", state.J.transpose(), false}};
+  const NodalResidual residual = nodal_residual(scene, model, example);
+  std::vector<VtuArray> arrays = {{"displacement", u, true},
+                                  {"reaction", reaction, true},
+                                  {"residual", residual.rms.transpose(), true},
+                                  {"residual_pixels", residual.pixels.transpose(), true},
+                                  {"green_strain", state.green_strain, false},
+                                  {"cauchy_stress", state.cauchy_stress, false},
+                                  {"von_mises", state.von_mises.transpose(), false},
+                                  {"J", state.J.transpose(), false}};
   VectorXd beyond;
   for (size_t part = 0; part < scene.capture.materials.size(); ++part)
     if (const AdditiveModel* own = additive_model(*model.energy.parts.at(part).term)) {
