@@ -151,12 +151,8 @@ TEST_P(SmoothInterior, photo_columns) {
     const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
     const auto f = [&](double h) {
       PhotoState s = state;
-      if (column < kMove)
-        s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
-      else if (column < kZoom)
-        s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
-      else if (column == kZoom)
-        s.camera = s.camera.zoomed(h);
+      if (column < kLogGain)
+        s = test::with_camera(s, column, h);
       else if (column == kLogGain)
         s.gain *= std::exp(h);
       else if (column == kAmbient)

@@ -110,6 +110,17 @@ inline PhotoState state(const Camera& camera) {
   return s;
 }
 
+/// The photo with its camera turned, moved or zoomed by h along `column` (below kLogGain).
+inline PhotoState with_camera(PhotoState s, int column, double h) {
+  if (column < kMove)
+    s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
+  else if (column < kZoom)
+    s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
+  else
+    s.camera = s.camera.zoomed(h);
+  return s;
+}
+
 /// dI of every pixel for changes of positions (and by them normals), reference and photo numbers;
 /// `dx_reference` belongs to photo textures and has to be told with them. Pixels without
 /// derivative: NaN.

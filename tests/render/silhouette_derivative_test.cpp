@@ -59,14 +59,7 @@ struct Contours : testing::Test {
     for (int column = 0; column < kLogGain; ++column) {
       if (orthographic && column == kMove + 2) continue;  // along the line of sight: nothing moves
       const auto f = [&](double h) {
-        PhotoState s = state;
-        if (column < kMove)
-          s.camera = s.camera.moved(h * Vector3d::Unit(column), Vector3d::Zero());
-        else if (column < kZoom)
-          s.camera = s.camera.moved(Vector3d::Zero(), h * Vector3d::Unit(column - kMove));
-        else
-          s.camera = s.camera.zoomed(h);
-        return picture(renderer, surface.X, s);
+        return picture(renderer, surface.X, test::with_camera(state, column, h));
       };
       const double h = column < 2    ? 0.002
                        : column == 2 ? 0.03
