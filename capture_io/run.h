@@ -1,5 +1,5 @@
 // The run folder, and its only writer. Each step is written whole (temporary folder, then rename)
-// and never changed afterwards.
+// and never changed afterwards: a later verb adds files, and makes only its own anew.
 #pragma once
 
 #include <filesystem>

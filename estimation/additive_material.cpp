@@ -209,6 +209,13 @@ bool has_additive(const ModelForm& form) {
                      [](const auto& one) { return as_material(*one) != nullptr; });
 }
 
+bool has_additive(const Model& model) {
+  const auto& parts = model.energy.parts;
+  const auto told = static_cast<std::ptrdiff_t>(model.scene->capture.materials.size());
+  return std::any_of(parts.begin(), parts.begin() + told,
+                     [](const auto& part) { return additive_model(*part.term) != nullptr; });
+}
+
 std::vector<AddedPart> added_parts(const ModelForm& form, const VectorXd& p) {
   std::vector<AddedPart> out;
   for_each_ingredient(form, [&](const Ingredient& one, int, int offset, int n) {

@@ -40,6 +40,8 @@ struct AdditivePart {
 };
 std::vector<AdditivePart> additive_parts(const ModelForm& form, const VectorXd& p);
 bool has_additive(const ModelForm& form);
+/// One of the capture's materials is additive, whatever of it is fitted.
+bool has_additive(const Model& model);
 
 /// What effects add to additive materials (additive_function.h), with where the control values come
 /// from: values() = by_p * p.

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "estimation/normal_equations.h"
-#include "simulation/ellipticity.h"
 
 namespace hookeye {
 namespace {
@@ -114,6 +113,22 @@ struct Drawn {
   std::string label;     ///< "", "head", "strain_stiffening"
 };
 
+/// values() by p of a material of the capture whose named values are fitted or none: it is linear
+/// in them, so that differences over a step of one are exact.
+Eigen::MatrixXd by_p(const Fitted& fitted, size_t part) {
+  const auto values = [&](Eigen::Index k, double h) -> VectorXd {
+    VectorXd p = fitted.p;
+    p[k] += h;
+    return additive_model(*fitted.form.realise(p).energy.parts[part].term)->values();
+  };
+  Eigen::MatrixXd out(values(0, 0.0).size(), fitted.p.size());
+  for (Eigen::Index k = 0; k < out.cols(); ++k) {
+    const double h = 1e-3 * (std::abs(fitted.p[k]) + 1e-6);
+    out.col(k) = (values(k, h) - values(k, -h)) / (2.0 * h);
+  }
+  return out;
+}
+
 std::vector<Drawn> drawn(const Fitted& fitted) {
   std::vector<Drawn> all;
   const Eigen::Index n = fitted.p.size();
@@ -122,6 +137,12 @@ std::vector<Drawn> drawn(const Fitted& fitted) {
     by_p.middleCols(one.offset, one.model.size()).setIdentity();
     all.push_back({one.model, std::move(by_p), one.place.part, one.place.label});
   }
+  const Model realised = fitted.form.realise(fitted.p);
+  const auto& materials = fitted.form.scene->capture.materials;
+  for (size_t i = 0; all.empty() && i < materials.size(); ++i)
+    if (const AdditiveModel* told = additive_model(*realised.energy.parts.at(i).term))
+      all.push_back({*told, by_p(fitted, i), static_cast<int>(i),
+                     materials.size() > 1 ? materials[i].region : ""});
   for (const AddedPart& one : added_parts(fitted.form, fitted.p))
     all.push_back({one.functions.model, one.functions.by_x, -1, one.name});
   return all;
@@ -184,50 +205,6 @@ std::map<std::string, int> count_beyond(const Scene& scene, const Drawn& of, con
   return count;
 }
 
-/// dP/dF of the whole model.
-Matrix9d stiffness_of(const EnergyModel& energy, int e, const Matrix3d& F) {
-  const double g = energy.swelling.size() ? energy.swelling[e] : 1.0;
-  Matrix9d D = Matrix9d::Zero();
-  for (const auto& part : energy.parts)
-    D += (part.weight.size() ? part.weight[e] : 1.0) * g * part.dP_dF(e, F / g);
-  return D;
-}
-
-/// At the most strained point of every element of every example.
-json ellipticity_json(const Scene& scene, const Model& realised, const Fitted& fitted) {
-  constexpr int kStarts = 8;  // a sweep; the worst element is looked at again
-  json out;
-  double least = std::numeric_limits<double>::infinity();
-  Matrix9d worst = Matrix9d::Zero();
-  int lost = 0;
-  for (const auto& example : fitted.evaluation.examples) {
-    const EnergyModel energy = realised.energy_of(example.example);
-    const auto all = deformation_gradients(scene.body->mesh, example.equilibrium->q);
-    const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
-    for (int e = 0; e < scene.body->mesh.size(); ++e) {
-      const Matrix3d* F = nullptr;
-      double most = -1.0;
-      for (size_t i = 0; i < points; ++i) {
-        const Matrix3d& here = all[static_cast<size_t>(e) * points + i];
-        const double strain = (here.transpose() * here - Matrix3d::Identity()).norm();
-        if (strain > most) most = strain, F = &here;
-      }
-      const Matrix9d D = stiffness_of(energy, e, *F);
-      const double value = ellipticity(D, kStarts).smallest;
-      lost += value <= 0.0;
-      if (value >= least) continue;
-      least = value;
-      worst = D;
-      out["example"] = scene.capture.examples[example.example].name;
-      out["element"] = e;
-    }
-  }
-  if (out.is_null()) return out;
-  out["smallest"] = ellipticity(worst).smallest;
-  out["elements_lost"] = lost;
-  return out;
-}
-
 }  // namespace
 
 json energy_curves(const Scene& scene, const Fitted& fitted) {
@@ -254,14 +231,16 @@ json energy_curves(const Scene& scene, const Fitted& fitted) {
   return out;
 }
 
-json additive_metrics(const Scene& scene, const Fitted& fitted) {
-  if (!has_additive(fitted.form)) return {};
+json additive_metrics(const Fitted& fitted) {
   const Model realised = fitted.form.realise(fitted.p);
+  if (!has_additive(realised)) return {};
   const ConvexityTest convex = *smallest_eigenvalue(realised);
+  double least = fitted.smallest_eigenvalue;
+  for (const RefinementStage& stage : fitted.refinements)
+    if (stage.kept) least = std::min(least, stage.smallest_eigenvalue);
   json out = {{"smallest_eigenvalue", convex.smallest},
               {"at", convex.where},
-              {"least_over_accepted_steps", fitted.smallest_eigenvalue},
-              {"ellipticity", ellipticity_json(scene, realised, fitted)},
+              {"least_over_accepted_steps", std::isnan(least) ? json() : json(least)},
               {"refinements", json::array()}};
   for (const RefinementStage& stage : fitted.refinements)
     out["refinements"].push_back(

@@ -40,8 +40,8 @@ nlohmann::json law_curves(const Scene& scene, const Fitted& fitted);
 /// beyond}: Psi over its component (`stretch` holds the strains, `axis` names them), a
 /// two-component addend along its first component with the second at its largest visited size.
 nlohmann::json energy_curves(const Scene& scene, const Fitted& fitted);
-/// `metrics.additive`: smallest eigenvalue, ellipticity over the strains that occur, refinements,
-/// elements beyond the control points. Null where the material is not additive.
-nlohmann::json additive_metrics(const Scene& scene, const Fitted& fitted);
+/// `metrics.additive`: smallest eigenvalue now and over all accepted steps that led here (null
+/// where only named values were fitted), refinements. Null where no material is additive.
+nlohmann::json additive_metrics(const Fitted& fitted);
 
 }  // namespace hookeye

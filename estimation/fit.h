@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <variant>
@@ -37,7 +38,8 @@ struct RefinementStage {
   int values = 0;                         ///< control values
   double misfit_fit = 0.0;                ///< sum of squares over noise after the refit
   std::optional<double> misfit_held_out;  ///< empty: nothing is held out
-  double smallest_eigenvalue = 0.0;       ///< least over the accepted steps [stress]
+  /// Least over the accepted steps [stress].
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   bool kept = false;
 };
 
@@ -58,7 +60,8 @@ struct Fitted {
   int iterations = 0;
   bool converged = false;
   std::vector<RefinementStage> refinements;  ///< additive material only
-  double smallest_eigenvalue = 0.0;          ///< the same: least over the last stage's steps
+  /// The same, its last stage: least over the accepted steps. Not a number: another material.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Least squares over photos, forces, moments and positions of the fitted examples, from `start`.

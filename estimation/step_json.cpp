@@ -9,6 +9,7 @@
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
 #include "estimation/energy_curves.h"
+#include "estimation/lost_ellipticity.h"
 #include "estimation/page_data.h"
 #include "estimation/removed.h"
 
@@ -144,6 +145,12 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
   return all;
 }
 
+/// A curve and its band for every addend, or for every load path of textbook laws.
+json energy(const Scene& scene, const Fitted& fitted) {
+  return has_additive(fitted.form.realise(fitted.p)) ? energy_curves(scene, fitted)
+                                                     : law_curves(scene, fitted);
+}
+
 }  // namespace
 
 json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
@@ -188,12 +195,19 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
                 {"elements", mesh.elements},
                 {"order", scene.body->mesh.order},
                 {"mean_edge", mesh.mean_edge}}}};
-  if (json additive = additive_metrics(scene, fitted); !additive.is_null()) {
-    out["energy"] = energy_curves(scene, fitted);
+  out["energy"] = energy(scene, fitted);
+  out["ellipticity"] = lost_ellipticity(scene, fitted);
+  if (json additive = additive_metrics(fitted); !additive.is_null())
     out["additive"] = std::move(additive);
-  } else {
-    out["energy"] = law_curves(scene, fitted);
-  }
+  return out;
+}
+
+json diagnosis_json(const Step& step) {
+  const Fitted& fitted = step.fitted;
+  json out = to_json(step.diagnosis);
+  out["parameters"] =
+      parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high);
+  out["energy"] = energy(*fitted.form.scene, fitted);
   return out;
 }
 
@@ -301,7 +315,7 @@ void write_step(const std::filesystem::path& folder, const Scene& scene, const S
   const Floor floor = measure_floor(scene, fitted.evaluation);
   write_text(folder / "metrics.json", metrics(scene, fitted, floor).dump(1) + "\n");
   if (!step.diagnosis.effects.empty())
-    write_text(folder / "diagnosis.json", to_json(step.diagnosis).dump(1) + "\n");
+    write_text(folder / "diagnosis.json", diagnosis_json(step).dump(1) + "\n");
   if (has_pictures(step.diagnosis)) write_removed(folder / "removed", step);
   write_text(folder / "parameters.csv", parameters_csv(fitted));
   for (const auto& example : fitted.evaluation.examples) {

@@ -24,6 +24,11 @@ nlohmann::json timeline_entry(const Step& step);
 /// forces, what is undetermined, the facts of the capture and of the mesh.
 nlohmann::json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor);
 
+/// diagnosis.json: to_json() of it, and `parameters` and `energy` with intervals and bands that
+/// reach for the mesh (reach_for_mesh), of which only a diagnosis knows: they stand before those of
+/// parameters.csv and metrics.json, which stay as the fit told them.
+nlohmann::json diagnosis_json(const Step& step);
+
 /// parameters.csv: name, unit, words, value and interval of each.
 std::string parameters_csv(const Fitted& fitted);
 

@@ -40,6 +40,16 @@ void say_refinements(const Fitted& fitted, const Session& session) {
   session.say("{}", table(rows));
 }
 
+/// What the step's figures tell of the material beyond its misfit.
+void warn_of_lost_ellipticity(const std::filesystem::path& step, Session& session) {
+  const auto told = nlohmann::json::parse(read_text(step / "metrics.json")).at("ellipticity");
+  if (told.is_null() || told.at("elements_lost") == 0) return;
+  session.warn(fmt::format(
+      "the material loses ellipticity at the strains of {} elements, most in {}: no resistance "
+      "against wrinkles or shear bands there",
+      told.at("elements_lost").get<int>(), told.at("example").get<std::string>()));
+}
+
 void run_fit(const FitArguments& arguments, Session& session) {
   Bench bench = open_capture(arguments.capture, session);
   Run run = Run::create(arguments.run, bench.scene->capture.file);
@@ -60,6 +70,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
   session.document = run.timeline();
+  warn_of_lost_ellipticity(folder, session);
   session.say("{}", parameter_table(step.fitted));
   if (additive) say_refinements(step.fitted, session);
   session.say("chi {} on the fitted photos, {} on the held-out ones; floor {:.3f} ({})\n",

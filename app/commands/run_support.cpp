@@ -111,25 +111,9 @@ void record_diagnosis(Run& run, const Step& step) {
   run.add_file(
       folder, "diagnosis.json",
       [&](const std::filesystem::path& file) {
-        write_text(file, to_json(step.diagnosis).dump(1) + "\n");
+        write_text(file, diagnosis_json(step).dump(1) + "\n");
       },
       true);
-  run.add_file(
-      folder, "parameters.csv",
-      [&](const std::filesystem::path& file) { write_text(file, parameters_csv(step.fitted)); },
-      true);
-  // Bands reach as far as the intervals, of whose mesh the diagnosis knows. All else stays: how a
-  // fit got there (refinements, its least eigenvalue) is known to it alone.
-  const auto kept = folder / "metrics.json";
-  nlohmann::json told;
-  if (std::filesystem::exists(kept)) told = nlohmann::json::parse(read_text(kept), nullptr, false);
-  if (told.is_object()) {
-    const Scene& scene = *step.fitted.form.scene;
-    told["energy"] = metrics(scene, step.fitted, step.diagnosis.floor).at("energy");
-    run.add_file(
-        folder, "metrics.json",
-        [&](const std::filesystem::path& file) { write_text(file, told.dump(1) + "\n"); }, true);
-  }
   if (has_pictures(step.diagnosis))
     run.add_file(
         folder, "removed",

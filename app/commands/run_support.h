@@ -49,7 +49,7 @@ std::filesystem::path record(Run& run, const Step& step, const std::string& comm
 /// The lowest floor that any step of the run has shown: a model that lacks something leaves some of
 /// it in the rest photos too.
 void tell_floor(nlohmann::json& timeline, const Floor& floor);
-/// Puts a diagnosis into the newest step and the timeline.
+/// Puts a diagnosis into the newest step and the timeline. What the fit wrote stays as it is.
 void record_diagnosis(Run& run, const Step& step);
 
 /// Names the folders of a step's pictures.

@@ -61,10 +61,12 @@ json rebuilt_step(const fs::path& folder, const json& metrics) {
   const std::string name = full.substr(std::min(full.find('-') + 1, full.size()));
   const bool adds = name != "base" && name.rfind("without-", 0) != 0;
   const json diagnosis = object_in(folder / "diagnosis.json");
-  json out = {{"name", name},
-              {"added", adds ? json(name) : json()},
-              {"parameters", parameters_in(folder / "parameters.csv")},
-              {"diagnosis", diagnosis.value("effects", json::array())}};
+  json out = {
+      {"name", name},
+      {"added", adds ? json(name) : json()},
+      {"parameters", diagnosis.contains("parameters") ? diagnosis["parameters"]
+                                                      : parameters_in(folder / "parameters.csv")},
+      {"diagnosis", diagnosis.value("effects", json::array())}};
   for (const char* key : {"chi_fit", "rms_px_fit", "converged", "iterations", "undetermined"})
     if (metrics.contains(key)) out[key] = metrics[key];
   // Nothing held out: metrics.json has 0 there, the timeline null.

@@ -84,6 +84,7 @@ export interface Metrics {
   iterations: number;
   mesh: {nodes: number; elements: number; order: number; mean_edge: number};
   energy?: EnergyCurve[];
+  ellipticity?: {smallest: number; elements_lost: number; example: string} | null;
   additive?: unknown;  // there: `energy` has the addends of an additive material
 }
 export interface EnergyCurve {
@@ -126,7 +127,8 @@ export interface TimelineStep {
 export interface StepEntry {
   folder: string;
   metrics: Metrics | null;
-  diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number; mesh_note?: string} | null;
+  /** `energy`: as of the metrics, its bands reaching for the mesh. */
+  diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number; mesh_note?: string; energy?: EnergyCurve[]} | null;
   residuals: Record<string, Picture>;
   fields: Record<string, string>;
   /** The whole bodies as VTK files; none where a report had no room for them. */

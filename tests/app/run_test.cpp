@@ -217,17 +217,23 @@ TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
   EXPECT_EQ(timeline().at("verdict"), judged.at("verdict"));
 }
 
-/// A diagnosis widens the bands of the energy and leaves what only the fit knew.
-TEST_F(FittedRun, DiagnoseKeepsWhatTheFitTold) {
-  const auto file = folder_ / "run/steps/00-base/metrics.json";
-  json before = json::parse(std::ifstream(file));
-  before["additive"] = {{"refinements", {1, 2}}};
-  write("run/steps/00-base/metrics.json", before.dump(1));
+/// A diagnosis adds its own files to a finished step; all that the fit wrote keeps its bytes. The
+/// intervals that reach for the mesh stand in diagnosis.json.
+TEST_F(FittedRun, DiagnoseKeepsWhatTheFitWrote) {
+  const auto files = [&] {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / "run/steps/00-base"))
+      if (entry.is_regular_file()) all[entry.path().string()] = read(entry.path());
+    return all;
+  };
+  const auto before = files();
   ASSERT_EQ(hookeye("diagnose run").status, 0);
-  json after = json::parse(std::ifstream(file));
-  EXPECT_NE(after.at("energy"), before.at("energy"));
-  after["energy"] = before["energy"];
-  EXPECT_EQ(after, before);
+  auto after = files();
+  for (const auto& [file, bytes] : before) EXPECT_TRUE(after[file] == bytes) << file;
+  const fs::path step = folder_ / "run/steps/00-base";
+  const json told = json::parse(read(step / "diagnosis.json"));
+  EXPECT_EQ(told.at("parameters"), timeline().at("steps").at(0).at("parameters"));
+  EXPECT_NE(told.at("energy"), json::parse(read(step / "metrics.json")).at("energy"));
 }
 
 TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {

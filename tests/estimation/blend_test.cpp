@@ -190,7 +190,7 @@ TEST(Blend, EachLawIsRefinedWhereItLacksSomething) {
   const auto curves = energy_curves(*scene, refined);
   ASSERT_GE(curves.size(), 4u);
   EXPECT_EQ(curves[0]["name"], "foot.I1bar");
-  const auto told = additive_metrics(*scene, refined);
+  const auto told = additive_metrics(refined);
   EXPECT_GE(told["smallest_eigenvalue"].get<double>(), 0.0);
   ASSERT_GE(refined.refinements.size(), 2u)
       << "nothing refined at " << normal_equations(plain.evaluation).r2;

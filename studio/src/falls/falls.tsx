@@ -98,7 +98,8 @@ export function Falls() {
   }).sort((a, b) => a.folder.localeCompare(b.folder));
   const latest = told.length ? list.find((s) => s.folder === told[told.length - 1].folder) : undefined;
   const now = timelineOf(latest ?? step.value);
-  const curves = latest?.metrics?.energy ?? [];
+  const curves = latest?.diagnosis?.energy ?? latest?.metrics?.energy ?? [];
+  const lost = latest?.metrics?.ellipticity;
   return (
     <div class="falls columns">
       <section>
@@ -106,6 +107,8 @@ export function Falls() {
                says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
                xLabel="step" yLabel="χ, residual over noise" />}
         {curves.map((curve) => <Energy key={curve.name} curve={curve} />)}
+        {lost && lost.elements_lost > 0 && <p class="note">The material loses ellipticity at the strains of {lost.elements_lost} elements,
+          most in {lost.example}: no resistance against wrinkles or shear bands there.</p>}
       </section>
       <section>
         <h3>Parameters

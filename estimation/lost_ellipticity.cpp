@@ -1,0 +1,59 @@
+#include "estimation/lost_ellipticity.h"
+
+#include <limits>
+
+#include "simulation/ellipticity.h"
+
+namespace hookeye {
+
+using nlohmann::json;
+
+namespace {
+
+/// dP/dF of the whole model.
+Matrix9d stiffness_of(const EnergyModel& energy, int e, const Matrix3d& F) {
+  const double g = energy.swelling.size() ? energy.swelling[e] : 1.0;
+  Matrix9d D = Matrix9d::Zero();
+  for (const auto& part : energy.parts)
+    D += (part.weight.size() ? part.weight[e] : 1.0) * g * part.dP_dF(e, F / g);
+  return D;
+}
+
+}  // namespace
+
+json lost_ellipticity(const Scene& scene, const Fitted& fitted) {
+  constexpr int kStarts = 8;  // a sweep; the worst element is looked at again
+  const Model realised = fitted.form.realise(fitted.p);
+  json out;
+  double least = std::numeric_limits<double>::infinity();
+  Matrix9d worst = Matrix9d::Zero();
+  int lost = 0;
+  for (const auto& example : fitted.evaluation.examples) {
+    const EnergyModel energy = realised.energy_of(example.example);
+    const auto all = deformation_gradients(scene.body->mesh, example.equilibrium->q);
+    const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
+    for (int e = 0; e < scene.body->mesh.size(); ++e) {
+      const Matrix3d* F = nullptr;
+      double most = -1.0;
+      for (size_t i = 0; i < points; ++i) {
+        const Matrix3d& here = all[static_cast<size_t>(e) * points + i];
+        const double strain = (here.transpose() * here - Matrix3d::Identity()).norm();
+        if (strain > most) most = strain, F = &here;
+      }
+      const Matrix9d D = stiffness_of(energy, e, *F);
+      const double value = ellipticity(D, kStarts).smallest;
+      lost += value <= 0.0;
+      if (value >= least) continue;
+      least = value;
+      worst = D;
+      out["example"] = scene.capture.examples[example.example].name;
+      out["element"] = e;
+    }
+  }
+  if (out.is_null()) return out;
+  out["smallest"] = ellipticity(worst).smallest;
+  out["elements_lost"] = lost;
+  return out;
+}
+
+}  // namespace hookeye
