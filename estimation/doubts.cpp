@@ -108,10 +108,46 @@ void look_at_photos(const Scene& scene, Sentences* out) {
           camera.name));
 }
 
+/// Stretch along x at constant volume from which the energy falls again (above 1: a pull, below: a
+/// push), 0 where it does not up to five times or a fifth of the length.
+double stretch_of_falling(const EnergyTerm& law, bool pull) {
+  const double rounding = 1e-12 * std::abs(law.psi(Vector3d(1.5, 0.8, 0.8).asDiagonal()));
+  double before = 0.0;
+  for (int i = 1; i <= 200; ++i) {
+    const double stretch = std::pow(5.0, (pull ? 1.0 : -1.0) * i / 200.0);
+    const Vector3d along(stretch, 1.0 / std::sqrt(stretch), 1.0 / std::sqrt(stretch));
+    const double now = law.psi(along.asDiagonal());
+    if (now < before - rounding) return stretch;
+    before = now;
+  }
+  return 0.0;
+}
+
+void look_at_material(const MaterialSpec& spec, Sentences* out) {
+  const auto law = make_law(spec);
+  const std::string of = spec.region.empty() ? "material" : "material " + spec.region;
+  for (const bool pull : {true, false})
+    if (const double at = stretch_of_falling(*law, pull); at > 0.0)
+      out->push_back(fmt::format(
+          "{}: the energy of this {} falls again from a stretch of {:.3g} on (at constant volume): "
+          "there the body has no equilibrium that lasts",
+          of, spec.law, at));
+  const auto told = spec.parameters.find("frame");
+  if (told == spec.parameters.end() || told->second.numbers.size() != 9) return;
+  const Matrix3d axes = Eigen::Map<const Matrix3d>(told->second.numbers.data());
+  const double off = (axes.transpose() * axes - Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (off > 1e-6)
+    out->push_back(fmt::format(
+        "{}: the axes of `frame` are orthonormal to {:.1g} only; the nearest ones that are so are "
+        "taken",
+        of, off));
+}
+
 }  // namespace
 
 Sentences doubts(const Scene& scene) {
   Sentences out;
+  for (const MaterialSpec& material : scene.capture.materials) look_at_material(material, &out);
   for (const ExampleSpec& example : scene.capture.examples) {
     compare_supports(scene, example, &out);
     look_at_measurements(scene, example, &out);

@@ -8,9 +8,10 @@
 
 namespace hookeye {
 
-/// One sentence each: supports that move shared nodes differently, measured forces where nothing
-/// holds the body, measured points off the body, cameras that look past it, photos of which nothing
-/// counts.
+/// One sentence each: materials whose energy falls again as they are stretched (Yeoh with c3 < 0,
+/// Mooney-Rivlin with c01 < 0), material frames that are orthonormal but for rounding, supports
+/// that move shared nodes differently, measured forces where nothing holds the body, measured
+/// points off the body, cameras that look past it, photos of which nothing counts.
 std::vector<std::string> doubts(const Scene& scene);
 
 }  // namespace hookeye
