@@ -33,10 +33,18 @@ void run_mesh(const MeshOptions& options, Session& session) {
   document["body"] = out.string();
   document["triangles"] = surface.triangles.size();
   document["said"] = mended.said;
+  document["asked"] = {{"min_dihedral_deg", options.fill.min_dihedral_deg},
+                       {"radius_edge_ratio", options.fill.radius_edge_ratio}};
   document["quality"] = describe_mesh(mesh);
   for (const auto& said : mended.said) session.warn(said);
   session.say("{}: {} triangles\n", options.surface, surface.triangles.size());
   session.say("{}", mesh_lines(mesh));
+  if (const double reached = quality(mesh).min_dihedral_deg;
+      reached < options.fill.min_dihedral_deg)
+    session.say(
+        "  the mesher was asked for angles of {:g} degrees and more (--min-angle) and reached "
+        "{:.1f}\n",
+        options.fill.min_dihedral_deg, reached);
   session.say("written to {}\n", out.string());
 }
 
@@ -52,6 +60,15 @@ void add_mesh(CLI::App& app, CommandBody& chosen) {
       ->check(CLI::PositiveNumber);
   command->add_option("--order", options->fill.order, "Order of the tetrahedra (default: 2)")
       ->check(CLI::IsMember({1, 2}));
+  // Where more is asked, TetGen may refine without end.
+  command
+      ->add_option("--min-angle", options->fill.min_dihedral_deg,
+                   "Smallest dihedral angle to ask for [degrees] (default: 12)")
+      ->check(CLI::Range(0.0, 15.0));
+  command
+      ->add_option("--radius-edge", options->fill.radius_edge_ratio,
+                   "Largest circumradius over shortest edge to ask for (default: 1.4)")
+      ->check(CLI::Range(1.2, 10.0));
   command->callback([&chosen, options] {
     chosen = [options](Session& session) { run_mesh(*options, session); };
   });

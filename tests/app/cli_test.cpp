@@ -10,6 +10,7 @@ namespace {
 
 using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST_F(Cli, HelpListsTheCommandsAndFitsAHundredColumns) {
   const Result help = hookeye("--help");
@@ -161,6 +162,7 @@ TEST_F(Cli, MeshFillsASurfaceThatSimulateCanUse) {
   EXPECT_NEAR(quality.at("volume").get<double>(), 1000.0, 1e-6);
   EXPECT_EQ(quality.at("order"), 2);
   EXPECT_GT(quality.at("min_dihedral_deg").get<double>(), 5.0);
+  EXPECT_EQ(json::parse(result.out).at("asked").at("min_dihedral_deg"), 12.0);
   ASSERT_TRUE(fs::exists(folder_ / "made/body.vtu"));
 
   std::string text = read(folder_ / "capture.yaml");
@@ -172,6 +174,19 @@ TEST_F(Cli, MeshFillsASurfaceThatSimulateCanUse) {
   EXPECT_EQ(json::parse(simulated.out).at("unknowns"), quality.at("unknowns"));
 
   EXPECT_EQ(hookeye("mesh cube.obj -o body.txt").status, 2);
+}
+
+TEST_F(Cli, MeshTellsTheQualityAskedAndReached) {
+  write_cube("{z: 1}");
+  const auto mesh = [&](const std::string& asked) {
+    return hookeye("mesh cube.obj -o body.vtu --edge 3 " + asked);
+  };
+  const Result strict = mesh("--min-angle 15 --radius-edge 1.2");
+  ASSERT_EQ(strict.status, 0) << strict.err;
+  EXPECT_THAT(strict.out, HasSubstr("the mesher was asked for angles of 15 degrees and more"));
+  EXPECT_THAT(mesh("--min-angle 3").out, Not(HasSubstr("was asked for")));
+  // TetGen would not come to an end.
+  EXPECT_EQ(mesh("--min-angle 30").status, 2);
 }
 
 /// First Piola-Kirchhoff stress of the neo-Hookean law in uniaxial stress at stretch l: the sides a
