@@ -13,6 +13,12 @@ class AdditiveFunction final : public Ingredient {
   std::string variant() const override { return spec_.variant; }
   std::vector<Parameter> parameters() const override { return spec_.parameters; }
   Touches touches() const override { return {.energy = true}; }
+  std::shared_ptr<const Ingredient> with_bounds(
+      const std::vector<std::pair<double, double>>& bounds) const override {
+    auto out = std::make_shared<AdditiveFunction>(spec_);
+    set_bounds(out->spec_.parameters, bounds);
+    return out;
+  }
   void apply(const VectorXd& values, Model& model) const override {
     if (!values.isZero(0.0)) model.energy.parts.push_back(part_of(spec_.functions(values), model));
   }

@@ -1,6 +1,7 @@
 #include "estimation/model.h"
 
 #include <stdexcept>
+#include <tuple>
 
 #include "estimation/additive_material.h"
 #include "estimation/effect.h"
@@ -21,6 +22,17 @@ EnergyModel Model::energy_of(int example) const {
 bool Ingredient::mechanics_derivative(const Eigen::VectorXd&, const Model&, int, const Equilibrium&,
                                       int, MechanicsDerivative&) const {
   return false;
+}
+
+std::shared_ptr<const Ingredient> Ingredient::with_bounds(
+    const std::vector<std::pair<double, double>>&) const {
+  return nullptr;
+}
+
+void set_bounds(std::vector<Parameter>& parameters,
+                const std::vector<std::pair<double, double>>& bounds) {
+  for (size_t i = 0; i < parameters.size(); ++i)
+    std::tie(parameters[i].low, parameters[i].high) = bounds.at(i);
 }
 
 std::vector<Parameter> ModelForm::parameters() const {

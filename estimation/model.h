@@ -77,6 +77,10 @@ class Ingredient {
   virtual std::string variant() const { return {}; }
   virtual std::vector<Parameter> parameters() const = 0;
   virtual Touches touches() const = 0;
+  /// The same with other bounds of its parameters: those of an effect scale with the model that it
+  /// was added to, which a step's file keeps. Null: its bounds are its own.
+  virtual std::shared_ptr<const Ingredient> with_bounds(
+      const std::vector<std::pair<double, double>>& bounds) const;
   /// Writes the values into the model. At the null values the model stays bit-equal.
   virtual void apply(const Eigen::VectorXd& values, Model& model) const = 0;
   /// Optional exact or one-sided derivative at `values`; default: none (false), and the caller
@@ -85,6 +89,10 @@ class Ingredient {
                                     const Equilibrium& equilibrium, int parameter,
                                     MechanicsDerivative& out) const;
 };
+
+/// What with_bounds() does to the parameters: {low, high} of each.
+void set_bounds(std::vector<Parameter>& parameters,
+                const std::vector<std::pair<double, double>>& bounds);
 
 /// Model as a function of parameters: ingredients in order, p their concatenated values.
 struct ModelForm {

@@ -15,6 +15,24 @@
 
 namespace hookeye {
 
+namespace {
+
+const std::vector<std::string> kIngredientKeys = {"name", "variant", "values", "bounds"};
+
+/// Beyond every number that a bound may be: written for a side that has none.
+constexpr double kNoBound = 1e300;
+
+/// Bounds of an effect, which scale with the model that it was added to.
+std::string bounds_text(const std::vector<Parameter>& parameters) {
+  std::string out = parameters.empty() ? "" : "    bounds:\n";
+  for (const auto& parameter : parameters)
+    out += fmt::format("      {}: [{:.17g}, {:.17g}]\n", parameter.name,
+                       std::max(parameter.low, -kNoBound), std::min(parameter.high, kNoBound));
+  return out;
+}
+
+}  // namespace
+
 std::string write_model(const ModelForm& form, const VectorXd& p) {
   std::string out = "hookeye_model: 1\ningredients:";
   out += form.ingredients.empty() ? " []\n" : "\n";
@@ -29,6 +47,7 @@ std::string write_model(const ModelForm& form, const VectorXd& p) {
     for (const auto& parameter : parameters)
       out += fmt::format("      {}: {:.17g}{}\n", parameter.name, p[offset++],
                          parameter.unit.empty() ? "" : "  # " + parameter.unit);
+    if (find_effect(ingredient->name())) out += bounds_text(parameters);
   }
   return out;
 }
@@ -48,6 +67,32 @@ void read_values(const YamlNode& node, const Ingredient& ingredient, std::vector
                        fmt::format("between {} and {}", parameter.low, parameter.high));
     values.push_back(value);
   }
+}
+
+/// The ingredient with the bounds that it was written with, where they stand.
+std::shared_ptr<const Ingredient> with_written_bounds(
+    const YamlSection& section, std::shared_ptr<const Ingredient> ingredient) {
+  const YamlNode* written = section.find("bounds");
+  if (!written) return ingredient;
+  std::vector<std::string> known;
+  for (const auto& parameter : ingredient->parameters()) known.push_back(parameter.name);
+  const YamlSection map(*written, fmt::format("bounds of {}", ingredient->name()), known);
+  const char* right = "[low, high] of every parameter, or no `bounds`";
+  std::vector<std::pair<double, double>> bounds;
+  for (const auto& name : known) {
+    const YamlNode& node = map.need(name, right);
+    const auto ends = read_numbers(node, name);
+    if (ends.size() != 2 || !(ends[0] <= ends[1]))
+      throw InputError(node.place, fmt::format("`{}` has no two rising bounds", name), right);
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    bounds.emplace_back(ends[0] <= -kNoBound ? -kInfinite : ends[0],
+                        ends[1] >= kNoBound ? kInfinite : ends[1]);
+  }
+  auto out = ingredient->with_bounds(bounds);
+  if (!out)
+    throw InputError(written->place, fmt::format("`{}` has bounds of its own", ingredient->name()),
+                     "leave `bounds` out");
+  return out;
 }
 
 std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, const ModelForm& base,
@@ -93,7 +138,7 @@ namespace {
 std::shared_ptr<const Scene> scene_of(const std::vector<YamlNode>& ingredients,
                                       std::shared_ptr<const Scene> told) {
   for (const YamlNode& node : ingredients) {
-    const YamlSection section(node, "an ingredient", {"name", "variant", "values"});
+    const YamlSection section(node, "an ingredient", kIngredientKeys);
     const YamlNode* name = section.find("name");
     const YamlNode* variant = section.find("variant");
     const Effect* effect = name ? find_effect(read_string(*name, "name")) : nullptr;
@@ -120,10 +165,10 @@ std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
   form.ingredients.clear();
   std::vector<double> values;
   for (const YamlNode& node : ingredients) {
-    const YamlSection section(node, "an ingredient", {"name", "variant", "values"});
+    const YamlSection section(node, "an ingredient", kIngredientKeys);
     // variants are chosen on the model so far, as they were when the effect was added
     const Model so_far = form.realise(Eigen::Map<const VectorXd>(values.data(), values.size()));
-    auto ingredient = find_ingredient(section, base, so_far);
+    auto ingredient = with_written_bounds(section, find_ingredient(section, base, so_far));
     read_values(section.need("values", "the ingredient's parameters"), *ingredient, values);
     form.ingredients.push_back(std::move(ingredient));
     const VectorXd so_far_values = Eigen::Map<const VectorXd>(values.data(), values.size());

@@ -24,6 +24,12 @@ class FunctionIngredient final : public Ingredient {
   std::string variant() const override { return spec_.variant; }
   std::vector<Parameter> parameters() const override { return spec_.parameters; }
   Touches touches() const override { return spec_.touches; }
+  std::shared_ptr<const Ingredient> with_bounds(
+      const std::vector<std::pair<double, double>>& bounds) const override {
+    auto out = std::make_shared<FunctionIngredient>(spec_);
+    set_bounds(out->spec_.parameters, bounds);
+    return out;
+  }
   void apply(const VectorXd& values, Model& model) const override {
     if (spec_.has_null && values == null_) return;
     spec_.apply(values, model);

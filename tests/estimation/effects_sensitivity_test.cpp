@@ -212,6 +212,40 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
   EXPECT_EQ(again.scene->photos.size(), block_scene()->photos.size());
 }
 
+/// Bounds scale with the model that an effect was added to; the refit moves that model, and the
+/// values with it. What a step wrote is read back, bounds and all.
+TEST(Sensitivity, EveryEffectIsReadBackAtItsBoundsFromASofterModel) {
+  const ModelForm base = base_form(block_scene());
+  const Model model = base.realise(base.initial());
+  const auto file = std::filesystem::temp_directory_path() / "hookeye-bounds-model.yaml";
+  int bounded = 0;
+  for (const Effect* effect : catalogue()) {
+    const auto candidates = effect->candidates(model, nullptr);
+    if (candidates.empty()) continue;
+    const ModelForm form = extended(base, candidates.front());
+    VectorXd p = with_values(form, some_values(*candidates.front()));
+    p[0] *= 0.5;
+    const auto own = candidates.front()->parameters();
+    const Eigen::Index first = p.size() - static_cast<Eigen::Index>(own.size());
+    for (size_t k = 0; k < own.size(); ++k) {
+      const double end =
+          std::isfinite(own[k].low) && own[k].low < own[k].value ? own[k].low : own[k].high;
+      if (std::isfinite(end)) p[first + static_cast<Eigen::Index>(k)] = end, ++bounded;
+    }
+    std::ofstream(file) << write_model(form, p);
+    const auto [again, values] = read_model(file, block_scene());
+    EXPECT_EQ(values, p) << effect->name();
+    const auto read = again.ingredients.back()->parameters();
+    ASSERT_EQ(read.size(), own.size()) << effect->name();
+    for (size_t k = 0; k < own.size(); ++k) {
+      EXPECT_EQ(read[k].low, own[k].low) << own[k].name;
+      EXPECT_EQ(read[k].high, own[k].high) << own[k].name;
+    }
+  }
+  std::filesystem::remove(file);
+  EXPECT_GT(bounded, 10);
+}
+
 /// What the finer mesh changed, added once more by a share, takes it nearer to a far finer one; the
 /// share's derivative is that of the re-solved equilibrium.
 TEST(Sensitivity, TheFinerMeshReachesForTheLimit) {
