@@ -18,19 +18,14 @@ double Separation::angle_deg() const {
 std::vector<std::string> confused_effects(const Diagnosis& diagnosis) {
   // More than four are a heap, not a question: the best of them.
   constexpr size_t kMost = 4;
-  const EffectScore* leader = nullptr;
-  std::vector<std::string> tied, alike;
-  for (const auto& score : diagnosis.effects) {
-    if (!nameable(score, diagnosis)) continue;
-    if (!leader) leader = &score;
-    if (score.evidence > leader->evidence - kTie && tied.size() < kMost)
-      tied.push_back(score.effect);
-  }
-  if (!leader || tied.size() > 1) return leader ? tied : alike;
-  alike.push_back(leader->effect);
-  for (const auto& other : leader->confused_with)
-    if (alike.size() < kMost) alike.push_back(other.effect);
-  return alike;
+  std::vector<std::string> out = leaders(diagnosis);
+  if (out.size() > kMost) out.resize(kMost);
+  if (out.size() != 1) return out;
+  for (const auto& score : diagnosis.effects)
+    if (score.effect == out.front())
+      for (const auto& other : score.confused_with)
+        if (out.size() < kMost) out.push_back(other.effect);
+  return out;
 }
 
 namespace {

@@ -71,9 +71,8 @@ struct PlanOptions {
   std::function<void(int done, int of)> progress;
 };
 
-/// Effects of a diagnosis that nothing separates yet: the leader with those within kTie of its
-/// evidence, or, where there are none, with those that imitate it (cosine above 0.9). Fewer than
-/// two: nothing is confused.
+/// Effects of a diagnosis that nothing separates yet: leaders(), or, where there is one alone,
+/// those that imitate it (cosine above 0.9) too. Fewer than two: nothing is confused.
 std::vector<std::string> confused_effects(const Diagnosis& diagnosis);
 
 /// `fitted` is the model of which `diagnosis` tells what it lacks. The expected margin counts cells

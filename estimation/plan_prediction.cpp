@@ -92,17 +92,31 @@ std::pair<ModelForm, VectorXd> fitted_part(const PlannedModel& planned, size_t c
   return {form, planned.p.head(form.size())};
 }
 
-/// Effective share of a photo's pixels: by camera, and over all.
+/// What a photo brings: the share of its sums that counts beside correlated residuals, and how many
+/// effective residuals a pixel is. Cells are tens of pixels.
+struct Share {
+  double of_sums = 0.0, per_pixel = 0.0;
+};
+
+/// Means over the photos of a camera, and over all.
 struct Shares {
-  std::map<std::string, std::pair<double, double>> by_camera;
-  std::pair<double, double> all;
-  void add(const std::string& camera, double w) {
-    for (auto* sum : {&by_camera[camera], &all}) sum->first += w, sum->second += 1.0;
+  struct Sum {
+    Share total;
+    double photos = 0.0;
+  };
+  std::map<std::string, Sum> by_camera;
+  Sum all;
+  void add(const std::string& camera, const Share& share) {
+    for (Sum* sum : {&by_camera[camera], &all}) {
+      sum->total.of_sums += share.of_sums, sum->total.per_pixel += share.per_pixel;
+      sum->photos += 1.0;
+    }
   }
-  double of(const std::string& camera) const {
+  Share of(const std::string& camera) const {
     const auto found = by_camera.find(camera);
-    const auto& sum = found == by_camera.end() ? all : found->second;
-    return sum.second > 0.0 ? sum.first / sum.second : 0.0;
+    const Sum& sum = found == by_camera.end() ? all : found->second;
+    const double n = std::max(sum.photos, 1.0);
+    return {sum.total.of_sums / n, sum.total.per_pixel / n};
   }
 };
 
@@ -118,7 +132,7 @@ Shares sum_present(const Scene& scene, const ViewPhotos& of_photo, const Evaluat
       const FlowStatistics flow = flow_statistics(photo.flow);
       if (flow.count == 0.0) continue;
       const double w = flow.effective / flow.count;
-      shares.add(photos[photo.photo].camera, w);
+      shares.add(photos[photo.photo].camera, {w, flow.effective / std::max(photo.count, 1.0)});
       out.H += w * photo.sums.JtJ;
       out.count += flow.effective;
     }
@@ -130,11 +144,11 @@ Shares sum_present(const Scene& scene, const ViewPhotos& of_photo, const Evaluat
   return shares;
 }
 
-void add_view(const PhotoEvaluation& photo, double share, PredictedPhotos& to) {
+void add_view(const PhotoEvaluation& photo, const Share& share, PredictedPhotos& to) {
   if (photo.count == 0.0) return;
   if (to.H.size() == 0) to.H = Eigen::MatrixXd::Zero(photo.sums.JtJ.rows(), photo.sums.JtJ.cols());
-  to.H += share * photo.sums.JtJ;
-  to.count += share * photo.count;
+  to.H += share.of_sums * photo.sums.JtJ;
+  to.count += share.per_pixel * photo.count;
   to.views.push_back({photo.example, photo.photo, photo.count, photo.sums.JtJ});
 }
 

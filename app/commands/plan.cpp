@@ -68,9 +68,13 @@ PlannedStep open_step(const Run& run, Bench& bench, size_t index) {
 void check_between(const std::vector<std::string>& between, const Diagnosis& diagnosis) {
   for (const auto& name : between) {
     check_effect(name);
-    for (const auto& score : diagnosis.effects)
-      if (score.effect == name && !score.best)
-        throw InputError({name}, "cannot be planned for: " + score.why_not, "another effect");
+    const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                    [&](const auto& one) { return one.effect == name; });
+    if (score == diagnosis.effects.end())
+      throw InputError({name}, "the step's diagnosis left this effect out",
+                       "run `hookeye diagnose RUN`, which tests the whole catalogue, and again");
+    if (!score->best)
+      throw InputError({name}, "cannot be planned for: " + score->why_not, "another effect");
   }
   if (between.size() == 1)
     throw InputError({between.front()}, "one effect alone is not confused with anything",

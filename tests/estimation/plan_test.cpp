@@ -4,8 +4,11 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <random>
 
+#include "capture_io/capture_reader.h"
+#include "capture_io/yaml_tree.h"
 #include "estimation/effects_scene.h"
 #include "estimation/photo_evaluation.h"
 #include "estimation/plan_prediction.h"
@@ -145,6 +148,43 @@ TEST(PlanCandidates, LinesCanBePutIntoACapture) {
   }
 }
 
+/// The lines of a view, put into a capture, are a camera that sees what the candidate does.
+TEST(PlanCandidates, LinesOfAViewAreACamera) {
+  const ModelForm form = base_form(block_scene());
+  int views = 0;
+  for (const auto& one : plan_candidates(form.realise(form.initial()))) {
+    if (one.kind != PlanCandidate::Kind::view) continue;
+    const YamlNode root = parse_yaml("cameras:\n" + capture_lines(one), "lines");
+    const auto here = std::filesystem::temp_directory_path();
+    const auto cameras =
+        read_cameras(YamlSection(root, "lines", {"cameras"}).need("cameras", ""), {here, here});
+    ASSERT_EQ(cameras.size(), 1u);
+    const Vector3d middle(1, -2, 20);
+    EXPECT_NEAR((cameras[0].project(middle) - one.view.project(middle)).norm(), 0.0, 1e-2);
+    ++views;
+  }
+  EXPECT_GT(views, 0);
+}
+
+/// Another photo by the same camera of the same state says as much again: twice the sums, twice the
+/// effective residuals.
+TEST(Plan, ATwinOfACameraDoublesWhatIsKnown) {
+  const Diagnosed& now = diagnosed();
+  PlanOptions options;
+  options.between = {"gravity", "pressure"};
+  const auto predicted = predict(now.fitted, now.diagnosis, options.between, {}, options);
+  const Prediction& prediction = std::get<Prediction>(predicted);
+  double per_pixel = 0.0;
+  for (const auto& photos : prediction.photos) {
+    double pixels = 0.0;
+    for (const auto& view : photos.views) pixels += view.count;
+    if (pixels == 0.0) continue;
+    per_pixel = std::max(per_pixel, photos.count / pixels);
+  }
+  const auto& photo = now.fitted.evaluation.examples[0].photos[0];
+  EXPECT_NEAR(per_pixel, prediction.count / photo.count, 1e-9);
+}
+
 TEST(Plan, ATiltedBaseSplitsGravityFromPressure) {
   const Diagnosed& now = diagnosed();
   PlanOptions options;
@@ -154,7 +194,8 @@ TEST(Plan, ATiltedBaseSplitsGravityFromPressure) {
   const PlanRating& best = found.ratings.front();
   EXPECT_EQ(best.candidate.name.rfind("tilt_", 0), 0u) << best.sentence;
   EXPECT_LT(found.now.angle_deg(), 15.0) << "they are told apart already";
-  EXPECT_GT(best.worst.margin, std::max(kTie, 10.0 * found.now.margin));
+  // Pictures of 64 px have few effective residuals, and evidence grows with the log of a misfit.
+  EXPECT_GT(best.worst.margin, std::max(kTie, 3.0 * found.now.margin));
   EXPECT_GT(best.worst.angle_deg(), found.now.angle_deg());
   EXPECT_GT(best.px, 0.0);
   EXPECT_THAT(found.sentence, ::testing::HasSubstr(best.candidate.words));
