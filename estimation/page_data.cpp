@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "capture_io/run.h"
+#include "estimation/fitted_fields.h"
 #include "render/renderer.h"
 
 namespace hookeye {
@@ -233,7 +234,8 @@ json flow_json(const Scene& scene, const Model& model, const PhotoEvaluation& ph
 }
 
 json example_json(const Scene& scene, const Model& model, const Shell& shell,
-                  const ExampleEvaluation& example, Renderer& renderer) {
+                  const ExampleEvaluation& example, Renderer& renderer,
+                  const std::map<std::string, VectorXd>& fitted) {
   const TetMesh& mesh = scene.body->mesh;
   const VectorXd& q = example.equilibrium->q;
   Eigen::MatrixXd u(3, shell.nodes.size());
@@ -252,13 +254,17 @@ json example_json(const Scene& scene, const Model& model, const Shell& shell,
   }
   const ShellFields fields = photo_fields(example.photos, sights, shell.nodes.size());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
-  return {{"displacement", array_json(u)},
-          {"residual", array_json(fields.residual.transpose())},
-          {"gap", array_json(fields.gap)},
-          {"strain",
-           array_json(on_shell(scene, shell, largest_principal(state.green_strain)).transpose())},
-          {"von_mises", array_json(on_shell(scene, shell, state.von_mises).transpose())},
-          {"views", std::move(views)}};
+  json out = {
+      {"displacement", array_json(u)},
+      {"residual", array_json(fields.residual.transpose())},
+      {"gap", array_json(fields.gap)},
+      {"strain",
+       array_json(on_shell(scene, shell, largest_principal(state.green_strain)).transpose())},
+      {"von_mises", array_json(on_shell(scene, shell, state.von_mises).transpose())},
+      {"views", std::move(views)}};
+  for (const auto& [name, values] : fitted)
+    out[name] = array_json(on_shell(scene, shell, values).transpose());
+  return out;
 }
 
 }  // namespace
@@ -269,9 +275,10 @@ void write_page_data(const std::filesystem::path& folder, const Scene& scene, co
   const Shell shell = make_shell(scene.body->mesh);
   write_text(folder / "body.json", body_json(scene, shell).dump());
   Renderer renderer(scene.body->surface.mesh);
+  const auto fields = fitted_fields(fitted.form, model);
   for (const auto& example : fitted.evaluation.examples) {
     write_text(folder / ("example-" + scene.capture.examples[example.example].name + ".json"),
-               example_json(scene, model, shell, example, renderer).dump());
+               example_json(scene, model, shell, example, renderer, fields).dump());
     for (const auto& photo : example.photos)
       write_text(folder / ("photo-" + photo_name(scene, photo) + ".json"),
                  flow_json(scene, model, photo).dump());

@@ -15,8 +15,8 @@ namespace hookeye {
 ///   example-EXAMPLE.json  arrays on those nodes: displacement [length], residual (root mean square
 ///                         over noise of the pixels around the node), gap (the displacement that
 ///                         would remove the residual) [length], strain (largest principal Green
-///                         strain), von_mises [stress]; per photo the node's pixel and whether it
-///                         is seen
+///                         strain), von_mises [stress], fitted_fields(); per photo the node's pixel
+///                         and whether it is seen
 ///   photo-EXAMPLE-CAMERA.json  residual displacement of the photo's cells [px], length of one
 ///   pixel
 /// Arrays are base64 of little-endian float32 (`{"components": 3, "float32": "..."}`).

@@ -9,6 +9,7 @@
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
 #include "estimation/energy_curves.h"
+#include "estimation/fitted_fields.h"
 #include "estimation/lost_ellipticity.h"
 #include "estimation/page_data.h"
 #include "estimation/removed.h"
@@ -215,9 +216,9 @@ std::string parameters_csv(const Fitted& fitted) {
   std::string csv = "name,unit,long_name,value,low,high\n";
   const auto parameters = fitted.form.parameters();
   for (size_t i = 0; i < parameters.size(); ++i)
-    csv +=
-        fmt::format("{},{},\"{}\",{:.9g},{:.9g},{:.9g}\n", parameters[i].name, parameters[i].unit,
-                    parameters[i].long_name, fitted.p[i], fitted.low[i], fitted.high[i]);
+    csv += fmt::format("\"{}\",{},\"{}\",{:.9g},{:.9g},{:.9g}\n", parameters[i].name,
+                       parameters[i].unit, parameters[i].long_name, fitted.p[i], fitted.low[i],
+                       fitted.high[i]);
   return csv;
 }
 
@@ -277,8 +278,8 @@ NodalResidual nodal_residual(const Scene& scene, const Model& model,
   return {(sum.array() / count.array().max(1.0)).sqrt(), count};
 }
 
-void write_deformed(const std::filesystem::path& file, const Scene& scene, const Model& model,
-                    const ExampleEvaluation& example) {
+void write_deformed(const std::filesystem::path& file, const Scene& scene, const ModelForm& form,
+                    const Model& model, const ExampleEvaluation& example) {
   const TetMesh& mesh = scene.body->mesh;
   const VectorXd& q = example.equilibrium->q;
   const Eigen::MatrixXd u = Eigen::Map<const Matrix3Xd>(q.data(), 3, mesh.nodes()) - mesh.X;
@@ -294,6 +295,8 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
                                   {"cauchy_stress", state.cauchy_stress, false},
                                   {"von_mises", state.von_mises.transpose(), false},
                                   {"J", state.J.transpose(), false}};
+  for (const auto& [name, values] : fitted_fields(form, model))
+    arrays.push_back({name, values.transpose(), false});
   VectorXd beyond;
   for (size_t part = 0; part < scene.capture.materials.size(); ++part)
     if (const AdditiveModel* own = additive_model(*model.energy.parts.at(part).term)) {
@@ -321,7 +324,7 @@ void write_step(const std::filesystem::path& folder, const Scene& scene, const S
   for (const auto& example : fitted.evaluation.examples) {
     for (const auto& photo : example.photos) write_photo(folder, scene, model, photo);
     write_deformed(folder / "deformed" / (scene.capture.examples[example.example].name + ".vtu"),
-                   scene, model, example);
+                   scene, fitted.form, model, example);
   }
   write_page_data(folder / "page", scene, model, fitted);
 }

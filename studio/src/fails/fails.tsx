@@ -10,7 +10,7 @@ import {run, step, theme} from '../state';
 import {Buttons, Legend, Toolbar} from '../widgets';
 import {FailureBars} from './bars';
 import type {BodyScene, Look} from './scene';
-import {examplesOf, quantities, quantityNames, reach, readable, unitOf, type Quantity, type Surface} from './surface';
+import {examplesOf, hasSign, quantitiesOf, quantityNames, reach, readable, unitOf, type Quantity, type Surface} from './surface';
 import {Picked, picked} from './picked';
 import {useScene} from './use_scene';
 import {surfaceVtu} from './vtu';
@@ -19,10 +19,15 @@ const quantity = signal<Quantity>('residual');
 const amount = signal(1);
 const chosenExample = signal('');
 
-/** Strain has a sign, the others do not. */
+const titles: Partial<Record<Quantity, string>> = {
+  strain: 'strain: largest principal one of Green’s, no unit',
+  stiffness: 'fitted stiffness: factor over the material’s, minus 1',
+  swelling: 'fitted swelling: change of length, no unit',
+};
+
 function rampOf(q: Quantity, most: number): Ramp {
-  const title = q === 'strain' ? 'strain: largest principal one of Green’s, no unit' : `${quantityNames[q]} [${unitOf(q)}]`;
-  return q === 'strain'
+  const title = titles[q] ?? `${quantityNames[q]} [${unitOf(q)}]`;
+  return hasSign(q)
     ? {title, ends: [`${figure(-most)} or less`, '0', `${figure(most)} or more`], scale: diverging, from: -1}
     : {title, ends: ['0', '', `${figure(most)} or more`], scale: sequential, from: 0};
 }
@@ -75,9 +80,10 @@ function Thumbnails(props: {scene: BodyScene | null; surfaces: Map<string, Surfa
 }
 
 function fieldsCsv(s: Surface, name: string): void {
-  const rows: unknown[][] = [['x', 'y', 'z', ...quantities]];
+  const told = quantitiesOf(s);
+  const rows: unknown[][] = [['x', 'y', 'z', ...told]];
   for (let i = 0; i < s.rest.length / 3; ++i)
-    rows.push([s.rest[3 * i], s.rest[3 * i + 1], s.rest[3 * i + 2], ...quantities.map((q) => s.scalars[q][i])]);
+    rows.push([s.rest[3 * i], s.rest[3 * i + 1], s.rest[3 * i + 2], ...told.map((q) => s.scalars[q][i])]);
   saveCsv(`${name}-surface.csv`, rows);
 }
 
@@ -94,6 +100,7 @@ function useSurfaces(now: StepEntry | undefined): {surfaces: Map<string, Surface
     void readable(now, names).then(({all, lost}) => {
       if (!current) return;
       setSurfaces(all);
+      if (!quantitiesOf([...all.values()][0]).includes(quantity.value)) quantity.value = 'residual';
       setFault(lost.length ? `The body in ${listed(lost)} cannot be read.` : '');
       if (!all.has(chosenExample.value)) {
         const by = now.metrics?.chi_by_example ?? {};
@@ -111,7 +118,7 @@ function Tools(props: {scene: BodyScene | null; shown: Surface | undefined; ramp
   const {scene, shown} = props;
   return (
     <Toolbar>
-      <Buttons label="Colour by" values={quantities} chosen={quantity} names={quantityNames} />
+      <Buttons label="Colour by" values={quantitiesOf(shown)} chosen={quantity} names={quantityNames} />
       <label>deformed × {amount.value.toFixed(1)} <input type="range" min="0" max="5" step="0.1" value={amount.value}
         onInput={(e) => (amount.value = Number(e.currentTarget.value))} /></label>
       <button onClick={() => scene?.frame()}>Fit</button>

@@ -4,7 +4,7 @@ import {useEffect, useRef, useState} from 'preact/hooks';
 import {frames, paint} from '../compare/frames';
 import {figure} from '../format';
 import {chosenPhoto, run, step, units, verb, wantedPixel} from '../state';
-import {quantities, quantityNames, unitOf, type Surface, type View} from './surface';
+import {hasSign, quantitiesOf, quantityNames, unitOf, type Surface, type View} from './surface';
 
 /** A node of the surface; -1: none. */
 export const picked = signal(-1);
@@ -83,7 +83,7 @@ export function Picked(props: {s: Surface; others: Surface[]}) {
     <div class="picked">
       <p>Rest point ({x}) {units.value.length}</p>
       <ul>
-        {quantities.map((q) => <li key={q}>{quantityNames[q]} <b>{figure(s.scalars[q][node])}</b> {q === 'strain' ? '' : unitOf(q)}</li>)}
+        {quantitiesOf(s).map((q) => <li key={q}>{quantityNames[q]} <b>{figure(s.scalars[q][node])}</b> {hasSign(q) ? '' : unitOf(q)}</li>)}
       </ul>
       {views.length === 0 ? <p>No photo of this load case sees it.</p> : <p>Photo and residual around it:</p>}
       {views.map((view) => <Glimpse key={view.photo} view={view} node={node} />)}

@@ -15,6 +15,8 @@ interface StoredExample {
   gap: StoredArray;
   strain: StoredArray;
   von_mises: StoredArray;
+  stiffness?: StoredArray;  // what effects have put into the model
+  swelling?: StoredArray;
   views: {photo: string; pixel: StoredArray; seen: StoredArray}[];
 }
 export interface View {
@@ -27,7 +29,7 @@ export interface Surface {
   triangles: Uint32Array;
   regions: Record<string, number[]>;
   displacement: Float32Array;
-  /** By name; NaN where no photo tells. */
+  /** By name; NaN where no photo tells, empty what the step does not have. */
   scalars: Record<Quantity, Float32Array>;
   views: View[];
 }
@@ -38,13 +40,25 @@ export const quantityNames = {
   strain: 'strain',
   von_mises: 'stress',
   displacement: 'displacement',
+  stiffness: 'stiffness change',
+  swelling: 'swelling',
 };
 export type Quantity = keyof typeof quantityNames;
-export const quantities = keysOf(quantityNames);
+const quantities = keysOf(quantityNames);
+
+/** Strains and fitted fields, over 1. */
+export function hasSign(q: Quantity): boolean {
+  return q === 'strain' || q === 'stiffness' || q === 'swelling';
+}
+
+/** Those that the step tells of. */
+export function quantitiesOf(s: Surface | undefined): Quantity[] {
+  return quantities.filter((q) => s && s.scalars[q].length > 0);
+}
 
 export function unitOf(q: Quantity): string {
   if (q === 'residual') return 'σ of noise';
-  if (q === 'strain') return '1';
+  if (hasSign(q)) return '1';
   return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
 }
 
@@ -67,6 +81,7 @@ export async function surface(step: StepEntry, example: string): Promise<Surface
     field<StoredExample>(step.fields['example-' + example]),
   ]);
   const displacement = array(state.displacement);
+  const none = new Float32Array();
   return {
     rest: array(body.rest),
     triangles: new Uint32Array(body.triangles.flat()),
@@ -78,6 +93,8 @@ export async function surface(step: StepEntry, example: string): Promise<Surface
       strain: array(state.strain),
       von_mises: array(state.von_mises),
       displacement: lengths(displacement),
+      stiffness: state.stiffness ? array(state.stiffness) : none,
+      swelling: state.swelling ? array(state.swelling) : none,
     },
     views: state.views.map((view) => ({
       photo: view.photo,

@@ -1,5 +1,5 @@
 // The surface as a VTK file (ASCII), for other programs; the whole body lies in the run folder.
-import {quantities, type Surface} from './surface';
+import {quantitiesOf, type Surface} from './surface';
 
 function data(name: string, components: number, values: ArrayLike<number>, type = 'Float32'): string {
   const list = Array.from(values, (v) => (Number.isFinite(v) ? v : 'nan')).join(' ');
@@ -17,7 +17,7 @@ ${data('Points', 3, s.rest)}</Points>
 <Cells>
 ${data('connectivity', 1, s.triangles, 'Int32')}${data('offsets', 1, Array.from({length: cells}, (_, i) => 3 * (i + 1)), 'Int32')}${data('types', 1, new Array(cells).fill(5), 'UInt8')}</Cells>
 <PointData>
-${data('displacement', 3, s.displacement)}${quantities
+${data('displacement', 3, s.displacement)}${quantitiesOf(s)
     .filter((q) => q !== 'displacement')
     .map((q) => data(q, 1, s.scalars[q]))
     .join('')}</PointData>
