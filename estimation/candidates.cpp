@@ -46,6 +46,9 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
         one.hypothesis.typical[i] =
             parameters[i].positive ? std::abs(parameters[i].value) : parameters[i].typical;
       one.hypothesis.one_sided = parameters.size() == 1 && parameters[0].low >= parameters[0].value;
+      if (parameters.size() > 1)
+        for (const Parameter& parameter : parameters)
+          one.hypothesis.grows.push_back(parameter.low >= parameter.value);
       if (one.hypothesis.one_sided) one.hypothesis.most = parameters[0].high - parameters[0].value;
       column += one.hypothesis.count;
       all.push_back(std::move(one));

@@ -1,5 +1,7 @@
 #include "estimation/contest.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +15,46 @@ bool numerical(const std::string& effect) {
 bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
   return fitted.evaluation.chi(false) <= times * floor.chi &&
          fitted.evaluation.chi(true) <= times * floor.chi;
+}
+
+namespace {
+
+/// The 99.9 % point of chi^2 with n degrees of freedom (Wilson and Hilferty 1931).
+double chi2_point(double n) {
+  constexpr double kNormal999 = 3.0902;
+  return n * std::pow(1.0 - 2.0 / (9.0 * n) + kNormal999 * std::sqrt(2.0 / (9.0 * n)), 3);
+}
+
+}  // namespace
+
+bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::string* why) {
+  const double noise2 = 1.0 + diagnosis.mesh_in_measured;
+  bool fine = true;
+  double worst = 0.0;
+  for (const bool held_out : {false, true}) {
+    double sum = 0.0, count = 0.0;
+    for (const auto& example : fitted.evaluation.examples)
+      for (const auto& measured : example.measured) {
+        if (example.held_out != held_out) continue;
+        sum += measured.r.squaredNorm(), count += 3.0;
+        if (measured.r.norm() <= worst) continue;
+        worst = measured.r.norm();
+        const auto& spec = fitted.form.scene->capture.examples[example.example];
+        const MeasuredSpec& told = spec.measured[measured.index];
+        if (why)
+          *why = fmt::format(
+              "{} in '{}' is {:.3g} times its told noise off",
+              told.kind == MeasuredSpec::Kind::position
+                  ? "a measured position"
+                  : fmt::format("the {} measured on '{}'",
+                                told.kind == MeasuredSpec::Kind::force ? "force" : "moment",
+                                told.region),
+              spec.name, worst);
+      }
+    if (count > 0.0 && sum / noise2 > chi2_point(count)) fine = false;
+  }
+  if (fine && why) why->clear();
+  return fine;
 }
 
 namespace {
@@ -135,12 +177,47 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
   const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
     return total_chi(a.fitted) < total_chi(b.fitted);
   });
-  const Fitted reference = best->fitted;
+  out.reference = best->fitted;
+  out.before = refit_score(step.fitted, out.reference, step.diagnosis.floor);
   for (auto& refit : refits)
-    refit.score = refit_score(refit.fitted, reference, step.diagnosis.floor);
+    refit.score = refit_score(refit.fitted, out.reference, step.diagnosis.floor);
   std::stable_sort(refits.begin(), refits.end(),
                    [](auto& a, auto& b) { return a.score > b.score; });
   return out;
+}
+
+std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
+                                                                const Step& step,
+                                                                const Contest& contest,
+                                                                const DiscoverOptions& options,
+                                                                const DiscoverEvents& events) {
+  std::optional<Pair> best;
+  const auto& refits = contest.refits;
+  for (size_t i = 0; i < refits.size(); ++i)
+    for (size_t k = i + 1; k < refits.size(); ++k) {
+      if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
+      const std::string both = refits[i].effect + " and " + refits[k].effect;
+      if (events.refitting) events.refitting(both);
+      const auto& added = refits[k].fitted.form.ingredients.back();
+      const auto n = static_cast<Eigen::Index>(added->parameters().size());
+      ModelForm form = refits[i].fitted.form;
+      form.ingredients.push_back(added);
+      VectorXd p(refits[i].fitted.p.size() + n);
+      p << refits[i].fitted.p, refits[k].fitted.p.tail(n);
+      FitOptions warm = options.fit;
+      warm.coarse_to_fine = false;
+      auto result = fit(workspace, form, p, warm);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+        if (cancelled(*failure)) return *failure;
+        continue;
+      }
+      auto& fitted = std::get<Fitted>(result);
+      if (events.refitted) events.refitted(both, fitted);
+      const double score = refit_score(fitted, contest.reference, step.diagnosis.floor);
+      if (!best || score > best->second.score)
+        best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
+    }
+  return best;
 }
 
 }  // namespace hookeye

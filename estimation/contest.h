@@ -1,6 +1,7 @@
 // One round of discover(): who is raced, who is refitted, how they rank. Internal to discover.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -26,12 +27,33 @@ struct Refit {
 struct Contest {
   std::vector<Raced> raced;
   std::vector<Refit> refits;  ///< best first
+  double before = 0.0;        ///< score of the step that they start from
+  Fitted reference;           ///< whose correlation all scores are of
 };
+
+/// Forces, moments and positions, of fitted and of held-out examples each, are no further off than
+/// their told noise and what a finer mesh would change in them allow: the sum of squares is below
+/// the 99.9 % point of its distribution. `why` names the worst where they are not.
+bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
+                        std::string* why = nullptr);
 
 /// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
 /// of the best of them.
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events);
+
+/// Two of the refits together, where none is enough alone: each pair fitted from what the two came
+/// to, with the correlation of the contest. The best pair, its first effect the one that stood
+/// before the other; empty where no pair has an equilibrium.
+struct Pair {
+  Refit first;   ///< alone, as it was refitted
+  Refit second;  ///< with both
+};
+std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
+                                                                const Step& step,
+                                                                const Contest& contest,
+                                                                const DiscoverOptions& options,
+                                                                const DiscoverEvents& events);
 
 }  // namespace hookeye

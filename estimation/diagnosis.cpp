@@ -1,6 +1,7 @@
 #include "estimation/diagnosis.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,16 +118,16 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   for (int i = 0; i < score.dof; ++i)
     score.values[i] = std::clamp(score.values[i], parameters[i].low, parameters[i].high);
   score.base_step = -plain.to_base * t;
-  const double structured =
-      context.sums.photo_r2 - context.sums.photo_count * context.sums.pixel_floor2;
-  const double held = context.sums.held_r2 - context.sums.held_count * context.sums.pixel_floor2;
+  const DiagnosisSums& sums = context.sums;
+  const double structured = sums.photo_r2 - sums.photo_count * sums.pixel_floor2;
+  const double held = sums.held_r2 - sums.held_count * sums.pixel_floor2;
   const VectorXd step = joint_step(context.evaluation.columns, weighted, score, null_values);
-  if (structured > 0.0)
-    score.explains = std::clamp(plain.fall(context.sums.fitted.Jtr) / structured, 0.0, 1.0);
-  score.fall = plain.fall(context.sums.fitted.Jtr) / std::max(context.sums.photo_count, 1.0);
+  const double fall = -change(sums.seen.JtJ, sums.seen.Jtr, step);
+  if (structured > 0.0) score.explains = std::clamp(fall / structured, 0.0, 1.0);
+  score.fall = fall / std::max(sums.photo_count, 1.0);
   if (held > 0.0)
-    score.explains_held_out = std::clamp(
-        -change(context.sums.held_out.JtJ, context.sums.held_out.Jtr, step) / held, -1.0, 1.0);
+    score.explains_held_out =
+        std::clamp(-change(sums.seen_held_out.JtJ, sums.seen_held_out.Jtr, step) / held, -1.0, 1.0);
   const Eigen::MatrixXd V = context.sums.noise.block(
       candidate.hypothesis.first, candidate.hypothesis.first, score.dof, score.dof);
   const Eigen::MatrixXd inverse = weighted.inverse();
@@ -173,23 +174,47 @@ std::string moved_by_mesh(const Fitted& fitted, const VectorXd& mesh_shift) {
   return fmt::format("{}", fmt::join(moved, ", "));
 }
 
-/// mesh_shift and mesh_note: what the fitted parameters do once the change `mesh` is there in full.
-void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagnosis& out) {
-  if (base == 0) return;
-  out.mesh_shift = -project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
-  const std::string moved = moved_by_mesh(context.fitted, out.mesh_shift);
-  if (!moved.empty())
-    out.mesh_note = fmt::format(
-        "a mesh of {} times the edge would move {}; the intervals reach there, and adding "
-        "mesh_resolution fits on it",
-        kFinerEdge, moved);
+/// Mean square of what fitted measured values change by the column `at` times `amount`, the first
+/// columns moving by `shift`.
+double change_of_measured(const Evaluation& evaluation, Eigen::Index at, double amount,
+                          const VectorXd& shift) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& measured : example.measured) {
+      if (example.held_out) continue;
+      sum +=
+          (measured.J.leftCols(shift.size()) * shift + amount * measured.J.col(at)).squaredNorm();
+      count += 3.0;
+    }
+  return count > 0.0 ? sum / count : 0.0;
 }
 
-/// mesh_fall, mesh_shift and mesh_note of a model whose mesh has been refined. It has one
-/// parameter, a share of what the refinement changed; typical of it is what the next refinement
-/// would change. The photos fit the share, and what they fit is no bound of the mesh's error in a
-/// modulus, which falls at a rate of its own: the intervals reach for what the rule leaves.
-void tell_of_refined_mesh(const Fitted& fitted, const DiagnosisSums& sums, Diagnosis& out) {
+/// mesh_shift, mesh_note and mesh_in_measured: what the fitted parameters do once the change `mesh`
+/// is there in full, and what an ever finer mesh adds to it.
+void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagnosis& out) {
+  const bool linear = context.scene.body->mesh.order == 1;
+  const double to_the_limit = 1.0 / (1.0 - (linear ? 0.1 : kFinerEdge * kFinerEdge));
+  VectorXd next = VectorXd::Zero(base);
+  if (base > 0) next = -project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
+  out.mesh_shift = to_the_limit * next;
+  out.mesh_in_measured =
+      change_of_measured(context.evaluation, mesh.hypothesis.first, to_the_limit, out.mesh_shift);
+  const std::string moved = moved_by_mesh(context.fitted, next);
+  if (!moved.empty())
+    out.mesh_note = fmt::format(
+        "{} would move {}; the intervals reach there, and adding mesh_resolution fits on it",
+        linear ? std::string("quadratic tetrahedra")
+               : fmt::format("a mesh of {} times the edge", kFinerEdge),
+        moved);
+}
+
+/// mesh_fall, mesh_shift, mesh_note and mesh_in_measured of a model whose mesh has been refined. It
+/// has one parameter, a share of what the refinement changed; typical of it is what the next
+/// refinement would change. The photos fit the share, and what they fit is no bound of the mesh's
+/// error in a modulus, which falls at a rate of its own: the intervals reach for what the rule
+/// leaves.
+void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
+                          const DiagnosisSums& sums, Diagnosis& out) {
   Eigen::Index at = 0;
   for (const auto& ingredient : fitted.form.ingredients) {
     const auto parameters = ingredient->parameters();
@@ -209,8 +234,12 @@ void tell_of_refined_mesh(const Fitted& fitted, const DiagnosisSums& sums, Diagn
       VectorXd by_share = VectorXd::Zero(last + 1);
       by_share.head(last) = -share.to_base.col(0);
       std::swap(by_share[at], by_share[last]);
-      out.mesh_shift = (next - fitted.p[at] * (1.0 - next)) * by_share;
-      const std::string moved = moved_by_mesh(fitted, out.mesh_shift);
+      const double left = next / (1.0 - next) - fitted.p[at];
+      out.mesh_shift = left * by_share;
+      VectorXd others = out.mesh_shift;
+      others[at] = 0.0;
+      out.mesh_in_measured = change_of_measured(evaluation, at, left, others);
+      const std::string moved = moved_by_mesh(fitted, (1.0 - next) * out.mesh_shift);
       if (!moved.empty())
         out.mesh_note = fmt::format(
             "a still finer mesh would move {}, by what the refinement changed; the intervals reach "
@@ -219,6 +248,31 @@ void tell_of_refined_mesh(const Fitted& fitted, const DiagnosisSums& sums, Diagn
     }
     at += static_cast<Eigen::Index>(parameters.size());
   }
+}
+
+/// Scores again, without them, the hypotheses that would step below their bounds.
+void keep_within_bounds(const DiagnosisSums& sums, int base, double r2,
+                        std::vector<Candidate>& candidates,
+                        std::vector<ProjectedHypothesis>& projected, VectorXd& evidence) {
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    Hypothesis& hypothesis = candidates[i].hypothesis;
+    hypothesis = within_bounds(sums.effective.H, base, hypothesis, sums.effective.s);
+    if (hypothesis.held.empty()) continue;
+    projected[i] = project(sums.effective.H, base, hypothesis);
+    evidence[i] = log_evidence(projected[i], sums.effective.s, r2, sums.effective.count,
+                               sums.effective.floor2);
+  }
+}
+
+/// What a finer mesh would do, where one is offered.
+const Candidate* mesh_candidate(const std::vector<Candidate>& candidates,
+                                const VectorXd& evidence) {
+  const Candidate* out = nullptr;
+  double most = -1.0;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (candidates[i].effect->group() == EffectGroup::numerical && evidence[i] > most)
+      out = &candidates[i], most = evidence[i];
+  return out;
 }
 
 void weigh(std::vector<EffectScore>& scores) {
@@ -241,9 +295,8 @@ double least_fall(const Diagnosis& diagnosis) {
 }
 
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
-  constexpr double kToTheLimit = 1.0 / (1.0 - kFinerEdge * kFinerEdge);
   const auto parameters = fitted.form.parameters();
-  fitted.mesh_reach = kToTheLimit * diagnosis.mesh_shift;
+  fitted.mesh_reach = diagnosis.mesh_shift;
   for (int i = 0; i < fitted.mesh_reach.size(); ++i) {
     const double reach = fitted.mesh_reach[i];
     double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
@@ -256,6 +309,34 @@ bool sensors_alone(const Ingredient& ingredient) {
   return touches.measured && !touches.energy && !touches.loading && !touches.photos;
 }
 
+std::vector<std::string> leaders(const Diagnosis& diagnosis) {
+  std::vector<const EffectScore*> named;
+  for (const EffectScore& score : diagnosis.effects)
+    if (nameable(score, diagnosis)) named.push_back(&score);
+  const auto numerical = [](const EffectScore* score) {
+    const Effect* effect = find_effect(score->effect);
+    return effect && effect->group() == EffectGroup::numerical;
+  };
+  std::vector<std::string> out;
+  for (const EffectScore* score : named) {
+    const EffectScore* first = named.front();
+    const bool ties = score->evidence > first->evidence - kTie || score->bic > first->bic;
+    if (score == first || (ties && !numerical(score) && !numerical(first)))
+      out.push_back(score->effect);
+  }
+  return out;
+}
+
+std::string conclusion(const Diagnosis& diagnosis) {
+  const auto all = leaders(diagnosis);
+  if (all.empty()) return "nothing of the catalogue stands out";
+  if (all.size() == 1) return all.front() + " leads";
+  return fmt::format(
+      "{} leads, and {} cannot be told from it by these scores: `hookeye discover` refits all of "
+      "them, `hookeye plan` names loads and views that would separate them",
+      all.front(), fmt::join(all.begin() + 1, all.end(), ", "));
+}
+
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
          ((score.best && sensors_alone(*score.best)) || score.fall >= least_fall(diagnosis));
@@ -266,7 +347,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   Diagnosis out;
   const Scene& scene = *fitted.form.scene;
   std::vector<EffectScore> idle;
-  const std::vector<Candidate> candidates = collect_candidates(fitted, options, idle);
+  std::vector<Candidate> candidates = collect_candidates(fitted, options, idle);
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
   for (const auto& candidate : candidates) ingredients.push_back(candidate.ingredient);
   EvaluationOptions evaluation_options;
@@ -281,7 +362,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
   out.whiteness_p = sums.whiteness_p;
-  tell_of_refined_mesh(fitted, sums, out);
+  tell_of_refined_mesh(fitted, evaluation, sums, out);
 
   std::vector<ProjectedHypothesis> projected;
   VectorXd evidence(candidates.size());
@@ -294,15 +375,18 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   const std::vector<double> null = simulate_null(candidates, projected, sums, options);
   if (!null.empty()) out.gate = null[static_cast<size_t>(0.95 * (null.size() - 1))];
 
+  const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
+  keep_within_bounds(sums, base, r2, candidates, projected, evidence);
+  if (const Candidate* mesh = mesh_candidate(candidates, evidence))
+    tell_of_mesh(context, *mesh, base, out);
   // The null is at the floor, where one noise holds for all; a misfit of the photos is none of the
-  // sensors'.
+  // sensors', and what a finer mesh would change in their values no error of theirs.
   for (size_t i = 0; i < candidates.size(); ++i)
     if (sensors_alone(*candidates[i].ingredient) && sums.measured.count > 0.0)
-      evidence[i] = log_evidence(project(sums.measured.H, base, candidates[i].hypothesis),
-                                 sums.measured.s, without_base(sums.measured, base),
-                                 sums.measured.count, sums.measured.floor2);
+      evidence[i] = log_evidence_of_told_noise(
+          project(sums.measured.H, base, candidates[i].hypothesis), sums.measured.s,
+          without_base(sums.measured, base), sums.measured_count, 1.0 + out.mesh_in_measured);
 
-  const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
   std::map<std::string, size_t> best;
   for (size_t i = 0; i < candidates.size(); ++i) {
     const std::string name = candidates[i].effect->name();
@@ -310,9 +394,11 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   }
   for (const auto& [name, value] : by_effect(candidates, evidence)) {
     EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
-    if (candidates[best[name]].effect->group() == EffectGroup::numerical)
-      tell_of_mesh(context, candidates[best[name]], base, out);
     score.evidence = value;
+    score.bic = sensors_alone(*score.best)
+                    ? value
+                    : bayes_information(projected[best[name]], sums.effective.s, r2,
+                                        sums.effective.count, sums.effective.floor2);
     if (value >= kNameable) score.other_form = other_form(context, candidates, projected, score);
     const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
     score.p_value = (1.0 + above) / (1.0 + null.size());

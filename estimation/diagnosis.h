@@ -31,6 +31,7 @@ struct EffectScore {
   double explains_held_out = 0.0;  ///< the same step on the held-out photos
   double fall = 0.0;               ///< predicted fall of chi^2 on the fitted photos
   double evidence = 0.0;           ///< log marginal likelihood over the current model
+  double bic = 0.0;                ///< of the best candidate: gain less 1/2 dof log N
   double p_value = 1.0;  ///< of the largest evidence in the catalogue under the simulated null
   double weight = 0.0;   ///< evidence among the tested effects, summing to one
   std::vector<Confusion> confused_with;
@@ -50,11 +51,16 @@ struct Diagnosis {
   double effective_count = 0.0;
   double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
-  /// Change of the fitted parameters that a mesh of 0.7 times the edge would bring, to first order;
-  /// where the mesh has been refined, by Richardson's rule, less the share of it that the model
-  /// has. Empty: not known (the mesh cannot be made finer).
+  /// Change of the fitted parameters that an ever finer mesh would bring, to first order: what the
+  /// next refinement brings, extrapolated (Richardson: the error falls with the square of the edge,
+  /// quadratic elements beside clamps and corners, and to a tenth from linear to quadratic ones);
+  /// where the mesh has been refined, less the share that the model has. Empty: not known (the mesh
+  /// cannot be made finer).
   VectorXd mesh_shift;
   std::string mesh_note;  ///< those that move beyond their intervals for noise; empty: none
+  /// Mean square of what the same would change in fitted forces, moments and positions, over their
+  /// told noise: so much of a misfit is the mesh's.
+  double mesh_in_measured = 0.0;
   /// Change of chi^2 by what the next finer mesh would do to a model whose mesh has been refined:
   /// by Richardson's rule, second order, 0.7^2 of what the refinement did. 0: not refined.
   double mesh_fall = 0.0;
@@ -74,8 +80,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
                                                    const DiagnosisOptions& options = {});
 
 /// Extends the intervals, which know of noise alone, to where an ever finer mesh would take the
-/// values. The error falls with the square of the edge (Richardson's extrapolation, second order:
-/// quadratic elements beside clamps and corners): 1/(1 - 0.7^2) times mesh_shift.
+/// values: mesh_shift.
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis);
 
 /// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
@@ -98,5 +103,12 @@ bool sensors_alone(const Ingredient& ingredient);
 /// the mesh's own errors. (The mesh's own effect is not held to the latter: it is not offered
 /// then.)
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
+/// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
+/// or because the information criterion puts them before it (method.md, 3 and 5). Without the
+/// mesh's own error beside others. Empty: nothing can be named.
+std::vector<std::string> leaders(const Diagnosis& diagnosis);
+/// One sentence: what leads, what ties with it and what would tell them apart, or that nothing
+/// stands out.
+std::string conclusion(const Diagnosis& diagnosis);
 
 }  // namespace hookeye

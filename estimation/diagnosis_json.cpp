@@ -20,6 +20,7 @@ json effect_json(const EffectScore& score) {
   out["fall"] = score.fall;
   out["dof"] = score.dof;
   out["evidence"] = score.evidence;
+  out["bic"] = score.bic;
   out["p_value"] = score.p_value;
   out["weight"] = score.weight;
   out["confused_with"] = json::array();
@@ -50,6 +51,10 @@ json to_json(const Diagnosis& diagnosis) {
           {"effective_count", diagnosis.effective_count},
           {"whiteness_p", diagnosis.whiteness_p},
           {"mesh_note", diagnosis.mesh_note},
+          {"mesh_fall", diagnosis.mesh_fall},
+          {"mesh_in_measured", diagnosis.mesh_in_measured},
+          {"leaders", leaders(diagnosis)},
+          {"conclusion", conclusion(diagnosis)},
           {"effects", std::move(effects)}};
 }
 
@@ -77,6 +82,7 @@ EffectScore score_from_json(const json& one, const Model& model) {
   score.explains_held_out = one.at("explains_held_out");
   score.fall = one.at("fall");
   score.evidence = one.at("evidence");
+  score.bic = one.value("bic", score.evidence);
   score.p_value = one.at("p_value");
   score.weight = one.at("weight");
   for (const auto& other : one.at("confusion"))
@@ -102,6 +108,8 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     out.effective_count = document.at("effective_count");
     out.whiteness_p = document.at("whiteness_p");
     out.mesh_note = document.value("mesh_note", "");
+    out.mesh_fall = document.value("mesh_fall", 0.0);
+    out.mesh_in_measured = document.value("mesh_in_measured", 0.0);
     for (const auto& one : document.at("effects"))
       out.effects.push_back(score_from_json(one, model));
   } catch (const std::exception& error) {

@@ -16,10 +16,14 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
   out.noise.setZero(m, m);
   out.null_noise.setZero(m, m);
   int photos = 0;
+  for (NormalEquations* sums : {&out.seen, &out.seen_held_out})
+    sums->JtJ.setZero(m, m), sums->Jtr.setZero(m);
   for (const auto& example : evaluation.examples)
     for (const auto& photo : example.photos) {
       (example.held_out ? out.held_r2 : out.photo_r2) += photo.linear_r2;
       (example.held_out ? out.held_count : out.photo_count) += photo.count;
+      NormalEquations& seen = example.held_out ? out.seen_held_out : out.seen;
+      if (photo.count > 0.0) seen.JtJ += photo.sums.JtJ, seen.Jtr += photo.sums.Jtr;
       if (example.held_out) continue;
       const FlowStatistics flow = flow_statistics(photo.flow);
       if (flow.count == 0.0) continue;
@@ -48,12 +52,19 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
         sums->r2 += measured.r.squaredNorm();
         sums->count += 3.0;
       }
+      out.measured_count += 3.0;
       out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
       out.null_noise += JtJ;
     }
   }
   out.fitted = normal_equations(evaluation, false);
-  out.held_out = normal_equations(evaluation, true);
+  if (out.photo_count + out.held_count > 0.0) return out;
+  out.seen = out.fitted, out.seen_held_out = normal_equations(evaluation, true);
+  for (const auto& example : evaluation.examples)
+    for (const auto& measured : example.measured) {
+      (example.held_out ? out.held_r2 : out.photo_r2) += measured.r.squaredNorm();
+      (example.held_out ? out.held_count : out.photo_count) += 3.0;
+    }
   return out;
 }
 

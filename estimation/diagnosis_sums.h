@@ -14,9 +14,13 @@ struct DiagnosisSums {
   /// For what changes sensors alone: the residuals are those of forces, moments and positions, in
   /// their told noise; photos, in the noise that their misfit shows, only hold the model in place.
   EffectiveSums measured;
-  Eigen::MatrixXd noise;             ///< covariance of effective.s, correlated as this residual is
-  Eigen::MatrixXd null_noise;        ///< the same when only the floor is left
-  NormalEquations fitted, held_out;  ///< plain pixel sums
+  double measured_count = 0.0;  ///< measured values of fitted examples
+  Eigen::MatrixXd noise;        ///< covariance of effective.s, correlated as this residual is
+  Eigen::MatrixXd null_noise;   ///< the same when only the floor is left
+  NormalEquations fitted;       ///< plain sums over pixels and measured values
+  /// Plain sums over pixels alone: what an effect explains is said of photos. Where no example has
+  /// one, over measured values.
+  NormalEquations seen, seen_held_out;
   double pixel_floor2 = 1.0;
   double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;
   double whiteness_p = 1.0;

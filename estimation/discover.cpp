@@ -1,9 +1,12 @@
 #include "estimation/discover.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "estimation/contest.h"
 
@@ -15,7 +18,7 @@ namespace {
 /// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
 /// times all that was fitted before, and name nothing.
 bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis) {
-  return at_floor(fitted, diagnosis.floor) &&
+  return at_floor(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis) &&
          std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
            return numerical(effect.effect) || !nameable(effect, diagnosis);
          });
@@ -99,10 +102,11 @@ bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& flo
   const EffectiveMisfit photos = photo_misfit(with, with, true);
   const EffectiveMisfit measured = measured_misfit(with, true);
   const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(true), 2); };
-  double loss = (measured.r2 - measured_misfit(without, true).r2) / measured.noise(1.0);
+  double loss = measured_misfit(without, true).log_likelihood(1.0) - measured.log_likelihood(1.0);
   if (r2(with) > r2(without) + least)
-    loss += (photos.r2 - photo_misfit(without, with, true).r2) / photos.noise(floor.cell_variance);
-  return 0.5 * loss < kTie;
+    loss += photo_misfit(without, with, true).log_likelihood(floor.cell_variance) -
+            photos.log_likelihood(floor.cell_variance);
+  return loss < kTie;
 }
 
 namespace {
@@ -121,24 +125,36 @@ std::string hidden_by_mesh(const Diagnosis& diagnosis) {
   return "";
 }
 
+bool seen(const Fitted& fitted) {
+  return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
+                     [](const auto& example) { return !example.photos.empty(); });
+}
+
 }  // namespace
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why) {
   const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
-  const bool something = !only_numerical_left(fitted, diagnosis) &&
-                         std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
-                                     [&](const auto& e) { return nameable(e, diagnosis); });
-  if (why)
-    *why = fmt::format(
-        "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
-        held_out > 0.0 ? fmt::format(" ({:.2f} on held-out photos)", held_out / diagnosis.floor.chi)
-                       : "",
-        something                           ? ", and an effect of the catalogue still stands out"
-        : at_floor(fitted, diagnosis.floor) ? ""
-                                            : hidden_by_mesh(diagnosis));
+  const auto standing =
+      only_numerical_left(fitted, diagnosis) ? std::vector<std::string>() : leaders(diagnosis);
+  std::string sensors;
+  const bool photos = at_floor(fitted, diagnosis.floor);
+  const bool measured = measured_explained(fitted, diagnosis, &sensors);
+  if (why) {
+    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
+                       held_out > 0.0
+                           ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
+                                         seen(fitted) ? "photos" : "values")
+                           : "");
+    if (!sensors.empty()) *why += ", but " + sensors;
+    if (!standing.empty())
+      *why += fmt::format(", and {} still stand{} out", fmt::join(standing, " and "),
+                          standing.size() == 1 ? "s" : "");
+    else if (!photos)
+      *why += hidden_by_mesh(diagnosis);
+  }
   if (!tie.empty()) return Verdict::ambiguous;
-  return at_floor(fitted, diagnosis.floor) ? Verdict::explained : Verdict::unexplained;
+  return photos && measured ? Verdict::explained : Verdict::unexplained;
 }
 
 namespace {
@@ -206,16 +222,43 @@ bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& 
   return false;
 }
 
-std::string say(const Discovery& discovery, const std::string& why) {
+/// `why` is judge()'s, `refused` why the effect that came farthest was not added.
+std::string say(const Discovery& discovery, std::string why, const std::string& refused) {
   const std::vector<std::string>& missing = discovery.missing;
+  if (!refused.empty()) why += "; " + refused;
   if (missing.empty() && discovery.verdict == Verdict::explained)
-    return fmt::format("nothing is missing: {}", why);
+    return fmt::format("{}: {}",
+                       refused.empty() ? "nothing is missing"
+                                       : "nothing that is missing "
+                                         "pays for itself",
+                       why);
   if (!discovery.tie.empty())
     return fmt::format("{}; these could not be told apart: {}", why,
                        fmt::join(discovery.tie, ", "));
-  if (missing.empty()) return fmt::format("not in the catalogue: {}", why);
+  if (missing.empty())
+    return fmt::format("{}: {}",
+                       refused.empty() ? "not in the catalogue"
+                                       : "nothing that was tried "
+                                         "explains it",
+                       why);
   return fmt::format("missing: {}; with {}, {}", fmt::join(missing, " and "),
                      missing.size() == 1 ? "it" : "them", why);
+}
+
+/// Why a refit does not stand beside the step that it started from; "" where it does.
+std::string why_refused(const Step& step, double before, const Refit& with) {
+  const double least = least_fall(step.diagnosis);
+  const auto fell = [&](bool held_out) {
+    return std::pow(step.fitted.evaluation.chi(held_out), 2) -
+           std::pow(with.fitted.evaluation.chi(held_out), 2);
+  };
+  if (with.score < before + kNameable)
+    return with.effect + " was refitted, but what it takes away does not pay for its parameters";
+  if (!held_out_allows(with.fitted, step.fitted, step.diagnosis.floor, least))
+    return with.effect + " was refitted, but the held-out examples speak against it";
+  if (fell(false) < least && !sensors_alone(*with.fitted.form.ingredients.back()))
+    return with.effect + " was refitted, but takes away less than renderers and meshes err by";
+  return "";
 }
 
 /// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
@@ -240,6 +283,8 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
   const size_t base_ingredients =
       base_form(workspace.scene().shared_from_this()).ingredients.size();
   out.steps.push_back(std::move(first));
+  std::string refused;           // why the best of the last contest was not added
+  std::optional<Step> together;  // second of a pair, once the first is written
   for (int added = 0;; ++added) {
     Step& step = out.steps.back();
     auto diagnosis = diagnose(workspace, step.fitted, options.diagnosis);
@@ -248,21 +293,38 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     reach_for_mesh(step.fitted, step.diagnosis);
     out.floor = step.diagnosis.floor;
     if (events.step) events.step(step);
+    if (together) {
+      out.steps.push_back(*std::exchange(together, std::nullopt));
+      continue;
+    }
     if (added >= options.max_effects || only_numerical_left(step.fitted, step.diagnosis)) break;
     auto contest = refit_leaders(workspace, step, options, events);
     if (auto* failure = std::get_if<NumericalFailure>(&contest)) return *failure;
-    auto& [raced, ranked] = std::get<Contest>(contest);
+    auto& [raced, ranked, before, reference] = std::get<Contest>(contest);
     if (ranked.empty()) break;
     Refit& winner = ranked.front();
-    const double before = refit_score(step.fitted, winner.fitted, step.diagnosis.floor);
-    const double fell = std::pow(step.fitted.evaluation.chi(false), 2) -
-                        std::pow(winner.fitted.evaluation.chi(false), 2);
-    if (winner.score < before + kNameable ||
-        !held_out_allows(winner.fitted, step.fitted, step.diagnosis.floor,
-                         least_fall(step.diagnosis)) ||
-        (fell < least_fall(step.diagnosis) &&
-         !sensors_alone(*winner.fitted.form.ingredients.back())))
-      break;
+    refused = why_refused(step, before, winner);
+    if (!refused.empty()) {
+      if (at_floor(step.fitted, step.diagnosis.floor) &&
+          measured_explained(step.fitted, step.diagnosis))
+        break;
+      auto tried = refit_pairs(workspace, step, std::get<Contest>(contest), options, events);
+      if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
+      auto& pair = std::get<std::optional<Pair>>(tried);
+      if (!pair || added + 2 > options.max_effects ||
+          !why_refused(step, before, pair->second).empty())
+        break;
+      refused.clear();
+      Step leading;
+      leading.name = leading.added = pair->first.effect;
+      leading.raced = std::move(raced);
+      leading.fitted = std::move(pair->first.fitted);
+      together.emplace();
+      together->name = together->added = pair->second.effect;
+      together->fitted = std::move(pair->second.fitted);
+      out.steps.push_back(std::move(leading));
+      continue;
+    }
     Step next;
     next.name = next.added = winner.effect;
     next.raced = std::move(raced);
@@ -291,7 +353,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
   out.missing = effects_in(last.fitted.form);
   settle_tie(out);
   out.verdict = judge(last.fitted, last.diagnosis, out.tie, &why);
-  out.sentence = say(out, why);
+  out.sentence = say(out, why, refused);
   return out;
 }
 

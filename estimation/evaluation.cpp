@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "estimation/columns.h"
@@ -29,13 +30,28 @@ double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out,
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
+bool without_photos(const std::vector<ExampleEvaluation>& examples) {
+  return std::all_of(examples.begin(), examples.end(),
+                     [](const auto& example) { return example.photos.empty(); });
+}
+
 }  // namespace
 
+double Evaluation::measured_chi(bool held_out) const {
+  double sum = 0.0, count = 0.0;
+  for (const auto& example : examples)
+    if (example.held_out == held_out)
+      for (const auto& measured : example.measured) sum += measured.r.squaredNorm(), count += 3.0;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
 double Evaluation::chi(bool held_out) const {
+  if (without_photos(examples)) return measured_chi(held_out);
   return root_mean(examples, held_out, &PhotoEvaluation::r2);
 }
 
 double Evaluation::linear_chi(bool held_out) const {
+  if (without_photos(examples)) return measured_chi(held_out);
   return root_mean(examples, held_out, &PhotoEvaluation::linear_r2);
 }
 
@@ -86,12 +102,17 @@ struct Workspace::Impl {
     }
   }
 
+  /// Examples of which nothing was seen or measured are candidates of a plan: no equilibrium of
+  /// theirs is asked for, and one that has none stops nothing.
   std::vector<int> wanted(const EvaluationOptions& options) const {
     std::vector<int> examples = options.only;
     if (!examples.empty()) return examples;
-    for (size_t e = 0; e < scene->capture.examples.size(); ++e)
-      if (scene->capture.examples[e].validate ? options.held_out : options.fitted)
+    for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
+      const ExampleSpec& example = scene->capture.examples[e];
+      if (example.photos.empty() && example.measured.empty()) continue;
+      if (example.validate ? options.held_out : options.fitted)
         examples.push_back(static_cast<int>(e));
+    }
     return examples;
   }
 

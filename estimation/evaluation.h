@@ -76,7 +76,10 @@ struct Evaluation {
   std::vector<ExampleEvaluation> examples;
   int columns = 0;
   const ExampleEvaluation* find(int example) const;
-  double chi(bool held_out) const;         ///< root mean square of photo residuals over noise
+  /// Root mean square of photo residuals over noise; where no example has a photo, measured_chi().
+  double chi(bool held_out) const;
+  /// Of forces, moments and positions over their told noise; 0: none is measured.
+  double measured_chi(bool held_out) const;
   double linear_chi(bool held_out) const;  ///< the same from linear_r2 (needs pictures)
   double rms_px(bool held_out) const;      ///< of the residual displacement (needs pictures)
   double motion_px() const;  ///< the same, cruder, of all photos here (needs registered)

@@ -28,7 +28,9 @@ ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis
   const auto D = hypothesis.typical.asDiagonal();
   const Eigen::MatrixXd before =
       D * H.block(hypothesis.first, hypothesis.first, hypothesis.count, hypothesis.count) * D;
-  const Eigen::MatrixXd after = before - D * H_ac.transpose() * out.to_base * D;
+  Eigen::MatrixXd after = before - D * H_ac.transpose() * out.to_base * D;
+  for (size_t i = 0; i < hypothesis.held.size(); ++i)
+    if (hypothesis.held[i]) after.row(i).setZero(), after.col(i).setZero();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (after + after.transpose()));
   out.modes = eigen.eigenvectors();
   out.eigenvalues = eigen.eigenvalues();
@@ -68,6 +70,54 @@ Eigen::VectorXd ProjectedHypothesis::step(const Eigen::VectorXd& s) const {
 double ProjectedHypothesis::fall(const Eigen::VectorXd& s) const {
   const Eigen::VectorXd t = step(s);
   return -2.0 * t.dot(projected_score(s)) - t.dot(M * t);
+}
+
+Hypothesis within_bounds(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis,
+                         const Eigen::VectorXd& s) {
+  Hypothesis out = hypothesis;
+  if (out.grows.empty()) return out;
+  for (int left = 0; left < out.count; ++left) {
+    const Eigen::VectorXd step = project(H, base, out).step(s);
+    int worst = -1;
+    for (int i = 0; i < out.count; ++i)
+      if (out.grows[i] && step[i] < 0.0 &&
+          (worst < 0 || step[i] / out.typical[i] < step[worst] / out.typical[worst]))
+        worst = i;
+    if (worst < 0) break;
+    out.held.resize(out.count, false);
+    out.held[worst] = true;
+  }
+  return out;
+}
+
+double bayes_information(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
+                         double count, double floor2) {
+  const auto likelihood = [&](double left) {
+    const double noise = std::max(floor2, left / count);
+    return -0.5 * count * std::log(noise) - 0.5 * left / noise;
+  };
+  const auto dof = static_cast<double>((hypothesis.eigenvalues.array() > 0.0).count());
+  return likelihood(std::max(0.0, r2 - hypothesis.fall(s))) - likelihood(r2) -
+         0.5 * dof * std::log(std::max(count, 2.0));
+}
+
+double log_evidence_of_told_noise(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s,
+                                  double r2, double count, double noise2) {
+  const double noise =
+      std::max(noise2, std::max(0.0, r2 - hypothesis.fall(s)) / std::max(count, 1.0));
+  const Eigen::VectorXd score =
+      hypothesis.modes.transpose() * hypothesis.typical.cwiseProduct(hypothesis.projected_score(s));
+  double best = 0.0;  // prior variance 0: the effect is not there
+  for (int k = -16; k <= 16; ++k) {
+    const double prior = std::pow(10.0, 0.5 * k);  // variance over typical^2
+    double value = 0.0;
+    for (int i = 0; i < score.size(); ++i)
+      value += 0.5 * score[i] * score[i] * prior /
+                   (noise * (prior * hypothesis.eigenvalues[i] + noise)) -
+               0.5 * std::log1p(prior * hypothesis.eigenvalues[i] / noise);
+    best = std::max(best, value);
+  }
+  return best;
 }
 
 double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <vector>
 
 namespace hookeye {
 
@@ -23,6 +24,9 @@ struct Hypothesis {
   Eigen::VectorXd typical;  ///< prior scale of each parameter
   bool one_sided = false;   ///< one parameter that may only grow from its null
   double most = std::numeric_limits<double>::infinity();  ///< and by no more than this
+  /// Parameters that may only grow from their nulls; empty: none of several (one: one_sided).
+  std::vector<bool> grows = {};
+  std::vector<bool> held = {};  ///< parameters that stay at their nulls; empty: none
 };
 
 /// Quadratic form left after the base columns: M = H_cc - H_ca H_aa^+ H_ac, eigen-decomposed in
@@ -48,9 +52,23 @@ struct ProjectedHypothesis {
 };
 ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis);
 
+/// The hypothesis with those of its growing parameters held that the step to its best fit would
+/// take below their nulls: non-negative least squares, one parameter out at a time.
+Hypothesis within_bounds(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis,
+                         const Eigen::VectorXd& s);
+
 /// log p(r | effect) - log p(r | no effect) for the score s and |r|^2 = r2 (base part removed).
 double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
                     double count, double floor2);
+/// The same where the noise is told (sensors): `noise2`, or what the effect itself leaves of few
+/// values, if that is more, in both likelihoods. One value 100 deviations off speaks for whatever
+/// removes it, and an effect that removes half of a misfit does not feed on the other half.
+double log_evidence_of_told_noise(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s,
+                                  double r2, double count, double noise2);
+/// Gain of the best fit in log-likelihood, noise at least the floor, less 1/2 dof log N (Schwarz
+/// 1978).
+double bayes_information(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
+                         double count, double floor2);
 
 /// log of the mean of exp: evidence of an effect with several forms.
 double log_mean_exp(const Eigen::VectorXd& values);

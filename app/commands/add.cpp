@@ -2,10 +2,13 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
+#include "app/text.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -16,27 +19,31 @@ struct AddArguments {
   AddRequest request;
 };
 
+/// "removed 83 % on the fitted photos (chi 5.1 -> 1.3)", or how much came back.
+std::string outcome(const Step& before, const Step& after, const Floor& floor, bool held_out) {
+  const double was = before.fitted.evaluation.chi(held_out);
+  const double is = after.fitted.evaluation.chi(held_out);
+  const double f2 = floor.chi * floor.chi;
+  const double share =
+      was * was > f2 ? (was * was - std::max(is * is, f2)) / (was * was - f2) : 0.0;
+  return fmt::format("{} on the {} photos (chi {:.3f} -> {:.3f})",
+                     was * was <= f2 ? std::string("nothing to remove")
+                     : share >= 0.0  ? fmt::format("removed {:.0f} %", 100.0 * share)
+                                     : fmt::format("misfit {:.2g} times as large", 1.0 - share),
+                     held_out ? "held-out" : "fitted", was, is);
+}
+
 /// Did it pay? On the photos that no fit has seen, where there are such.
-void say_outcome(const Step& before, const Step& after, const Floor& floor, Session& session) {
-  auto removed = [&](bool held) {
-    const double f2 = floor.chi * floor.chi;
-    const double was = std::pow(before.fitted.evaluation.chi(held), 2) - f2;
-    const double is = std::pow(after.fitted.evaluation.chi(held), 2) - f2;
-    return was > 0.0 ? 100.0 * (1.0 - std::max(is, 0.0) / was) : 0.0;
-  };
-  session.say("outcome:   removed {:.0f} % on the fitted photos (chi {:.3f} -> {:.3f})",
-              removed(false), before.fitted.evaluation.chi(false),
-              after.fitted.evaluation.chi(false));
-  const double held = before.fitted.evaluation.chi(true);
-  if (held > 0.0) {
-    session.say(", {:.0f} % on the held-out ones ({:.3f} -> {:.3f})", removed(true), held,
-                after.fitted.evaluation.chi(true));
-    if (!held_out_allows(after.fitted, before.fitted, floor, least_fall(before.diagnosis)))
-      session.warn(after.name +
-                   " does not pay on the held-out photos; take it back with "
-                   "--take-back");
-  }
-  session.say("\n");
+void say_outcome(const Step& before, const Step& after, const Floor& floor, bool taken_back,
+                 Session& session) {
+  const bool held_out = before.fitted.evaluation.chi(true) > 0.0;
+  session.say("{}",
+              wrapped(fmt::format("outcome:   {}{}", outcome(before, after, floor, false),
+                                  held_out ? ", " + outcome(before, after, floor, true) : "")));
+  if (!taken_back &&
+      !held_out_allows(after.fitted, before.fitted, floor, least_fall(before.diagnosis)))
+    session.warn(after.name +
+                 " does not pay on the held-out photos; take it back with --take-back");
 }
 
 void run_add(const AddArguments& arguments, Session& session) {
@@ -45,18 +52,26 @@ void run_add(const AddArguments& arguments, Session& session) {
   check_stands(run, arguments.request);
   Bench bench = open_capture(run.capture(), session);
   Step current = newest_step(run, bench);
-  if (auto stored = stored_diagnosis(run, current.fitted)) current.diagnosis = std::move(*stored);
   AddOptions options;
   options.fit = fit_options();
   options.diagnosis.cancel = &interrupted();
+  if (auto stored = stored_diagnosis(run, current.fitted)) {
+    current.diagnosis = std::move(*stored);
+  } else if (!arguments.request.take_back) {
+    spdlog::info("diagnosing the newest step");
+    diagnose_newest(run, bench, current, options.diagnosis);
+  }
   options.doing = [](const std::string& work) { spdlog::info("{}", work); };
   options.note = [&session](const std::string& sentence) { session.say("{}", wrapped(sentence)); };
-  const Step step = next_step(bench, current, arguments.request, options);
+  Step step = next_step(bench, current, arguments.request, options);
   const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
+  say_outcome(current, step, floor, arguments.request.take_back, session);
+  spdlog::info("diagnosing the new step");
+  diagnose_newest(run, bench, step, options.diagnosis);
   session.document = run.timeline()["steps"].back();
-  say_outcome(current, step, floor, session);
-  session.say("{}written to {}\n", parameter_table(step.fitted), folder.string());
+  session.say("{}{}", parameter_table(step.fitted), wrapped(conclusion(step.diagnosis)));
+  session.say("written to {}\n", folder.string());
 }
 
 }  // namespace

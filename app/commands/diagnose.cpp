@@ -15,13 +15,12 @@ void run_diagnose(const std::string& folder, Session& session) {
   Step step = newest_step(run, bench);
   DiagnosisOptions options;
   options.cancel = &interrupted();
-  step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
-  reach_for_mesh(step.fitted, step.diagnosis);
-  record_diagnosis(run, step);
+  diagnose_newest(run, bench, step, options);
   session.document = to_json(step.diagnosis);
   session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name, step.fitted.evaluation.chi(false),
               step.diagnosis.floor.chi);
   session.say("{}", diagnosis_table(step.diagnosis));
+  session.say("{}", wrapped(conclusion(step.diagnosis)));
   if (const auto& note = step.diagnosis.mesh_note; !note.empty()) session.say("{}", wrapped(note));
   say_pictures(run.steps().back(), session);
 }

@@ -66,9 +66,9 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     tell_floor(timeline, found.floor);
   });
   session.document = run.timeline();
-  session.say("{}", steps_table(found));
-  for (size_t i = 1; i < found.steps.size(); ++i)
-    session.say("{}", choice_table(found.steps[i - 1], found.steps[i]));
+  const auto& steps = run.timeline().at("steps");
+  session.say("{}", steps_table(run.timeline()));
+  for (size_t i = 1; i < steps.size(); ++i) session.say("{}", choice_table(steps[i - 1], steps[i]));
   session.say("\n{}", parameter_table(found.steps.back().fitted));
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));

@@ -127,6 +127,12 @@ void record_diagnosis(Run& run, const Step& step) {
   });
 }
 
+void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions& options) {
+  step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
+  reach_for_mesh(step.fitted, step.diagnosis);
+  record_diagnosis(run, step);
+}
+
 void say_pictures(const std::filesystem::path& step, const Session& session) {
   session.say("pictures: {}\n", (step / "compare").string());
   if (std::filesystem::exists(step / "removed"))

@@ -52,6 +52,9 @@ void tell_floor(nlohmann::json& timeline, const Floor& floor);
 /// Puts a diagnosis into the newest step and the timeline. What the fit wrote stays as it is.
 void record_diagnosis(Run& run, const Step& step);
 
+/// Diagnoses the newest step and writes it down; its intervals reach for the mesh.
+void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions& options);
+
 /// Names the folders of a step's pictures.
 void say_pictures(const std::filesystem::path& step, const Session& session);
 

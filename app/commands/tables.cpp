@@ -25,6 +25,11 @@ std::string few(const std::vector<Confusion>& confused) {
   return text;
 }
 
+/// 0: null, or left out.
+double number_in(const nlohmann::json& object, const char* key) {
+  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : 0.0;
+}
+
 }  // namespace
 
 std::string parameter_table(const Fitted& fitted) {
@@ -34,7 +39,7 @@ std::string parameter_table(const Fitted& fitted) {
   for (size_t i = 0; i < parameters.size(); ++i)
     rows.push_back({parameters[i].name, fmt::format("{:.5g}", fitted.p[i]),
                     fmt::format("{:.5g} .. {:.5g}", fitted.low[i], fitted.high[i]),
-                    parameters[i].unit, parameters[i].long_name.substr(0, 40)});
+                    parameters[i].unit, parameters[i].long_name});
   std::string text = table(rows);
   for (const auto& sentence : fitted.undetermined) text += wrapped(sentence, 2);
   return text;
@@ -70,43 +75,56 @@ std::string name_of(const Step& step) {
              : fmt::format("{}, without {}", step.name, fmt::join(step.dropped, ", "));
 }
 
-std::string steps_table(const Discovery& discovery) {
+std::string steps_table(const nlohmann::json& timeline) {
   std::vector<std::vector<std::string>> rows = {
       {"step", "chi fitted", "chi held out", "rms px", "over the floor"}};
-  const double top = discovery.steps.front().fitted.evaluation.chi(false) / discovery.floor.chi;
-  for (const auto& step : discovery.steps) {
-    const double over = step.fitted.evaluation.chi(false) / discovery.floor.chi;
-    rows.push_back({name_of(step), chi_text(step.fitted.evaluation.chi(false)),
-                    chi_text(step.fitted.evaluation.chi(true)),
-                    fmt::format("{:.3f}", step.fitted.evaluation.rms_px(false)),
+  const auto& steps = timeline.at("steps");
+  const double floor = timeline.at("floor").at("chi");
+  const double top = steps.front().at("chi_fit").get<double>() / floor;
+  for (const auto& step : steps) {
+    const double chi = step.at("chi_fit"), over = chi / floor;
+    std::string name = step.at("name");
+    const auto dropped = step.value("dropped", std::vector<std::string>());
+    if (!dropped.empty()) name += fmt::format(", without {}", fmt::join(dropped, ", "));
+    rows.push_back({name, chi_text(chi), chi_text(number_in(step, "chi_validate")),
+                    fmt::format("{:.3f}", number_in(step, "rms_px_fit")),
                     fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
   }
   return table(rows);
 }
 
-std::string choice_table(const Step& before, const Step& step) {
+std::string choice_table(const nlohmann::json& before, const nlohmann::json& step) {
   constexpr size_t kMost = 6;
-  if (step.raced.size() < 2) return "";
+  const nlohmann::json none = nlohmann::json::array();
+  const auto raced = step.value("raced", none), rivals = step.value("rivals", none);
+  if (raced.size() < 2) return "";
   std::vector<std::vector<std::string>> rows = {
       {"effect", "evidence", "tried: chi fitted", "held out", "refitted: chi fitted", "held out"}};
-  const auto chi = [](double value) { return value > 0.0 ? fmt::format("{:.2f}", value) : "-"; };
-  for (const Raced& raced : step.raced) {
-    const auto same = [&](const auto& one) { return one.effect == raced.effect; };
-    const auto& scores = before.diagnosis.effects;
-    const auto score = std::find_if(scores.begin(), scores.end(), same);
-    const auto refit = std::find_if(step.rivals.begin(), step.rivals.end(), same);
-    const bool refitted = refit != step.rivals.end();
-    if (rows.size() > kMost && !refitted) continue;
-    rows.push_back({raced.effect,
-                    score == scores.end() ? "-" : fmt::format("{:.1f}", score->evidence),
-                    chi(raced.chi_fit), chi(raced.chi_validate),
-                    refitted ? chi(refit->chi_fit) : "", refitted ? chi(refit->chi_validate) : ""});
+  const auto chi = [](const nlohmann::json& one, const char* key) {
+    const double value = number_in(one, key);
+    return value > 0.0 ? fmt::format("{:.2f}", value) : "-";
+  };
+  const auto of = [](const nlohmann::json& list, const std::string& effect) {
+    for (const auto& one : list)
+      if (one.at("effect") == effect) return one;
+    return nlohmann::json();
+  };
+  const auto scores = before.value("diagnosis", none);
+  for (const auto& one : raced) {
+    const std::string effect = one.at("effect");
+    const nlohmann::json score = of(scores, effect), refit = of(rivals, effect);
+    if (rows.size() > kMost && refit.is_null()) continue;
+    rows.push_back({effect,
+                    score.is_null() ? "-" : fmt::format("{:.1f}", number_in(score, "evidence")),
+                    chi(one, "chi_fit"), chi(one, "chi_validate"),
+                    refit.is_null() ? "" : chi(refit, "chi_fit"),
+                    refit.is_null() ? "" : chi(refit, "chi_validate")});
   }
   return "\n" +
          wrapped(
              fmt::format("why {}: what each of the {} effects that stood out leaves (tried: after "
                          "two steps of its refit, half-size photos)",
-                         step.added, step.raced.size())) +
+                         step.at("added").get<std::string>(), raced.size())) +
          table(rows);
 }
 

@@ -1,6 +1,7 @@
 // What a fit, a diagnosis and a search say on a terminal, within 100 columns.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "estimation/discover.h"
@@ -11,10 +12,11 @@ std::string parameter_table(const Fitted& fitted);
 /// The leading `most` effects, one sentence on those that may be named, and why others were not
 /// tested.
 std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
-/// How the error fell.
-std::string steps_table(const Discovery& discovery);
-/// What the effect that was added to `before` was chosen from. Empty: nothing else stood out.
-std::string choice_table(const Step& before, const Step& step);
+/// How the error fell over the steps of `run.json`, this run's and those it went on from.
+std::string steps_table(const nlohmann::json& timeline);
+/// What the effect that `step` of `run.json` added to `before` was chosen from. Empty: nothing else
+/// stood out.
+std::string choice_table(const nlohmann::json& before, const nlohmann::json& step);
 
 /// "gravity", "strain_stiffening, without softening".
 std::string name_of(const Step& step);

@@ -86,16 +86,19 @@ void RefitJob::refit(const AddRequest& request) {
   FitOptions quiet = wanted.fit;
   quiet.progress = nullptr;  // no fit yet: its "final" would be taken for the end
   Step current = newest_step(run, *bench_, quiet);
-  if (auto stored = stored_diagnosis(run, current.fitted)) current.diagnosis = std::move(*stored);
+  if (auto stored = stored_diagnosis(run, current.fitted)) {
+    current.diagnosis = std::move(*stored);
+  } else if (!request.take_back) {
+    stage("diagnosing the newest step");
+    diagnose_newest(run, *bench_, current, wanted.diagnosis);
+  }
   Step step = next_step(*bench_, current, request, wanted);
   stage("writing the step");
   record(run, step,
          fmt::format("hookeye add {} {}{}", shell_word(run_.string()), request.effect,
                      request.take_back ? " --take-back" : ""));
   stage("diagnosing the new step");
-  step.diagnosis = value_or_fail(diagnose(bench_->workspace, step.fitted, wanted.diagnosis));
-  reach_for_mesh(step.fitted, step.diagnosis);
-  record_diagnosis(run, step);
+  diagnose_newest(run, *bench_, step, wanted.diagnosis);
   finish("done",
          fmt::format("χ {:.4g} → {:.4g} on the fitted photos", current.fitted.evaluation.chi(false),
                      step.fitted.evaluation.chi(false)));

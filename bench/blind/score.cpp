@@ -34,7 +34,7 @@ bool numerical(const std::string& name) {
 
 bool Score::right_first() const {
   if (left_out)
-    return verdict != "explained" || first == "none" || first == "stiffness_field" ||
+    return verdict == "unexplained" || first == "none" || first == "stiffness_field" ||
            first == "swelling";
   if (hidden == "none") return first == "none";
   const auto names = effects_of(hidden);

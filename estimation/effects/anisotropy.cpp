@@ -94,9 +94,11 @@ class Anisotropy final : public Effect {
     const auto n = numbers_in(ingredient.variant());
     const double mu = initial_shear_modulus(model.energy);
     const std::string stress = model.scene->capture.units.stress();
+    // Pulled by e, incompressible: (e, -e/2) in the plane gives 5/4 k, and along the axis, -e/2
+    // twice in the plane, 1/2 k.
     if (starts_with(ingredient.variant(), "across"))
       return fmt::format("{} % stiffer in the plane across axis {:g} than along it (modulus {} {})",
-                         figure(100.0 * values[0] / (3.0 * mu)), n.at(0), figure(values[0]),
+                         figure(100.0 * 0.75 * values[0] / (3.0 * mu)), n.at(0), figure(values[0]),
                          stress);
     Vector3d a = Vector3d(n.at(0), n.at(1), n.at(2)).normalized();
     if (values.size() == 3) a = turned(a, values[1], values[2]);

@@ -211,8 +211,11 @@ TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
   EXPECT_THAT(found.out, HasSubstr("why " + added + ": what each of "));
   for (const char* key : {"verdict", "sentence", "missing", "tie"})
     EXPECT_TRUE(judged.contains(key)) << key;
-  // The same command on a finished run: no other step, the same verdict.
-  ASSERT_EQ(hookeye("discover capture -o run").status, 0);
+  // The same command on a finished run: no other step, the same verdict, and all steps are told.
+  const Result again = hookeye("discover capture -o run");
+  ASSERT_EQ(again.status, 0);
+  EXPECT_THAT(again.out, HasSubstr("\n  base "));
+  EXPECT_THAT(again.out, HasSubstr("why " + added + ": what each of "));
   EXPECT_EQ(timeline().at("steps").size(), judged.at("steps").size());
   EXPECT_EQ(timeline().at("verdict"), judged.at("verdict"));
 }
@@ -245,9 +248,25 @@ TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   // What is on disk is not diagnosed again.
   const Result added = hookeye("add run gravity");
   ASSERT_EQ(added.status, 0) << added.err;
-  EXPECT_THAT(added.err, Not(HasSubstr("diagnosing")));
-  // 01-gravity has no diagnosis yet.
-  EXPECT_THAT(hookeye("add run swelling").err, HasSubstr("diagnosing the newest step"));
+  EXPECT_THAT(added.err, Not(HasSubstr("diagnosing the newest step")));
+  // The new step is diagnosed at once: its intervals reach for the mesh, and what it lacks is
+  // known.
+  EXPECT_THAT(added.err, HasSubstr("diagnosing the new step"));
+  EXPECT_TRUE(fs::exists(folder_ / "run/steps/01-gravity/diagnosis.json"));
+  EXPECT_THAT(hookeye("add run swelling").err, Not(HasSubstr("diagnosing the newest step")));
+}
+
+/// What `add` must know of a step that nobody has diagnosed is kept with that step.
+TEST_F(FittedRun, AddKeepsTheDiagnosisThatItMakes) {
+  const Result added = hookeye("add run gravity");
+  ASSERT_EQ(added.status, 0) << added.err;
+  EXPECT_THAT(added.err, HasSubstr("diagnosing the newest step"));
+  EXPECT_TRUE(fs::exists(folder_ / "run/steps/00-base/diagnosis.json"));
+  EXPECT_FALSE(timeline().at("steps").at(0).at("diagnosis").empty());
+  const Result back = hookeye("add run gravity --take-back");
+  ASSERT_EQ(back.status, 0) << back.err;
+  EXPECT_THAT(back.out, HasSubstr("times as large on the fitted photos"));
+  EXPECT_THAT(back.err, Not(HasSubstr("take it back")));
 }
 
 /// For every photo one picture and its residual: photo, model, residual and arrows side by side.

@@ -56,6 +56,55 @@ TEST(Evidence, FindsASignalAndPrefersTheSmallerForm) {
   }
 }
 
+/// Sensors: few values of told noise. What is left by the effect itself is noise to it, so that one
+/// that removes half of a misfit does not feed on the other half; and a single value far off
+/// speaks.
+TEST(Evidence, ToldNoiseLetsFewValuesSpeak) {
+  const auto of = [](const MatrixXd& J, const VectorXd& r, double noise2) {
+    const auto n = static_cast<int>(J.cols());
+    const MatrixXd H = J.transpose() * J;
+    return log_evidence_of_told_noise(project(H, 0, {0, n, VectorXd::Ones(n)}), J.transpose() * r,
+                                      r.squaredNorm(), static_cast<double>(r.size()), noise2);
+  };
+  const MatrixXd offset = MatrixXd::Identity(3, 3);
+  const Eigen::Vector3d far(100.0, 0.0, 0.0);
+  EXPECT_GT(of(offset, far, 1.0), 1000.0);
+  EXPECT_LT(of(offset, far, 1e4), 1.0) << "the mesh alone would change it by as much";
+  EXPECT_LT(of(offset, Eigen::Vector3d(1.0, -0.5, 0.8), 1.0), 1.0);
+  // Ten values; one parameter that takes away the mean of them.
+  const VectorXd ones = VectorXd::Ones(10);
+  EXPECT_GT(of(ones, 10.0 * ones, 1.0), 300.0);
+  VectorXd scattered = 10.0 * ones;
+  for (int i = 0; i < 10; ++i) scattered[i] += i % 2 ? 30.0 : -30.0;
+  EXPECT_LT(of(ones, scattered, 1.0), 3.0);
+}
+
+/// A clamp cannot be stiffer than rigid along its normal: the parameter that would have to shrink
+/// below its null is held, and the evidence is the other's alone.
+TEST(Evidence, WhatMayOnlyGrowDoesNotShrink) {
+  std::mt19937 engine(8);
+  Data data = noise(engine, 200, 3);
+  data.r -= 0.6 * data.J.col(1) - 0.5 * data.J.col(2);
+  const MatrixXd H = data.J.transpose() * data.J;
+  const VectorXd s = data.J.transpose() * data.r;
+  Hypothesis both{1, 2, VectorXd::Ones(2)}, first{1, 1, VectorXd::Ones(1)};
+  both.grows = {true, true};
+  const Hypothesis kept = within_bounds(H, 1, both, s);
+  EXPECT_EQ(kept.held, std::vector<bool>({false, true}));
+  const auto p = project(H, 1, kept);
+  EXPECT_EQ(p.step(s)[1], 0.0);
+  EXPECT_NEAR(p.step(s)[0], project(H, 1, first).step(s)[0], 1e-12);
+  EXPECT_NEAR(p.fall(s), project(H, 1, first).fall(s), 1e-9);
+  const double r2 = data.r.squaredNorm();
+  EXPECT_NEAR(log_evidence(p, s, r2, 200.0, 1.0),
+              log_evidence(project(H, 1, first), s, r2, 200.0, 1.0), 1e-9);
+  EXPECT_LT(bayes_information(p, s, r2, 200.0, 1.0),
+            bayes_information(project(H, 1, both), s, r2, 200.0, 1.0));
+  // Where both would grow none is held.
+  both.grows = {true, false};
+  EXPECT_TRUE(within_bounds(H, 1, both, s).held.empty());
+}
+
 TEST(Evidence, WhatTheBaseCanImitateIsNoEvidence) {
   std::mt19937 engine(7);
   Data data = noise(engine, 200, 3);

@@ -1,6 +1,9 @@
 // Fits from one kind of measurement alone, without any photo.
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "estimation/discover.h"
 #include "estimation/effects_scene.h"
 #include "estimation/fit.h"
 
@@ -68,6 +71,77 @@ TEST(MeasuredFit, AForceAlone) { expect_found("twist", measured(Kind::force, 0.0
 TEST(MeasuredFit, AMomentAlone) { expect_found("twist", measured(Kind::moment, 0.5)); }
 
 TEST(MeasuredFit, APositionAlone) { expect_found("pull", measured(Kind::position, 0.1)); }
+
+/// The block without photos; positions of its surface are measured in all examples, made with a
+/// weight that no one tells and noise.
+std::shared_ptr<const Scene> tracked_block(double sigma) {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  for (size_t i = 0; i < scene->capture.examples.size(); ++i) {
+    ExampleSpec& example = scene->capture.examples[i];
+    example.photos.clear();
+    scene->photos[i].clear();
+    example.measured.clear();
+    for (const double z : {10.0, 20.0, 30.0, 40.0})
+      for (const double x : {-10.0, 10.0}) {
+        MeasuredSpec one = measured(Kind::position, sigma);
+        one.point = {x, x < 0.0 ? -8.0 : 8.0, z};
+        example.measured.push_back(one);
+      }
+  }
+  ModelForm form = base_form(scene);
+  form.ingredients.push_back(find_effect("gravity")->candidate(form.realise(form.initial()), ""));
+  VectorXd p = form.initial();
+  p.tail<3>() = Eigen::Vector3d(9000.0, 0.0, -20000.0);
+  Workspace workspace(scene);
+  EvaluationOptions all;
+  all.held_out = true;
+  const auto seen = std::get<Evaluation>(workspace.evaluate(form, p, all));
+  auto known = std::make_shared<Scene>(*scene);
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal(0.0, sigma);
+  for (const auto& example : seen.examples)
+    for (const auto& one : example.measured) {
+      Eigen::Vector3d& value =
+          known->capture.examples[static_cast<size_t>(example.example)].measured[one.index].value;
+      value = one.predicted;
+      for (double& x : value) x += normal(engine);
+    }
+  return known;
+}
+
+/// A search works on positions alone too: the misfit is theirs, over their told noise.
+TEST(MeasuredFit, DiscoverNamesAnEffectFromPositionsAlone) {
+  const auto scene = tracked_block(0.004);
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto result = discover(workspace, form, form.initial(), {});
+  ASSERT_TRUE(std::holds_alternative<Discovery>(result))
+      << std::get<NumericalFailure>(result).reason;
+  const Discovery& found = std::get<Discovery>(result);
+  ASSERT_EQ(found.steps.size(), 2u) << found.sentence;
+  EXPECT_GT(found.steps[0].fitted.evaluation.chi(false), 3.0);
+  EXPECT_EQ(found.steps[1].added, "gravity") << found.sentence;
+  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+  EXPECT_NEAR(found.steps[1].fitted.evaluation.chi(false), 1.0, 0.2);
+}
+
+/// A load that nobody has measured is a candidate of a plan: that it has no equilibrium stops no
+/// fit.
+TEST(MeasuredFit, ALoadWithoutDataIsNotSolved) {
+  auto scene = std::make_shared<Scene>(*tracked_block(0.004));
+  ExampleSpec crush = scene->capture.examples[1];
+  crush.name = "crush";
+  crush.measured.clear();
+  for (LoadSpec& load : crush.loads) *load.force *= -1e4;
+  scene->capture.examples.push_back(crush);
+  scene->photos.emplace_back();
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto result = fit(workspace, form, form.initial());
+  ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << std::get<NumericalFailure>(result).reason;
+  EXPECT_EQ(std::get<Fitted>(result).evaluation.examples.size(),
+            scene->capture.examples.size() - 1);
+}
 
 }  // namespace
 }  // namespace hookeye::test
