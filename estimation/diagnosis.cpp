@@ -123,7 +123,7 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   const double held = sums.held_r2 - sums.held_count * sums.pixel_floor2;
   const VectorXd step = joint_step(context.evaluation.columns, weighted, score, null_values);
   const double fall = -change(sums.seen.JtJ, sums.seen.Jtr, step);
-  if (structured > 0.0) score.explains = std::clamp(fall / structured, 0.0, 1.0);
+  if (structured > 0.0) score.explains = std::clamp(fall / structured, 0.0, 1.0) + 0.0;  // no -0
   score.fall = fall / std::max(sums.photo_count, 1.0);
   if (held > 0.0)
     score.explains_held_out =
