@@ -109,11 +109,12 @@ void one_view(benchmark::State& s) {
   VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m),
                       Eigen::MatrixXd::Random(kPhotoColumns, m)};
   double shift = 0;
+  Rendering r;
   for (auto _ : s) {
     const Matrix3Xd x = b.surface.X.array() + (shift += 1e-3);  // new positions: a refit
-    const Rendering r = b.renderer.render(x, nullptr, b.texture, b.state, options, true);
-    VectorXd residual(Eigen::Index(r.dI.pixel.size()));
-    for (size_t i = 0; i < r.dI.pixel.size(); ++i) residual[i] = 0.5 - r.I.values[r.dI.pixel[i]];
+    b.renderer.render(x, nullptr, b.texture, b.state, options, true, nullptr, &r);
+    VectorXd residual(Eigen::Index(r.dI.pixels()));
+    r.dI.for_each_pixel([&](size_t i, int pixel) { residual[i] = 0.5 - r.I.values[pixel]; });
     const VectorXd w = VectorXd::Ones(residual.size());
     const auto sums = NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, true);
     benchmark::DoNotOptimize(sums.reduce(S).r2);

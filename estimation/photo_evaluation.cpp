@@ -219,24 +219,26 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
 NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
                              const SurfaceMesh& surface, double blur_variance, double huber,
                              bool second) {
-  const auto& pixels = rendering.dI.pixel;
-  VectorXd r = VectorXd::Zero(pixels.size()), w = r, Bt_r = r;
-  Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
-  for (size_t k = 0; k < pixels.size(); ++k) {
-    const double residual = residuals.values[pixels[k]];
-    if (std::isnan(residual)) continue;
+  const ImageDerivative& dI = rendering.dI;
+  const auto count = static_cast<Eigen::Index>(dI.pixels());
+  VectorXd r = VectorXd::Zero(count), w = r, Bt_r = r;
+  dI.for_each_pixel([&](size_t k, int pixel) {
+    const double residual = residuals.values[pixel];
+    if (std::isnan(residual)) return;
     const double weight =
         huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
     r[k] = weight * residual;
-    w[k] = weight / sigma.values[pixels[k]];
+    w[k] = weight / sigma.values[pixel];
     Bt_r[k] = w[k] * r[k];
-    adjoint.values[pixels[k]] = static_cast<float>(Bt_r[k]);
-  }
+  });
   if (blur_variance > 0.0) {
-    const Image spread = blur(adjoint, blur_variance);
-    for (size_t k = 0; k < pixels.size(); ++k) Bt_r[k] = spread.values[pixels[k]];
+    Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
+    dI.for_each_pixel(
+        [&](size_t k, int pixel) { adjoint.values[pixel] = static_cast<float>(Bt_r[k]); });
+    adjoint = blur(adjoint, blur_variance);
+    dI.for_each_pixel([&](size_t k, int pixel) { Bt_r[k] = adjoint.values[pixel]; });
   }
-  return NodeNormalEquations::accumulate(surface, rendering.dI, r, w, Bt_r, second);
+  return NodeNormalEquations::accumulate(surface, dI, r, w, Bt_r, second);
 }
 
 }  // namespace
@@ -280,6 +282,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
     S = vertex_sensitivity(impl_->renderer, surface, x, example.S,
                            reference.state ? &reference.state->S : nullptr, has_light);
   const Eigen::MatrixXd second_on_vertices = S.second;
+  Rendering rendering;  // one for all photos: its memory is used again
 
   for (size_t k = 0; k < scene.photos[e].size(); ++k)
     for (size_t plane = 0; plane < scene.photos[e][k].planes.size(); ++plane) {
@@ -300,9 +303,8 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       render_options.derivatives = columns != nullptr;
       render_options.gloss_derivative =
           columns != nullptr && !columns->dphoto[k].row(kSpecular).isZero(0.0);
-      Rendering rendering =
-          impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
-                                 render_options, silhouette, &photo.valid);
+      impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
+                             render_options, silhouette, &photo.valid, &rendering);
       const Image sigma = compared_sigma(photo, texture);
       const Comparison comparison =
           compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state);

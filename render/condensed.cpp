@@ -3,6 +3,7 @@
 #include "render/condensed.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/vertex_sums.h"
 
@@ -36,7 +37,8 @@ struct NodeNormalEquations::Impl {
 std::vector<int> NodeNormalEquations::Impl::number_vertices(const SurfaceMesh& surface,
                                                             const ImageDerivative& dI) {
   std::vector<char> touched(surface.triangles.size(), 0);
-  for (const DerivativeSegment& s : dI.segments) touched[s.triangle] = 1;
+  for (const ImageDerivative::Part& part : dI.parts)
+    for (const DerivativeSegment& s : part.segments) touched[s.triangle] = 1;
   std::vector<int> slot(surface.X.cols(), -1);
   for (size_t t = 0; t < touched.size(); ++t)
     if (touched[t])
@@ -66,48 +68,85 @@ void NodeNormalEquations::Impl::take_photo_sums() {
 
 namespace {
 
-/// The vertices of one pixel's triangles; neighbouring pixels often have the same.
-struct Footprint {
-  std::vector<int> triangles;
-  std::vector<int> slots;     ///< ascending
-  std::vector<int> local;     ///< of corner k of segment s at 3s + k: position in `slots`
-  std::vector<size_t> block;  ///< of slots (i, j), i <= j, row by row
+using Part = ImageDerivative::Part;
 
-  bool is(const ImageDerivative& dI, int first, int last) const {
-    if (triangles.size() != static_cast<size_t>(last - first)) return false;
+/// Gathers pixels that see the same triangles, as neighbours mostly do, and adds them together.
+class RunOfPixels {
+ public:
+  RunOfPixels(const SurfaceMesh& surface, const std::vector<int>& slot,
+              NodeNormalEquations::Impl* sums)
+      : surface_(surface), slot_(slot), sums_(*sums) {
+    run_.numbers = sums->numbers();
+  }
+
+  void add(const Part& part, size_t pixel, float w, float Bt_r) {
+    if (w == 0 && Bt_r == 0) return;
+    const int first = part.first[pixel], last = part.first[pixel + 1];
+    const bool same = is(part, first, last);
+    if (!same || run_.count == PixelRun::kPixels) flush();
+    if (!same) set(part, first, last);
+    const size_t begin = run_.at(run_.count, 0), end = run_.at(run_.count + 1, 0);
+    std::fill(run_.vertices.begin() + begin, run_.vertices.begin() + end, 0.0f);
+    for (size_t s = 0; s < triangles_.size(); ++s)
+      for (int k = 0; k < 3; ++k) add_corner(part.segments[first + s], k, local_[3 * s + k]);
+    for (size_t i = begin; i < end; ++i) run_.weighted[i] = w * w * run_.vertices[i];
+    float* photo = run_.photo[run_.count];
+    std::copy_n(part.photo[pixel].data(), kPhotoColumns, photo);
+    std::fill(photo + kPhotoColumns, photo + kPhotoFloats, 0.0f);
+    for (int k = 0; k < kPhotoFloats; ++k) run_.photo_weighted[run_.count][k] = w * w * photo[k];
+    run_.Bt_r[run_.count++] = Bt_r;
+  }
+
+  void flush() {
+    if (run_.count == 0) return;
+    add_pixels(run_, &sums_.sums);
+    constexpr int kShort = 512;  // pixels
+    added_ += std::exchange(run_.count, 0);
+    if (added_ < kShort) return;
+    sums_.take_photo_sums();
+    added_ = 0;
+  }
+
+ private:
+  void add_corner(const DerivativeSegment& segment, int k, int at) {
+    float* to = run_.vertices.data() + run_.at(run_.count, at);
+    for (int c = 0; c < 3; ++c) to[c] += segment.d_position(c, k);
+    if (sums_.second)
+      for (int c = 0; c < 3; ++c) to[3 + c] += segment.d_second(c, k);
+  }
+  bool is(const Part& part, int first, int last) const {
+    if (triangles_.size() != static_cast<size_t>(last - first)) return false;
     for (int s = first; s < last; ++s)
-      if (triangles[s - first] != dI.segments[s].triangle) return false;
+      if (triangles_[s - first] != part.segments[s].triangle) return false;
     return true;
   }
-  void set(const SurfaceMesh& surface, const ImageDerivative& dI, const std::vector<int>& slot,
-           int first, int last) {
-    triangles.clear(), slots.clear(), local.clear(), block.clear();
+  void set(const Part& part, int first, int last) {
+    std::vector<int>& slots = run_.slots;
+    triangles_.clear(), slots.clear(), run_.block.clear();
     for (int s = first; s < last; ++s) {
-      triangles.push_back(dI.segments[s].triangle);
-      for (int v : surface.triangles[triangles.back()]) slots.push_back(slot[v]);
+      triangles_.push_back(part.segments[s].triangle);
+      for (int v : surface_.triangles[triangles_.back()]) slots.push_back(slot_[v]);
     }
-    local = slots;
+    local_ = slots;
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    for (int& at : local)
+    for (int& at : local_)
       at = static_cast<int>(std::lower_bound(slots.begin(), slots.end(), at) - slots.begin());
+    for (size_t a = 0; a < slots.size(); ++a)
+      for (size_t b = a; b < slots.size(); ++b)
+        run_.block.push_back(sums_.block_of(slots[a], slots[b]));
+    const size_t size = run_.at(PixelRun::kPixels, 0);
+    if (run_.vertices.size() < size) run_.vertices.resize(size), run_.weighted.resize(size);
   }
-};
 
-/// Derivatives of one pixel by the footprint's vertices, kVertexFloats each.
-void fill_row(const ImageDerivative& dI, const Footprint& at, int first, bool second,
-              std::vector<float>* row) {
-  row->assign(at.slots.size() * kVertexFloats, 0.0f);
-  for (size_t s = 0; s < at.triangles.size(); ++s) {
-    const DerivativeSegment& segment = dI.segments[first + s];
-    for (int k = 0; k < 3; ++k) {
-      float* to = row->data() + at.local[3 * s + k] * kVertexFloats;
-      for (int c = 0; c < 3; ++c) to[c] += segment.d_position(c, k);
-      if (second)
-        for (int c = 0; c < 3; ++c) to[3 + c] += segment.d_second(c, k);
-    }
-  }
-}
+  const SurfaceMesh& surface_;
+  const std::vector<int>& slot_;
+  NodeNormalEquations::Impl& sums_;
+  PixelRun run_;
+  std::vector<int> triangles_;
+  std::vector<int> local_;  ///< of corner k of segment s at 3s + k: position in slots
+  int added_ = 0;           ///< pixels since the photo's sums were taken
+};
 
 }  // namespace
 
@@ -122,24 +161,12 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   m.count = static_cast<size_t>((w.array() != 0).count());
   m.photo.setZero(), m.b_photo.setZero();
   const std::vector<int> slot = m.number_vertices(surface, dI);
-  constexpr size_t kShort = 512;  ///< pixels
-  Footprint at;
-  std::vector<float> row;
-  for (size_t i = 0; i < dI.pixel.size(); ++i) {
-    const int first = dI.first[i], last = dI.first[i + 1];
-    if (!at.is(dI, first, last)) {
-      at.set(surface, dI, slot, first, last);
-      for (size_t a = 0; a < at.slots.size(); ++a)
-        for (size_t b = a; b < at.slots.size(); ++b)
-          at.block.push_back(m.block_of(at.slots[a], at.slots[b]));
-    }
-    fill_row(dI, at, first, second, &row);
-    const Eigen::Index pixel = static_cast<Eigen::Index>(i);
-    add_pixel({row.data(), dI.d_photo.col(pixel).data(), at.slots, at.block, float(w[pixel]),
-               float(Bt_r[pixel])},
-              &m.sums);
-    if (i % kShort == kShort - 1) m.take_photo_sums();
-  }
+  RunOfPixels run(surface, slot, &m);
+  Eigen::Index at = 0;
+  for (const Part& part : dI.parts)
+    for (size_t i = 0; i < part.pixel.size(); ++i, ++at)
+      run.add(part, i, static_cast<float>(w[at]), static_cast<float>(Bt_r[at]));
+  run.flush();
   m.take_photo_sums();
   return out;
 }

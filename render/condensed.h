@@ -30,8 +30,9 @@ struct CondensedPhoto {
 /// noise and times sqrt of the robust weight), w_i the factor dr_i/dI_i.
 class NodeNormalEquations {
  public:
-  /// `r` and `w` per active pixel of `dI` (same order). `Bt_r`: per active pixel, B^T(w r): the
-  /// blurred adjoint (equal to w*r where there is no blur). `second`: VertexSensitivity has it.
+  /// `r` and `w` per active pixel of `dI` (as for_each_pixel counts them). `Bt_r`: per active
+  /// pixel, B^T(w r): the blurred adjoint (equal to w*r where there is no blur). `second`:
+  /// VertexSensitivity has it.
   static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
                                         const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
                                         bool second);

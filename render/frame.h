@@ -53,21 +53,13 @@ inline Vector3d interpolate(const Matrix3Xd& at, const std::array<int, 3>& t, co
 /// Follows up to 16 neighbouring rays; shadows and the reference camera's view included.
 void trace(const Frame& frame, const Vector2d* h, int count, Samples* out);
 
-/// What a ray says of its pixel at the fixed ray, by the first index of each group. A product with
-/// `corners` stands for 3 x 3 numbers, corner k in column k: the derivative by the corner's number.
-/// The camera's motion is not here: it is that of all corners together (add_camera).
-enum RayFloat {
-  kByPosition = 0,  ///< 3 x 3 corners: by deformed positions, normals held
-  kBySecond = 9,  ///< 3 x 3 corners: by unit vertex normals; photo texture: by reference positions
-  kByFacet = 18,  ///< 3: by the triangle's own unit normal
-  kByLogGain = 21,  ///< the intensity itself
-  kByAmbient = 22,
-  kBySun = 23,  ///< 3
-  kBySpecular = 26,
-  kByTurn = 27,  ///< 3: by the camera's rotation, of the gloss alone
-  kByZoom = 30,
-  kRayFloats = 32
-};
+/// What a ray says of its pixel at the fixed ray, by the first index of each group. 3 x 3 numbers
+/// have corner k of the triangle in column k: the derivative by the corner's number.
+constexpr int kByPosition = 0;  ///< 3 x 3: by deformed positions, unit vertex normals held
+constexpr int kBySecond = 9;    ///< 3 x 3: by unit vertex normals; by reference positions
+constexpr int kByPhoto = 18;    ///< by PhotoColumn, those before kBlur
+constexpr int kRayFloats = 32;
+static_assert(kByPhoto + kBlur <= kRayFloats);
 struct alignas(64) RayRow {
   float value[kRayFloats];
 };

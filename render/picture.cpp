@@ -1,15 +1,12 @@
 #include "render/picture.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "render/ray_sums.h"
 
 namespace hookeye {
 
 namespace {
-
-using PhotoRow = Eigen::Matrix<float, kPhotoColumns, 1>;
 
 constexpr int kTileRays = 144;  ///< along a row; the rays of a tile stay in the second-level cache
 
@@ -92,79 +89,92 @@ class Tile {
 
 thread_local Tile::Store Tile::store_;
 
-/// The triangle's own unit normal n = c/|c|, c = e1 x e2, moves with its corners.
-void add_facet_normal(const Frame& f, const Vector3d& by_n, int triangle, Matrix3d* by_position) {
-  const auto& t = f.state.surface.triangles[triangle];
-  const Matrix3Xd& x = f.state.x;
-  const Vector3d e1 = x.col(t[1]) - x.col(t[0]), e2 = x.col(t[2]) - x.col(t[0]);
-  const double length = e1.cross(e2).norm();
-  if (length <= 0) return;
-  const Vector3d n = f.state.facets[triangle];
-  const Vector3d m = (by_n - n * n.dot(by_n)) / length;
-  const Vector3d by1 = e2.cross(m), by2 = m.cross(e1);
-  by_position->col(1) += by1;
-  by_position->col(2) += by2;
-  by_position->col(0) -= by1 + by2;
+/// Takes the silhouettes' shares in `pixel`, which begin at `edge`, and closes it. `begin`: its
+/// first segment. Returns the first of another pixel.
+const EdgeSegment* close_pixel(int pixel, size_t begin, const EdgeSegment* edge,
+                               const EdgeSegment* end, ImageDerivative::Part* part) {
+  for (; edge != end && edge->pixel == pixel; ++edge) {
+    part->photo.back().head<7>() += edge->d_camera.cast<float>();
+    size_t s = begin;
+    while (s < part->segments.size() && part->segments[s].triangle != edge->triangle) ++s;
+    if (s == part->segments.size())
+      part->segments.push_back({edge->triangle, Eigen::Matrix3f::Zero(), Eigen::Matrix3f::Zero()});
+    part->segments[s].d_position += edge->d_position.cast<float>();
+  }
+  part->pixel.push_back(pixel);
+  part->first.push_back(static_cast<int>(part->segments.size()));
+  return edge;
 }
 
-/// The camera moved by (w, v) moves all corners by w x p + v in its own axes.
-void add_camera(const Frame& f, const Matrix3d& by_position, int triangle, PhotoRow* photo) {
-  const auto& t = f.state.surface.triangles[triangle];
-  const Matrix3d g = f.view.camera.R * by_position;
-  Vector3d turn = Vector3d::Zero();
-  for (int k = 0; k < 3; ++k) turn += f.view.p.col(t[k]).cross(g.col(k));
-  photo->segment<3>(kRotate) += turn.cast<float>();
-  photo->segment<3>(kMove) += g.rowwise().sum().cast<float>();
+const EdgeSegment* add_edges_alone(const EdgeSegment* edge, const EdgeSegment* end,
+                                   ImageDerivative::Part* part) {
+  PhotoDerivative photo = PhotoDerivative::Zero();
+  photo[kBackground] = 1;
+  part->photo.push_back(photo);
+  return close_pixel(edge->pixel, part->segments.size(), edge, end, part);
 }
 
+const EdgeSegment* first_from(const std::vector<EdgeSegment>& edges, int pixel) {
+  return std::lower_bound(edges.data(), edges.data() + edges.size(), pixel,
+                          [](const EdgeSegment& e, int p) { return e.pixel < p; });
+}
+
+/// Filtered intensity, coverage and, where wanted, the derivative of one pixel after the other.
 class PixelSum {
  public:
-  PixelSum(const BandTask& task, const Tile& tile) : task_(task), tile_(tile) {}
+  PixelSum(const BandTask& task, const Tile& tile, Rendering* out, ImageDerivative::Part* part)
+      : task_(task), tile_(tile), out_(out), part_(part) {}
 
-  /// Filtered intensity, coverage and, where wanted, the derivative of pixel (x, y).
-  void add(int x, int y, Rendering* out, RowDerivative* derivative) {
-    const Taps taps = tile_.at(x, y);
-    const auto [I, missing] = filter_rays(taps, task_.filter);
-    if (missing > 1 - 1e-6f) return;
-    const int pixel = y * out->I.width + x;
-    out->I.at(x, y) = I + missing * static_cast<float>(task_.frame.photo.behind(pixel));
-    out->coverage.at(x, y) = 1 - missing;
-    if (!task_.frame.options.derivatives || (!task_.silhouette && missing > 1e-6f) ||
-        (task_.count && !(*task_.count)[pixel]))
-      return;
-    groups_.clear();
-    sum_by_triangle(taps, task_.filter, &groups_);
-    store(pixel, missing, derivative);
+  void add_row(int first, int last, int y) {
+    const int row = y * out_->I.width;
+    edge_ = first_from(task_.edges, row + first);
+    last_edge_ = first_from(task_.edges, row + last);
+    for (int x = first; x < last; ++x) {
+      add(x, y, row + x);
+      while (edge_ != last_edge_ && edge_->pixel == row + x) ++edge_;
+    }
   }
 
  private:
-  void store(int pixel, float missing, RowDerivative* out) {
-    const Frame& f = task_.frame;
-    PhotoRow photo = PhotoRow::Zero();
+  void add(int x, int y, int pixel) {
+    const Taps taps = tile_.at(x, y);
+    const auto [I, missing] = filter_rays(taps, task_.filter);
+    const bool body = missing <= 1 - 1e-6f;
+    if (body) {
+      out_->I.values[pixel] = I + missing * static_cast<float>(task_.frame.photo.behind(pixel));
+      out_->coverage.values[pixel] = 1 - missing;
+    }
+    if (!task_.frame.options.derivatives || !task_.wants(pixel) ||
+        (!task_.silhouette && missing > 1e-6f))
+      return;
+    if (body) {
+      add_body(pixel, taps, missing);
+    } else if (edge_ != last_edge_ && edge_->pixel == pixel) {
+      edge_ = add_edges_alone(edge_, last_edge_, part_);
+    }
+  }
+
+  void add_body(int pixel, const Taps& taps, float missing) {
+    groups_.clear();
+    sum_by_triangle(taps, task_.filter, &groups_);
+    const size_t begin = part_->segments.size();
+    PhotoDerivative photo = PhotoDerivative::Zero();
     photo[kBackground] = missing;
     for (const TriangleSum& g : groups_) {
-      const auto at = [&](int k) { return g.sum.value + k; };
-      Matrix3d by_position = Eigen::Map<const Eigen::Matrix3f>(at(kByPosition)).cast<double>();
-      add_camera(f, by_position, g.triangle, &photo);
-      photo.segment<3>(kRotate) += Eigen::Map<const Eigen::Vector3f>(at(kByTurn));
-      photo[kZoom] += *at(kByZoom);
-      photo[kLogGain] += *at(kByLogGain);
-      photo[kAmbient] += *at(kByAmbient);
-      photo.segment<3>(kSun) += Eigen::Map<const Eigen::Vector3f>(at(kBySun));
-      photo[kSpecular] += *at(kBySpecular);
-      if (f.photo.shaded)
-        add_facet_normal(f, Eigen::Map<const Eigen::Vector3f>(at(kByFacet)).cast<double>(),
-                         g.triangle, &by_position);
-      out->segments.push_back({g.triangle, by_position.cast<float>(),
-                               Eigen::Map<const Eigen::Matrix3f>(at(kBySecond))});
+      const float* at = g.sum.value;
+      photo.head<kBlur>() += Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
+      part_->segments.push_back({g.triangle, Eigen::Map<const Eigen::Matrix3f>(at + kByPosition),
+                                 Eigen::Map<const Eigen::Matrix3f>(at + kBySecond)});
     }
-    out->pixel.push_back(pixel);
-    out->first.push_back(static_cast<int>(out->segments.size()));
-    out->photo.push_back(photo);
+    part_->photo.push_back(photo);
+    edge_ = close_pixel(pixel, begin, edge_, last_edge_, part_);
   }
 
   const BandTask& task_;
   const Tile& tile_;
+  Rendering* out_;
+  ImageDerivative::Part* part_;
+  const EdgeSegment *edge_ = nullptr, *last_edge_ = nullptr;
   std::vector<TriangleSum> groups_;
 };
 
@@ -204,88 +214,33 @@ void mark_centres(const BandTask& task, const Tile& tile, int first, int last, i
 }  // namespace
 
 void render_band(const BandTask& task, int row, int last_row, Rendering* out,
-                 BandDerivative* derivative) {
+                 ImageDerivative::Part* part) {
   const View& view = task.frame.view;
-  derivative->rows.resize(last_row - row);
   const int columns = std::max(8, kTileRays / task.filter.n);
   for (int x0 = view.x0; x0 < view.x1; x0 += columns) {
     const int x1 = std::min(x0 + columns, view.x1);
     const Tile tile(task, x0, x1, row, last_row);
-    PixelSum sum(task, tile);
+    PixelSum sum(task, tile, out, part);
     for (int y = row; y < last_row; ++y) {
-      for (int x = x0; x < x1; ++x) sum.add(x, y, out, &derivative->rows[y - row]);
+      sum.add_row(x0, x1, y);
       mark_centres(task, tile, x0, x1, y, out);
     }
   }
 }
 
-namespace {
-
-/// Adds an edge's share to the segment of its triangle among segments[begin, end).
-void add_edge(const EdgeSegment& e, size_t begin, ImageDerivative* out) {
-  for (size_t s = begin; s < out->segments.size(); ++s)
-    if (out->segments[s].triangle == e.triangle) {
-      out->segments[s].d_position += e.d_position.cast<float>();
-      return;
-    }
-  out->segments.push_back({e.triangle, e.d_position.cast<float>(), Eigen::Matrix3f::Zero()});
-}
-
-}  // namespace
-
-ImageDerivative join(const std::vector<BandDerivative>& bands, std::vector<EdgeSegment> edges,
-                     const BandTask& task) {
-  std::stable_sort(edges.begin(), edges.end(),
-                   [](const EdgeSegment& a, const EdgeSegment& b) { return a.pixel < b.pixel; });
-  ImageDerivative out;
-  std::vector<PhotoRow> photo;
-  size_t pixels = 0, segments = 0;
-  for (const BandDerivative& band : bands)
-    for (const RowDerivative& r : band.rows)
-      pixels += r.pixel.size(), segments += r.segments.size();
-  out.pixel.reserve(pixels), out.first.reserve(pixels + 1), photo.reserve(pixels);
-  out.segments.reserve(segments + edges.size());
-  out.first.push_back(0);
-  size_t e = 0;
-  const auto take_edges = [&](int pixel) {
-    const size_t begin = out.first.back();
-    for (; e < edges.size() && edges[e].pixel == pixel; ++e) {
-      add_edge(edges[e], begin, &out);
-      photo.back().head<7>() += edges[e].d_camera.cast<float>();
-    }
-  };
-  const auto close = [&](int pixel) {
-    out.pixel.push_back(pixel);
-    out.first.push_back(static_cast<int>(out.segments.size()));
-  };
-  // Pixels that only an edge reaches: the background alone is there.
-  const auto edges_before = [&](int pixel) {
-    while (e < edges.size() && edges[e].pixel < pixel) {
-      const int p = edges[e].pixel;
-      if (!task.silhouette || (task.count && !(*task.count)[p])) {
-        ++e;
-        continue;
-      }
-      photo.emplace_back().setZero();
-      photo.back()[kBackground] = 1;
-      take_edges(p);
-      close(p);
-    }
-  };
-  for (const BandDerivative& band : bands)
-    for (const RowDerivative& r : band.rows)
-      for (size_t i = 0; i < r.pixel.size(); ++i) {
-        edges_before(r.pixel[i]);
-        for (int s = i ? r.first[i - 1] : 0; s < r.first[i]; ++s)
-          out.segments.push_back(r.segments[s]);
-        photo.push_back(r.photo[i]);
-        take_edges(r.pixel[i]);
-        close(r.pixel[i]);
-      }
-  edges_before(std::numeric_limits<int>::max());
-  out.d_photo.resize(kPhotoColumns, static_cast<Eigen::Index>(photo.size()));
-  for (size_t i = 0; i < photo.size(); ++i) out.d_photo.col(i) = photo[i];
-  return out;
+void add_outer_edges(const BandTask& task, ImageDerivative::Part* part) {
+  if (!task.silhouette) return;
+  const View& view = task.frame.view;
+  const int width = view.camera.width;
+  const EdgeSegment* const end = task.edges.data() + task.edges.size();
+  for (const EdgeSegment* e = task.edges.data(); e != end;) {
+    const int x = e->pixel % width, y = e->pixel / width;
+    const bool inner = x >= view.x0 && x < view.x1 && y >= view.y0 && y < view.y1;
+    if (inner || !task.wants(e->pixel))
+      ++e;
+    else
+      e = add_edges_alone(e, end, part);
+  }
 }
 
 }  // namespace hookeye

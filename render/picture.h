@@ -8,30 +8,23 @@
 
 namespace hookeye {
 
-/// Wanted pixels of a row with their interior derivatives, in ascending order.
-struct RowDerivative {
-  std::vector<int> pixel, first;  ///< segments of pixel[i] end at first[i] (exclusive)
-  std::vector<DerivativeSegment> segments;
-  std::vector<Eigen::Matrix<float, kPhotoColumns, 1>> photo;
-};
-
-struct BandDerivative {
-  std::vector<RowDerivative> rows;
-};
-
 struct BandTask {
   const Frame& frame;
   const PixelFilter& filter;
   const RayGrid& grid;
   bool silhouette;
   const std::vector<unsigned char>* count;
+  const std::vector<EdgeSegment>& edges;  ///< silhouettes, by pixel in ascending order
+
+  bool wants(int pixel) const { return !count || (*count)[pixel]; }
 };
 
-/// Renders rows [row, last_row): writes into `out` (its rows only) and into `band`.
-void render_band(const BandTask& task, int row, int last_row, Rendering* out, BandDerivative* band);
+/// Renders rows [row, last_row): writes into `out` (its rows only) and into `part`, silhouettes
+/// included, all but the column kBlur.
+void render_band(const BandTask& task, int row, int last_row, Rendering* out,
+                 ImageDerivative::Part* part);
 
-/// Joins the bands and the silhouettes into one list by pixels; fills all columns but kBlur.
-ImageDerivative join(const std::vector<BandDerivative>& bands, std::vector<EdgeSegment> edges,
-                     const BandTask& task);
+/// Pixels outside the view's rows and columns, which only silhouettes reach.
+void add_outer_edges(const BandTask& task, ImageDerivative::Part* part);
 
 }  // namespace hookeye

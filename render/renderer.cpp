@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <deque>
 #include <stdexcept>
 
@@ -116,30 +117,30 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> Renderer::normal_derivative(const M
 
 namespace {
 
-Rendering empty_rendering(const PhotoState& photo) {
-  Rendering out;
-  out.I.width = out.coverage.width = photo.camera.width;
-  out.I.height = out.coverage.height = photo.camera.height;
-  out.I.channels = out.coverage.channels = 1;
-  out.I.values.assign(out.I.pixels(), static_cast<float>(photo.background));
-  if (photo.backdrop) out.I.values = photo.backdrop->values;
-  out.coverage.values.assign(out.I.pixels(), 0.0f);
-  out.triangle.assign(out.I.pixels(), -1);
-  out.uv.assign(out.I.pixels(), Eigen::Vector2f::Zero());
-  return out;
+void clear(const PhotoState& photo, Rendering* out) {
+  out->I.width = out->coverage.width = photo.camera.width;
+  out->I.height = out->coverage.height = photo.camera.height;
+  out->I.channels = out->coverage.channels = 1;
+  if (photo.backdrop)
+    out->I.values = photo.backdrop->values;
+  else
+    out->I.values.assign(out->I.pixels(), static_cast<float>(photo.background));
+  out->coverage.values.assign(out->I.pixels(), 0.0f);
+  out->triangle.assign(out->I.pixels(), -1);
+  out->uv.assign(out->I.pixels(), Eigen::Vector2f::Zero());
 }
 
 /// dI/dv of the blurred picture: T(n, v) is the diffusion semigroup, dT/dv = 1/2 second difference.
-void set_blur_column(const Image& I, ImageDerivative* d) {
-  for (size_t i = 0; i < d->pixel.size(); ++i) {
-    const int x = d->pixel[i] % I.width, y = d->pixel[i] / I.width;
+void set_blur_column(const Image& I, ImageDerivative::Part* part) {
+  for (size_t i = 0; i < part->pixel.size(); ++i) {
+    const int x = part->pixel[i] % I.width, y = part->pixel[i] / I.width;
     const double sum = double(I.at(std::max(x - 1, 0), y)) + I.at(std::min(x + 1, I.width - 1), y) +
                        I.at(x, std::max(y - 1, 0)) + I.at(x, std::min(y + 1, I.height - 1));
-    d->d_photo(kBlur, static_cast<Eigen::Index>(i)) =
-        static_cast<float>(sum / 2 - 2.0 * I.at(x, y));
+    part->photo[i][kBlur] = static_cast<float>(sum / 2 - 2.0 * I.at(x, y));
   }
 }
 
+/// By pixel in ascending order.
 std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
                                   const std::vector<SurfaceEdge>& edges, int threads) {
   constexpr size_t kEdges = 2048;
@@ -151,6 +152,8 @@ std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
   });
   std::vector<EdgeSegment> out;
   for (const auto& p : part) out.insert(out.end(), p.begin(), p.end());
+  std::stable_sort(out.begin(), out.end(),
+                   [](const EdgeSegment& a, const EdgeSegment& b) { return a.pixel < b.pixel; });
   return out;
 }
 
@@ -159,6 +162,14 @@ std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
 Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
                            const PhotoState& photo, const RenderOptions& options, bool silhouette,
                            const std::vector<unsigned char>* count) {
+  Rendering out;
+  render(x, x_reference, texture, photo, options, silhouette, count, &out);
+  return out;
+}
+
+void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
+                      const PhotoState& photo, const RenderOptions& options, bool silhouette,
+                      const std::vector<unsigned char>* count, Rendering* out) {
   Impl& m = *impl_;
   if (x.cols() != m.surface.X.cols()) throw std::invalid_argument("render: wrong vertex count");
   if (photo.backdrop && (photo.backdrop->width != photo.camera.width ||
@@ -183,18 +194,35 @@ Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, con
     frame.reference_view = &*reference_view;
     frame.spline = &m.spline(texture.photo);
   }
-  Rendering out = empty_rendering(photo);
-  const BandTask task{frame, filter, m.grid(photo.camera, filter), silhouette, count};
-  std::vector<BandDerivative> bands((view.y1 - view.y0 + kBandRows - 1) / kBandRows);
-  for_each_task(static_cast<int>(bands.size()), options.threads, [&](int i) {
+  clear(photo, out);
+  const std::vector<EdgeSegment> edges = options.derivatives
+                                             ? contours(frame, filter, m.edges, options.threads)
+                                             : std::vector<EdgeSegment>();
+  const BandTask task{frame, filter, m.grid(photo.camera, filter), silhouette, count, edges};
+  const int bands = (view.y1 - view.y0 + kBandRows - 1) / kBandRows;
+  auto& parts = out->dI.parts;
+  parts.resize(bands + 1);
+  for_each_task(bands, options.threads, [&](int i) {
     const int row = view.y0 + i * kBandRows;
-    render_band(task, row, std::min(row + kBandRows, view.y1), &out, &bands[i]);
+    parts[i].clear();
+    render_band(task, row, std::min(row + kBandRows, view.y1), out, &parts[i]);
   });
+  parts[bands].clear();
+  add_outer_edges(task, &parts[bands]);
+  if (photo.blur_variance > 0) out->I = blur(out->I, photo.blur_variance);
   if (options.derivatives)
-    out.dI = join(bands, contours(frame, filter, m.edges, options.threads), task);
-  out.I = blur(out.I, photo.blur_variance);
-  if (options.derivatives) set_blur_column(out.I, &out.dI);
-  return out;
+    for_each_task(bands + 1, options.threads, [&](int i) { set_blur_column(out->I, &parts[i]); });
+}
+
+void ImageDerivative::Part::clear() {
+  pixel.clear(), segments.clear(), photo.clear();
+  first.assign(1, 0);
+}
+
+size_t ImageDerivative::pixels() const {
+  size_t sum = 0;
+  for (const Part& part : parts) sum += part.pixel.size();
+  return sum;
 }
 
 }  // namespace hookeye

@@ -35,13 +35,28 @@ struct DerivativeSegment {
   Eigen::Matrix3f d_position, d_second;
 };
 
-/// Pixels that count, with their derivatives. Compressed rows: the segments of active pixel i are
-/// segments[first[i] .. first[i+1]).
+/// Derivative of one pixel by the photo's numbers.
+using PhotoDerivative = Eigen::Matrix<float, kPhotoColumns, 1>;
+
+/// Pixels that count, with their derivatives, each in one of the parts. A part's rows are
+/// compressed: the segments of its pixel i are segments[first[i] .. first[i+1]).
 struct ImageDerivative {
-  std::vector<int> pixel;  ///< y*width + x, ascending
-  std::vector<int> first;  ///< pixel.size() + 1
-  std::vector<DerivativeSegment> segments;
-  Eigen::Matrix<float, kPhotoColumns, Eigen::Dynamic> d_photo;  ///< one column per active pixel
+  struct Part {
+    std::vector<int> pixel;  ///< y*width + x
+    std::vector<int> first;  ///< pixel.size() + 1
+    std::vector<DerivativeSegment> segments;
+    std::vector<PhotoDerivative> photo;
+    void clear();
+  };
+  std::vector<Part> parts;
+  size_t pixels() const;  ///< of all parts
+  /// Calls f(i, pixel) with i counting over all parts.
+  template <class F>
+  void for_each_pixel(const F& f) const {
+    size_t i = 0;
+    for (const Part& part : parts)
+      for (const int pixel : part.pixel) f(i++, pixel);
+  }
 };
 
 struct Rendering {
@@ -73,6 +88,11 @@ class Renderer {
   Rendering render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
                    const PhotoState& photo, const RenderOptions& options, bool silhouette,
                    const std::vector<unsigned char>* count = nullptr);
+  /// The same in the memory of an earlier picture: tens of bytes a pixel that need not be asked
+  /// for and cleared again.
+  void render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
+              const PhotoState& photo, const RenderOptions& options, bool silhouette,
+              const std::vector<unsigned char>* count, Rendering* out);
 
   /// Vertex normals (unit) of deformed positions and their linearisation:
   /// dn (3nv) = N dx (3nv), sparse.

@@ -2,6 +2,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/shade.cpp"
 #include <hwy/foreach_target.h>
+// after it:
+#include <hwy/contrib/math/math-inl.h>
 
 #include "render/albedo.h"
 #include "render/lanes.h"
@@ -42,14 +44,11 @@ Gloss gloss(const Frame& f, const Samples& s, V3 n, size_t at) {
   const V3 half = inverse * sum;
   const V c = dot(n, half);
   const Mask there = hn::And(load_mask(s.lit + at), c > set(0));
-  alignas(64) Lanes power;
-  store(hn::IfThenElse(there, c, set(1)), power);
-  for (size_t i = 0; i < hn::Lanes(Tag()); ++i)
-    power[i] = std::pow(power[i], static_cast<float>(f.photo.shininess));
+  const V cosine = hn::IfThenElse(there, c, set(1));
   const V specular = set(static_cast<float>(f.photo.specular));
-  const V raised = only(there, load(power));
-  const V slope = only(there, specular * set(static_cast<float>(strength * f.photo.shininess)) *
-                                  raised / hn::IfThenElse(there, c, set(1)));
+  const V shininess = set(static_cast<float>(f.photo.shininess));
+  const V raised = only(there, hn::Exp(Tag(), shininess * hn::Log(Tag(), cosine)));
+  const V slope = specular * set(strength) * shininess * raised / cosine;
   out.by_specular = set(strength) * raised;
   out.I = specular * out.by_specular;
   out.by_n = slope * half;
@@ -104,9 +103,10 @@ void store3(V3 v, int first, Values& out, size_t at) {
   store(v.z, out[first + 2] + at);
 }
 
-/// Derivatives by light and, through the normals, by position; adds to by_bary.
-void differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const V* b,
-                         const Normal& normal, const Light& l, V* by_bary, Values& out, size_t at) {
+/// Derivatives by light and, through vertex normals, by position; adds to by_bary. Returns that by
+/// the triangle's own unit normal.
+V3 differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const V* b,
+                       const Normal& normal, const Light& l, V* by_bary, Values& out, size_t at) {
   const V gain = set(static_cast<float>(f.photo.gain)), albedo = load(a.value + at);
   const V3 n = normal.n, sun = set(f.photo.sun.cast<float>().eval());
   V3 by_n = only(l.sunny, (gain * albedo) * sun);
@@ -114,31 +114,52 @@ void differentiate_light(const Frame& f, const Samples& s, const Albedo& a, cons
   if (l.glossy) {
     by_n = by_n + gain * l.gloss.by_n;
     by_sun = by_sun + gain * l.gloss.by_sun;
-    store(gain * l.gloss.by_specular, out[kBySpecular] + at);
+    store(gain * l.gloss.by_specular, out[kByPhoto + kSpecular] + at);
   }
   const V by_visibility = gain * albedo * set(static_cast<float>(f.photo.ambient));
   for (int k = 0; k < 3; ++k)
     by_bary[k] = by_bary[k] + by_visibility * l.share * load(s.of_triangle[kVisibility + k] + at);
-  if (f.options.smooth_normals) {
-    const V by_share = set(0.5f) * by_visibility * l.visibility;
-    by_n = by_n + by_share * load3(s.of_triangle + kFacet, at);
-    by_n = normal.inverse * (by_n - dot(n, by_n) * n);
-    for (int k = 0; k < 3; ++k)
-      by_bary[k] = by_bary[k] + dot(by_n, load3(s.of_triangle + kNormals + 3 * k, at));
-    store_products(by_n, b, kBySecond, out, at);
-    store3(by_share * n, kByFacet, out, at);
-  } else {
-    store3(by_n, kByFacet, out, at);
-  }
-  store(gain * albedo * l.visibility * l.share, out[kByAmbient] + at);
-  store3(by_sun, kBySun, out, at);
+  store(gain * albedo * l.visibility * l.share, out[kByPhoto + kAmbient] + at);
+  store3(by_sun, kByPhoto + kSun, out, at);
+  if (!f.options.smooth_normals) return by_n;
+  const V by_share = set(0.5f) * by_visibility * l.visibility;
+  by_n = by_n + by_share * load3(s.of_triangle + kFacet, at);
+  by_n = normal.inverse * (by_n - dot(n, by_n) * n);
+  for (int k = 0; k < 3; ++k)
+    by_bary[k] = by_bary[k] + dot(by_n, load3(s.of_triangle + kNormals + 3 * k, at));
+  store_products(by_n, b, kBySecond, out, at);
+  return by_share * n;
+}
+
+/// Derivatives by the triangle's corners: by the material point at them, times b, and by its own
+/// unit normal n = c/|c|, c = e1 x e2.
+struct ByCorners {
+  V3 point;     ///< world axes
+  V3 one, two;  ///< of corners 1 and 2 by way of n; corner 0 has minus their sum
+};
+
+void add_facet_normal(const Samples& s, V3 by_n, ByCorners* by, size_t at) {
+  const Lanes* corners = s.of_triangle + kCorners;
+  const V3 e1 = load3(corners + 3, at) - load3(corners, at);
+  const V3 e2 = load3(corners + 6, at) - load3(corners, at);
+  const V3 n = load3(s.of_triangle + kFacet, at);
+  const V3 m = inverse_norm(cross(e1, e2)) * (by_n - dot(n, by_n) * n);
+  by->one = cross(e2, m);
+  by->two = cross(m, e1);
+}
+
+void store_corners(const ByCorners& by, const V* b, Values& out, size_t at) {
+  store3(b[0] * by.point - by.one - by.two, kByPosition, out, at);
+  store3(b[1] * by.point + by.one, kByPosition + 3, out, at);
+  store3(b[2] * by.point + by.two, kByPosition + 6, out, at);
 }
 
 /// Under the fixed ray h, db = -(1 - b 1^T) Q dP b with P the corners in camera axes and Q its
 /// inverse: dI = g.dx of the material point, g = -Q^T (by_bary - by_bary.b), which is upright on
-/// the ray. Q_xy = A s0 (triangle_table.cpp).
+/// the ray. Q_xy = A s0 (triangle_table.cpp). The camera moved by (w, v) moves all points by
+/// w x p + v in its own axes; normals keep theirs with the light.
 void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V* by_bary,
-                          const Light& l, Values& out, size_t at) {
+                          V3 by_facet, const Light& l, Values& out, size_t at) {
   const Lanes* A = s.of_triangle + kRayToBary;
   const V mean = by_bary[0] * b[0] + by_bary[1] * b[1] + by_bary[2] * b[2];
   const V3 slid = {by_bary[0] - mean, by_bary[1] - mean, by_bary[2] - mean};
@@ -147,27 +168,35 @@ void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V*
   V3 g = {s0 * dot(ax, slid), s0 * dot(ay, slid), set(0)};
   const V hx = load(s.h[0] + at), hy = load(s.h[1] + at);
   const V zx = load(s.zoom[0] + at), zy = load(s.zoom[1] + at);
-  V depth = set(1);
+  V zoomed = set(1);
+  V3 p = {hx, hy, load(s.depth + at) + set(static_cast<float>(f.view.start))};
   if (f.view.perspective) {
     g.z = set(0) - (hx * g.x + hy * g.y);
     const V along = dot(ax, one) * load(s.dh[0] + at) + dot(ay, one) * load(s.dh[1] + at);
-    depth = set(-1) / (s0 * (set(1) + along));
+    zoomed = set(-1) / (s0 * (set(1) + along));  // its depth
+    p = zoomed * V3{hx, hy, set(1)};
   }
   const Eigen::Matrix3f R = f.view.camera.R.cast<float>();
-  store_products(transform(R.transpose(), g), b, kByPosition, out, at);
-  V by_zoom = depth * (zx * g.x + zy * g.y);
+  const V3 zero = {set(0), set(0), set(0)};
+  ByCorners by = {transform(R.transpose(), g), zero, zero};
+  V3 turn = cross(p, g);
+  V by_zoom = zoomed * (zx * g.x + zy * g.y);
+  if (f.photo.shaded) add_facet_normal(s, by_facet, &by, at);
+  store_corners(by, b, out, at);
   if (l.glossy && f.photo.specular != 0) {
     // The camera turns, and the direction to it with it: d(to camera) = -w x (to camera).
     const V gain = set(static_cast<float>(f.photo.gain));
     const V3 eye = l.gloss.eye, by_eye = gain * l.gloss.by_eye;
-    store3(cross(by_eye, eye), kByTurn, out, at);
+    turn = turn + cross(by_eye, eye);
     if (f.view.perspective) {
       const V inverse = inverse_norm({hx, hy, set(1)});
-      const V3 turn = {inverse * zx, inverse * zy, set(0)};
-      by_zoom = by_zoom + dot(by_eye, turn - dot(eye, turn) * eye);
+      const V3 seen = {inverse * zx, inverse * zy, set(0)};
+      by_zoom = by_zoom + dot(by_eye, seen - dot(eye, seen) * eye);
     }
   }
-  store(by_zoom, out[kByZoom] + at);
+  store3(turn, kByPhoto + kRotate, out, at);
+  store3(g, kByPhoto + kMove, out, at);
+  store(by_zoom, out[kByPhoto + kZoom] + at);
 }
 
 void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivatives,
@@ -184,14 +213,15 @@ void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivat
     store(I, out->I + at);
     if (!derivatives) continue;
     for (int k = kBySecond; k < kRayFloats; ++k) store(set(0), value[k] + at);
-    store(I, value[kByLogGain] + at);
+    store(I, value[kByPhoto + kLogGain] + at);
     V by_bary[3];
     for (int k = 0; k < 3; ++k) by_bary[k] = gain * l.diffuse * load(a.by_bary[k] + at);
+    V3 by_facet = {set(0), set(0), set(0)};
     if (f.photo.shaded)
-      differentiate_light(f, s, a, b, normal, l, by_bary, value, at);
+      by_facet = differentiate_light(f, s, a, b, normal, l, by_bary, value, at);
     else if (f.spline)
       store_products((gain * l.diffuse) * load3(a.by_reference, at), b, kBySecond, value, at);
-    differentiate_motion(f, s, b, by_bary, l, value, at);
+    differentiate_motion(f, s, b, by_bary, by_facet, l, value, at);
   }
   if (!derivatives) return;
   float* rows[kLanes];

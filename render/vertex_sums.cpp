@@ -6,44 +6,53 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include <algorithm>
-
 HWY_BEFORE_NAMESPACE();
 namespace hookeye::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// to += factor from, kCount floats.
-template <int kCount>
-HWY_INLINE void add_scaled(float factor, const float* from, float* to) {
+/// to[r] += sum over `count` pixels of factors[r] from, r < kRows: rows of kCount floats that stay
+/// in registers meanwhile. Steps: floats from one pixel to the next.
+template <int kRows, int kCount>
+HWY_INLINE void add_outer(const float* factors, size_t factor_step, const float* from,
+                          size_t from_step, int count, float (*to)[kCount]) {
   const hn::CappedTag<float, kCount> tag;
-  const auto f = hn::Set(tag, factor);
-  for (size_t i = 0; i < kCount; i += hn::Lanes(tag))
-    hn::Store(hn::Load(tag, to + i) + f * hn::Load(tag, from + i), tag, to + i);
+  for (size_t at = 0; at < kCount; at += hn::Lanes(tag)) {
+    hn::Vec<decltype(tag)> sum[kRows];
+    for (int r = 0; r < kRows; ++r) sum[r] = hn::Load(tag, to[r] + at);
+    for (int k = 0; k < count; ++k) {
+      const auto v = hn::LoadU(tag, from + k * from_step + at);
+      for (int r = 0; r < kRows; ++r)
+        sum[r] = hn::MulAdd(hn::Set(tag, factors[k * factor_step + r]), v, sum[r]);
+    }
+    for (int r = 0; r < kRows; ++r) hn::Store(sum[r], tag, to[r] + at);
+  }
 }
 
-void add_pixel_lanes(const PixelRow& p, VertexSums* sums) {
-  alignas(64) float photo[kPhotoFloats] = {}, weighted[kPhotoFloats];
-  std::copy_n(p.photo, kPhotoColumns, photo);
-  const float ww = p.w * p.w;
-  for (int k = 0; k < kPhotoFloats; ++k) weighted[k] = ww * photo[k];
+template <int kNumbers>
+HWY_INLINE void add_vertices(const PixelRun& p, VertexSums* sums) {
   const size_t* block = p.block.data();
-  const size_t count = p.slots.size();
-  for (size_t i = 0; i < count; ++i) {
-    alignas(64) float g[kVertexFloats];
-    std::copy_n(p.vertices + i * kVertexFloats, kVertexFloats, g);
+  const size_t step = p.at(1, 0);
+  for (size_t i = 0; i < p.slots.size(); ++i) {
+    const float* g = p.vertices.data() + p.at(0, i);
     VertexRow& row = sums->vertex[p.slots[i]];
-    for (int c = 0; c < 6; ++c) add_scaled<kPhotoFloats>(g[c], weighted, row.photo[c]);
-    add_scaled<kVertexFloats>(p.Bt_r, g, row.b);
-    for (size_t j = i; j < count; ++j, ++block) {
-      const float* other = p.vertices + j * kVertexFloats;
-      for (int c = 0; c < 6; ++c)
-        add_scaled<kVertexFloats>(ww * other[c], g, sums->block[*block].value[c]);
-    }
+    add_outer<kNumbers, kPhotoFloats>(g, step, p.photo_weighted[0], kPhotoFloats, p.count,
+                                      row.photo);
+    add_outer<1, kVertexFloats>(p.Bt_r, 1, g, step, p.count, &row.b);
+    for (size_t j = i; j < p.slots.size(); ++j, ++block)
+      add_outer<kNumbers, kVertexFloats>(p.weighted.data() + p.at(0, j), step, g, step, p.count,
+                                         sums->block[*block].value);
   }
-  for (int k = 0; k < kPhotoColumns; ++k)
-    add_scaled<kPhotoFloats>(photo[k], weighted, sums->photo.photo[k]);
-  add_scaled<kPhotoFloats>(p.Bt_r, photo, sums->photo.b);
+}
+
+void add_pixels_lanes(const PixelRun& p, VertexSums* sums) {
+  if (p.numbers == 3)
+    add_vertices<3>(p, sums);
+  else
+    add_vertices<6>(p, sums);
+  add_outer<kPhotoColumns, kPhotoFloats>(p.photo[0], kPhotoFloats, p.photo_weighted[0],
+                                         kPhotoFloats, p.count, sums->photo.photo);
+  add_outer<1, kPhotoFloats>(p.Bt_r, 1, p.photo[0], kPhotoFloats, p.count, &sums->photo.b);
 }
 
 /// Rows kRows of Y at once, one vector of columns after the other.
@@ -82,11 +91,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace hookeye {
 
-HWY_EXPORT(add_pixel_lanes);
+HWY_EXPORT(add_pixels_lanes);
 HWY_EXPORT(add_product_lanes);
 
-void add_pixel(const PixelRow& pixel, VertexSums* sums) {
-  HWY_DYNAMIC_DISPATCH(add_pixel_lanes)(pixel, sums);
+void add_pixels(const PixelRun& run, VertexSums* sums) {
+  HWY_DYNAMIC_DISPATCH(add_pixels_lanes)(run, sums);
 }
 
 void add_product(const VertexBlock& block, double factor, ProductSize size, const double* Z,

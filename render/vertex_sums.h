@@ -30,17 +30,24 @@ struct VertexSums {
   PhotoBlock photo;
 };
 
-/// One pixel's derivatives g and what they are summed with.
-struct PixelRow {
-  const float* vertices;             ///< kVertexFloats of each
-  const float* photo;                ///< kPhotoColumns
-  const std::vector<int>& slots;     ///< of VertexSums::vertex
-  const std::vector<size_t>& block;  ///< of pairs (i, j), i <= j, row by row
-  float w, Bt_r;
+/// Derivatives g of neighbouring pixels by the same vertices and by the photo's numbers.
+struct PixelRun {
+  static constexpr int kPixels = 16;
+  std::vector<int> slots;                 ///< of VertexSums::vertex
+  std::vector<size_t> block;              ///< of slots (i, j), i <= j, row by row
+  int numbers = 6;                        ///< of a vertex: 6, or 3 where the last three are zero
+  int count = 0;                          ///< pixels
+  std::vector<float> vertices, weighted;  ///< kVertexFloats by slot and pixel, and w^2 times that
+  alignas(64) float photo[kPixels][kPhotoFloats], photo_weighted[kPixels][kPhotoFloats];
+  float Bt_r[kPixels];
+  /// Of a pixel's slot.
+  size_t at(int pixel, size_t slot) const {
+    return (static_cast<size_t>(pixel) * slots.size() + slot) * kVertexFloats;
+  }
 };
 
 /// M += w^2 g g^T, b += Bt_r g.
-void add_pixel(const PixelRow& pixel, VertexSums* sums);
+void add_pixels(const PixelRun& run, VertexSums* sums);
 
 /// Y += factor block Z for `rows` numbers of a vertex, row-major with `columns` columns.
 struct ProductSize {

@@ -86,7 +86,8 @@ TEST_F(CastShadow, derivatives_on_both_sides) {
   const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, false);
   std::vector<int> pixels;
   int dark = 0;
-  for (const int px : r.dI.pixel) {
+  const test::Joined dI = test::joined(r.dI);
+  for (const int px : dI.pixel) {
     const double beside = beside_shadow(px % r.I.width, px / r.I.width);
     if (std::isfinite(beside) && std::abs(beside) > 0.9 && r.coverage.values[px] == 1.0f) {
       pixels.push_back(px);

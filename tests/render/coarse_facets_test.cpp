@@ -53,7 +53,8 @@ class CoarseFacets : public testing::TestWithParam<Setting> {
   /// Pixels whose rays stay on one facet.
   void choose_pixels(const Rendering& r) {
     const Image& I = r.I;
-    for (const int px : r.dI.pixel) {
+    const test::Joined dI = test::joined(r.dI);
+    for (const int px : dI.pixel) {
       const int u = px % I.width, v = px / I.width;
       bool inside = u > 1 && v > 1 && u < I.width - 2 && v < I.height - 2;
       for (int dv = -2; inside && dv <= 2; ++dv)
@@ -139,7 +140,8 @@ TEST(NightSide, sun) {
     const VectorXd d = test::directional(renderer, r, surface.X, nullptr, nullptr,
                                          VectorXd::Unit(kPhotoColumns, kSun + k));
     int night = 0;
-    for (const int px : r.dI.pixel) {
+    const test::Joined dI = test::joined(r.dI);
+    for (const int px : dI.pixel) {
       bool dark = true, alone = true;
       for (int by : {-2, 0, 2})
         for (int by_row : {-2, 0, 2}) {

@@ -24,7 +24,8 @@ TEST(condensed, equals_explicit_rows) {
     }
     const Matrix3Xd x = surface.X + 0.1 * test::field(surface.X, 0.2);
     const Rendering out = renderer.render(x, &surface.X, texture, state, {}, true);
-    const Eigen::Index n = Eigen::Index(out.dI.pixel.size()), m = 7, nv = 3 * x.cols();
+    const test::Joined dI = test::joined(out.dI);
+    const Eigen::Index n = Eigen::Index(dI.pixel.size()), m = 7, nv = 3 * x.cols();
     srand(1);
     VertexSensitivity S;
     S.position = Eigen::MatrixXd::Random(nv, m);
@@ -32,11 +33,11 @@ TEST(condensed, equals_explicit_rows) {
     S.photo = Eigen::MatrixXd::Random(kPhotoColumns, m);
     const VectorXd r = VectorXd::Random(n), w = VectorXd::Random(n).array() + 1.5;
     const VectorXd Bt_r = w.cwiseProduct(r);
-    Eigen::MatrixXd J = out.dI.d_photo.cast<double>().transpose() * S.photo;
+    Eigen::MatrixXd J = dI.d_photo.cast<double>().transpose() * S.photo;
     for (Eigen::Index i = 0; i < n; ++i)
-      for (int s = out.dI.first[i]; s < out.dI.first[i + 1]; ++s)
+      for (int s = dI.first[i]; s < dI.first[i + 1]; ++s)
         for (int k = 0; k < 3; ++k) {
-          const DerivativeSegment& g = out.dI.segments[s];
+          const DerivativeSegment& g = dI.segments[s];
           const int v = 3 * surface.triangles[g.triangle][k];
           J.row(i) += g.d_position.col(k).cast<double>().transpose() * S.position.middleRows(v, 3);
           J.row(i) += g.d_second.col(k).cast<double>().transpose() * S.second.middleRows(v, 3);
@@ -51,6 +52,15 @@ TEST(condensed, equals_explicit_rows) {
   }
 }
 
+void expect_same(const ImageDerivative& first, const ImageDerivative& second) {
+  const test::Joined a = test::joined(first), b = test::joined(second);
+  EXPECT_EQ(a.pixel, b.pixel);
+  EXPECT_TRUE(a.d_photo == b.d_photo);
+  ASSERT_EQ(a.segments.size(), b.segments.size());
+  for (size_t i = 0; i < a.segments.size(); ++i)
+    ASSERT_TRUE(a.segments[i].d_position == b.segments[i].d_position);
+}
+
 TEST(renderer, threads_agree_bit_by_bit) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
   Renderer renderer(surface);
@@ -61,11 +71,26 @@ TEST(renderer, threads_agree_bit_by_bit) {
   const Rendering a = renderer.render(surface.X, nullptr, texture, state, one, true);
   const Rendering b = renderer.render(surface.X, nullptr, texture, state, two, true);
   EXPECT_EQ(a.I.values, b.I.values);
-  EXPECT_EQ(a.dI.pixel, b.dI.pixel);
-  EXPECT_TRUE(a.dI.d_photo == b.dI.d_photo);
-  ASSERT_EQ(a.dI.segments.size(), b.dI.segments.size());
-  for (size_t i = 0; i < a.dI.segments.size(); ++i)
-    ASSERT_TRUE(a.dI.segments[i].d_position == b.dI.segments[i].d_position);
+  expect_same(a.dI, b.dI);
+}
+
+// Pictures of other sizes and of other bodies may have been in the memory before.
+TEST(renderer, memory_used_again_leaves_nothing_behind) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
+  Renderer renderer(surface);
+  Texture texture;
+  PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  const Rendering fresh = renderer.render(surface.X, nullptr, texture, state, {}, true);
+  Rendering again;
+  PhotoState large = state;
+  large.camera.width += 60, large.camera.height += 90;
+  large.background = 0.7;
+  renderer.render(1.1 * surface.X, nullptr, texture, large, {}, true, nullptr, &again);
+  renderer.render(surface.X, nullptr, texture, state, {}, true, nullptr, &again);
+  EXPECT_EQ(fresh.I.values, again.I.values);
+  EXPECT_EQ(fresh.coverage.values, again.coverage.values);
+  EXPECT_EQ(fresh.triangle, again.triangle);
+  expect_same(fresh.dI, again.dI);
 }
 
 // The program runs on whatever the processor has; the pictures may not depend on it.
@@ -84,14 +109,15 @@ TEST(renderer, instruction_sets_agree) {
   for (int64_t target : targets) {
     SCOPED_TRACE(hwy::TargetName(target));
     const Rendering other = picture(target);
-    ASSERT_EQ(other.dI.pixel, best.dI.pixel);
-    ASSERT_EQ(other.dI.segments.size(), best.dI.segments.size());
-    EXPECT_LT((other.dI.d_photo - best.dI.d_photo).norm(), 1e-5f * best.dI.d_photo.norm());
+    const test::Joined a = test::joined(other.dI), b = test::joined(best.dI);
+    ASSERT_EQ(a.pixel, b.pixel);
+    ASSERT_EQ(a.segments.size(), b.segments.size());
+    EXPECT_LT((a.d_photo - b.d_photo).norm(), 1e-5f * b.d_photo.norm());
     for (size_t i = 0; i < best.I.values.size(); ++i)
       ASSERT_NEAR(other.I.values[i], best.I.values[i], 1e-6f);
-    for (size_t i = 0; i < best.dI.segments.size(); ++i)
-      ASSERT_LT((other.dI.segments[i].d_position - best.dI.segments[i].d_position).norm(),
-                1e-4f + 1e-4f * best.dI.segments[i].d_position.norm());
+    for (size_t i = 0; i < b.segments.size(); ++i)
+      ASSERT_LT((a.segments[i].d_position - b.segments[i].d_position).norm(),
+                1e-4f + 1e-4f * b.segments[i].d_position.norm());
   }
   hwy::SetSupportedTargetsForTest(0);
 }

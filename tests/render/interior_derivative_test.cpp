@@ -56,13 +56,13 @@ class Interior : public testing::TestWithParam<Setting> {
   /// Pixels well inside the body, where no step uncovers anything; they pass the test one by one.
   void choose_pixels(const Rendering& r) {
     const Image& c = r.coverage;
-    for (size_t i = 0; i < r.dI.pixel.size(); ++i) {
-      const int px = r.dI.pixel[i], u = px % c.width, v = px / c.width;
+    r.dI.for_each_pixel([&](size_t, int px) {
+      const int u = px % c.width, v = px / c.width;
       bool inside = u > 1 && v > 1 && u < c.width - 2 && v < c.height - 2;
       for (int dv = -2; inside && dv <= 2; ++dv)
         for (int du = -2; du <= 2; ++du) inside = inside && c.at(u + du, v + dv) == 1.0f;
       if (inside) pixels.push_back(px);
-    }
+    });
     ASSERT_GT(pixels.size(), 300u);
   }
   VectorXd pick(const Image& image) const {

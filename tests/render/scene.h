@@ -121,6 +121,26 @@ inline PhotoState with_camera(PhotoState s, int column, double h) {
   return s;
 }
 
+/// All parts of a derivative as one, with the photo's numbers as columns.
+struct Joined {
+  std::vector<int> pixel, first = {0};
+  std::vector<DerivativeSegment> segments;
+  Eigen::Matrix<float, kPhotoColumns, Eigen::Dynamic> d_photo;
+};
+inline Joined joined(const ImageDerivative& dI) {
+  Joined out;
+  out.d_photo.resize(kPhotoColumns, Eigen::Index(dI.pixels()));
+  for (const auto& part : dI.parts)
+    for (size_t i = 0; i < part.pixel.size(); ++i) {
+      out.d_photo.col(Eigen::Index(out.pixel.size())) = part.photo[i];
+      out.pixel.push_back(part.pixel[i]);
+      out.segments.insert(out.segments.end(), part.segments.begin() + part.first[i],
+                          part.segments.begin() + part.first[i + 1]);
+      out.first.push_back(int(out.segments.size()));
+    }
+  return out;
+}
+
 /// dI of every pixel for changes of positions (and by them normals), reference and photo numbers;
 /// `dx_reference` belongs to photo textures and has to be told with them. Pixels without
 /// derivative: NaN.
@@ -130,10 +150,11 @@ inline VectorXd directional(const Renderer& renderer, const Rendering& r, const 
   VectorXd out = VectorXd::Constant(Eigen::Index(r.I.pixels()), std::nan(""));
   Matrix3Xd dn = Matrix3Xd::Zero(3, x.cols());
   if (dx) dn.reshaped() = renderer.normal_derivative(x) * dx->reshaped();
-  for (size_t i = 0; i < r.dI.pixel.size(); ++i) {
-    double d = r.dI.d_photo.col(i).cast<double>().dot(d_photo);
-    for (int s = r.dI.first[i]; s < r.dI.first[i + 1]; ++s) {
-      const DerivativeSegment& g = r.dI.segments[s];
+  const Joined dI = joined(r.dI);
+  for (size_t i = 0; i < dI.pixel.size(); ++i) {
+    double d = dI.d_photo.col(i).cast<double>().dot(d_photo);
+    for (int s = dI.first[i]; s < dI.first[i + 1]; ++s) {
+      const DerivativeSegment& g = dI.segments[s];
       for (int k = 0; k < 3; ++k) {
         const int v = renderer.surface().triangles[g.triangle][k];
         if (dx) d += g.d_position.col(k).cast<double>().dot(dx->col(v));
@@ -141,7 +162,7 @@ inline VectorXd directional(const Renderer& renderer, const Rendering& r, const 
         if (second) d += g.d_second.col(k).cast<double>().dot(second->col(v));
       }
     }
-    out[r.dI.pixel[i]] = d;
+    out[dI.pixel[i]] = d;
   }
   return out;
 }

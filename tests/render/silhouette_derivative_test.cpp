@@ -100,7 +100,7 @@ TEST_F(Contours, inner_edge_alone) {
   // Pixels that body covers wholly; nothing but the front ball moves.
   VectorXd analytic =
       test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns));
-  ASSERT_GT(r.dI.pixel.size(), 500u);
+  ASSERT_GT(r.dI.pixels(), 500u);
   compare(
       analytic,
       [&](double h) {
@@ -198,8 +198,8 @@ TEST_F(Contours, background_and_blur) {
   Renderer renderer(surface);
   const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
   const auto at = [&](const VectorXd& all) {
-    VectorXd out(Eigen::Index(r.dI.pixel.size()));
-    for (size_t i = 0; i < r.dI.pixel.size(); ++i) out[i] = all[r.dI.pixel[i]];
+    VectorXd out(Eigen::Index(r.dI.pixels()));
+    r.dI.for_each_pixel([&](size_t i, int pixel) { out[i] = all[pixel]; });
     return out;
   };
   test::expect_derivative(
@@ -208,7 +208,7 @@ TEST_F(Contours, background_and_blur) {
         s.blur_variance += h;
         return at(picture(renderer, surface.X, s));
       },
-      r.dI.d_photo.row(kBlur).transpose().cast<double>(), 0.02, 1e-3, "blur");
+      test::joined(r.dI).d_photo.row(kBlur).transpose().cast<double>(), 0.02, 1e-3, "blur");
   state.blur_variance = 0;
   const Rendering sharp = renderer.render(surface.X, nullptr, texture, state, options, true);
   test::expect_derivative(
@@ -217,7 +217,8 @@ TEST_F(Contours, background_and_blur) {
         s.background += h;
         return at(picture(renderer, surface.X, s));
       },
-      sharp.dI.d_photo.row(kBackground).transpose().cast<double>(), 0.02, 1e-4, "background");
+      test::joined(sharp.dI).d_photo.row(kBackground).transpose().cast<double>(), 0.02, 1e-4,
+      "background");
 }
 
 TEST(blur, is_a_semigroup_that_keeps_the_mean) {
