@@ -150,22 +150,21 @@ std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model
   std::vector<MeasuredEvaluation> all;
   const auto& specs = scene.capture.examples[e].measured;
   const Equilibrium& equilibrium = *example.equilibrium;
-  Eigen::MatrixXd dR;
   for (size_t i = 0; i < specs.size(); ++i) {
     const MeasuredSpec& spec = specs[i];
     MeasuredEvaluation one;
     one.example = e;
     one.index = static_cast<int>(i);
-    if (columns && dR.size() == 0 && spec.kind != MeasuredSpec::Kind::position)
-      dR = columns->dR + equilibrium.K * example.S;
     if (spec.kind == MeasuredSpec::Kind::force) {
       const Region& region = scene.body->regions.at(spec.region);
       one.predicted = support_force(equilibrium, region) + model.examples[e].force_offset;
-      if (columns) one.J = d_support_force(region, dR) + columns->d_offset;
+      if (columns)
+        one.J = d_support_force(equilibrium, region, columns->dR, example.S) + columns->d_offset;
     } else if (spec.kind == MeasuredSpec::Kind::moment) {
       const Region& region = scene.body->regions.at(spec.region);
       one.predicted = support_moment(equilibrium, region, spec.about);
-      if (columns) one.J = d_support_moment(equilibrium, region, spec.about, dR, example.S);
+      if (columns)
+        one.J = d_support_moment(equilibrium, region, spec.about, columns->dR, example.S);
     } else {
       SurfacePoint point;
       locate_on_boundary(scene.body->mesh, spec.point, &point);

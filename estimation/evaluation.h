@@ -30,7 +30,8 @@ struct EvaluationOptions {
   /// Residuals made linear in the motion (registration.h): `sums`, their cost and the pictures.
   /// Where only pictures are asked for, `sums` alone are of those.
   bool registered = false;
-  int level = 0;  ///< pyramid level: 0 = full size, each level halves
+  int level = 0;             ///< pyramid level: 0 = full size, each level halves
+  bool single_rays = false;  ///< at full size one ray a pixel: quicker, and aliased
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
   /// Of the equilibrium (EquilibriumOptions).

@@ -21,8 +21,9 @@ namespace {
 /// every speckle once (a box has 2.5 times the variance of the 1.5 px window). A texture that is a
 /// photo went through the camera's aperture once already: one ray a pixel, or the model would be
 /// blurred twice and every motion come out too long.
-RenderOptions at_level(RenderOptions options, int level, const Texture& texture) {
-  if (level == 0 && texture.source == Texture::Source::photo)
+RenderOptions at_level(RenderOptions options, int level, const Texture& texture,
+                       bool single_rays = false) {
+  if (level == 0 && (single_rays || texture.source == Texture::Source::photo))
     options.rays_per_axis = 1, options.filter_width_px = 1.0;
   if (level == 0) return options;
   options.rays_per_axis = std::min(1 + 3 * level, 15);
@@ -187,11 +188,11 @@ double loss(const Image& residual, double huber) {
 }
 
 /// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
-Image compared_sigma(const PhotoPlane& photo, const Texture& texture) {
-  Image sigma = photo.sigma;
-  if (texture.source != Texture::Source::photo) return sigma;
-  for (float& s : sigma.values) s *= std::sqrt(2.0f);
-  return sigma;
+const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Image* larger) {
+  if (texture.source != Texture::Source::photo) return photo.sigma;
+  *larger = photo.sigma;
+  for (float& s : larger->values) s *= std::sqrt(2.0f);
+  return *larger;
 }
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
@@ -283,6 +284,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
                            reference.state ? &reference.state->S : nullptr, has_light);
   const Eigen::MatrixXd second_on_vertices = S.second;
   Rendering rendering;  // one for all photos: its memory is used again
+  Image larger_sigma;
 
   for (size_t k = 0; k < scene.photos[e].size(); ++k)
     for (size_t plane = 0; plane < scene.photos[e][k].planes.size(); ++plane) {
@@ -299,13 +301,14 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       PhotoState state = state_at_level(model.examples[e].photos[k], options.level);
       state.backdrop = photo.backdrop;
       if (mask_photo) state = coverage_state(state);
-      RenderOptions render_options = at_level(base_options, options.level, texture);
+      RenderOptions render_options =
+          at_level(base_options, options.level, texture, options.single_rays);
       render_options.derivatives = columns != nullptr;
       render_options.gloss_derivative =
           columns != nullptr && !columns->dphoto[k].row(kSpecular).isZero(0.0);
       impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
                              render_options, silhouette, &photo.valid, &rendering);
-      const Image sigma = compared_sigma(photo, texture);
+      const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
       const Comparison comparison =
           compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state);
       PhotoEvaluation one;

@@ -75,25 +75,23 @@ class RunOfPixels {
  public:
   RunOfPixels(const SurfaceMesh& surface, const std::vector<int>& slot,
               NodeNormalEquations::Impl* sums)
-      : surface_(surface), slot_(slot), sums_(*sums) {
+      : surface_(surface), slot_(slot), sums_(*sums), blocks_of_(surface.triangles.size()) {
     run_.numbers = sums->numbers();
   }
 
   void add(const Part& part, size_t pixel, float w, float Bt_r) {
-    if (w == 0 && Bt_r == 0) return;
+    if (w == 0 && Bt_r == 0) return flush();
     const int first = part.first[pixel], last = part.first[pixel + 1];
     const bool same = is(part, first, last);
     if (!same || run_.count == PixelRun::kPixels) flush();
     if (!same) set(part, first, last);
-    const size_t begin = run_.at(run_.count, 0), end = run_.at(run_.count + 1, 0);
-    std::fill(run_.vertices.begin() + begin, run_.vertices.begin() + end, 0.0f);
-    for (size_t s = 0; s < triangles_.size(); ++s)
-      for (int k = 0; k < 3; ++k) add_corner(part.segments[first + s], k, local_[3 * s + k]);
-    for (size_t i = begin; i < end; ++i) run_.weighted[i] = w * w * run_.vertices[i];
-    float* photo = run_.photo[run_.count];
-    std::copy_n(part.photo[pixel].data(), kPhotoColumns, photo);
-    std::fill(photo + kPhotoColumns, photo + kPhotoFloats, 0.0f);
-    for (int k = 0; k < kPhotoFloats; ++k) run_.photo_weighted[run_.count][k] = w * w * photo[k];
+    if (run_.count == 0) run_.photo = &part.photo[pixel];
+    float* g = run_.vertices.data() + run_.at(run_.count, 0);
+    if (triangles_.size() == 1)
+      set_corners(part.segments[first], g);
+    else
+      add_corners(part.segments.data() + first, g);
+    run_.ww[run_.count] = w * w;
     run_.Bt_r[run_.count++] = Bt_r;
   }
 
@@ -108,11 +106,21 @@ class RunOfPixels {
   }
 
  private:
-  void add_corner(const DerivativeSegment& segment, int k, int at) {
-    float* to = run_.vertices.data() + run_.at(run_.count, at);
-    for (int c = 0; c < 3; ++c) to[c] += segment.d_position(c, k);
-    if (sums_.second)
-      for (int c = 0; c < 3; ++c) to[3 + c] += segment.d_second(c, k);
+  void set_corners(const DerivativeSegment& segment, float* g) const {
+    for (int k = 0; k < 3; ++k) {
+      float* to = g + local_[k] * kVertexFloats;
+      std::copy_n(segment.d_position.data() + 3 * k, 3, to);
+      std::copy_n(segment.d_second.data() + 3 * k, 3, to + 3);
+    }
+  }
+  void add_corners(const DerivativeSegment* segments, float* g) const {
+    std::fill(g, g + kVertexFloats * run_.slots.size(), 0.0f);
+    for (size_t s = 0; s < triangles_.size(); ++s)
+      for (int k = 0; k < 3; ++k) {
+        float* to = g + local_[3 * s + k] * kVertexFloats;
+        for (int c = 0; c < 3; ++c) to[c] += segments[s].d_position(c, k);
+        for (int c = 0; c < 3; ++c) to[3 + c] += segments[s].d_second(c, k);
+      }
   }
   bool is(const Part& part, int first, int last) const {
     if (triangles_.size() != static_cast<size_t>(last - first)) return false;
@@ -122,7 +130,7 @@ class RunOfPixels {
   }
   void set(const Part& part, int first, int last) {
     std::vector<int>& slots = run_.slots;
-    triangles_.clear(), slots.clear(), run_.block.clear();
+    triangles_.clear(), slots.clear();
     for (int s = first; s < last; ++s) {
       triangles_.push_back(part.segments[s].triangle);
       for (int v : surface_.triangles[triangles_.back()]) slots.push_back(slot_[v]);
@@ -132,16 +140,29 @@ class RunOfPixels {
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
     for (int& at : local_)
       at = static_cast<int>(std::lower_bound(slots.begin(), slots.end(), at) - slots.begin());
-    for (size_t a = 0; a < slots.size(); ++a)
-      for (size_t b = a; b < slots.size(); ++b)
-        run_.block.push_back(sums_.block_of(slots[a], slots[b]));
+    if (triangles_.size() == 1) {
+      auto& known = blocks_of_[triangles_[0]];
+      if (known.empty()) known = blocks();
+      run_.block = known;
+    } else {
+      run_.block = blocks();
+    }
     const size_t size = run_.at(PixelRun::kPixels, 0);
-    if (run_.vertices.size() < size) run_.vertices.resize(size), run_.weighted.resize(size);
+    if (run_.vertices.size() < size) run_.vertices.resize(size);
+  }
+
+  std::vector<size_t> blocks() const {
+    const std::vector<int>& slots = run_.slots;
+    std::vector<size_t> out;
+    for (size_t a = 0; a < slots.size(); ++a)
+      for (size_t b = a; b < slots.size(); ++b) out.push_back(sums_.block_of(slots[a], slots[b]));
+    return out;
   }
 
   const SurfaceMesh& surface_;
   const std::vector<int>& slot_;
   NodeNormalEquations::Impl& sums_;
+  std::vector<std::vector<size_t>> blocks_of_;  ///< of pixels that see this triangle alone
   PixelRun run_;
   std::vector<int> triangles_;
   std::vector<int> local_;  ///< of corner k of segment s at 3s + k: position in slots
@@ -163,10 +184,11 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   const std::vector<int> slot = m.number_vertices(surface, dI);
   RunOfPixels run(surface, slot, &m);
   Eigen::Index at = 0;
-  for (const Part& part : dI.parts)
+  for (const Part& part : dI.parts) {
     for (size_t i = 0; i < part.pixel.size(); ++i, ++at)
       run.add(part, i, static_cast<float>(w[at]), static_cast<float>(Bt_r[at]));
-  run.flush();
+    run.flush();  // a run's pixels follow each other in one part
+  }
   m.take_photo_sums();
   return out;
 }

@@ -35,8 +35,10 @@ struct DerivativeSegment {
   Eigen::Matrix3f d_position, d_second;
 };
 
-/// Derivative of one pixel by the photo's numbers.
-using PhotoDerivative = Eigen::Matrix<float, kPhotoColumns, 1>;
+/// Derivative of one pixel by the photo's numbers: kPhotoColumns and zeros.
+constexpr int kPhotoFloats = 16;
+static_assert(kPhotoColumns <= kPhotoFloats);
+using PhotoDerivative = Eigen::Matrix<float, kPhotoFloats, 1>;
 
 /// Pixels that count, with their derivatives, each in one of the parts. A part's rows are
 /// compressed: the segments of its pixel i are segments[first[i] .. first[i+1]).

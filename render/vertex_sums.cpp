@@ -11,36 +11,44 @@ namespace hookeye::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// to[r] += sum over `count` pixels of factors[r] from, r < kRows: rows of kCount floats that stay
-/// in registers meanwhile. Steps: floats from one pixel to the next.
+/// Rows of numbers, one for each pixel of a run.
+struct Rows {
+  const float* first;
+  size_t step;
+  const float* of(int pixel) const { return first + pixel * step; }
+};
+
+/// to[r] += sum over pixels of weight factors[r] from, r < kRows: rows of kCount floats that stay
+/// in registers meanwhile.
 template <int kRows, int kCount>
-HWY_INLINE void add_outer(const float* factors, size_t factor_step, const float* from,
-                          size_t from_step, int count, float (*to)[kCount]) {
+HWY_INLINE void add_outer(Rows factors, Rows from, const float* weight, int pixels,
+                          float (*to)[kCount]) {
   const hn::CappedTag<float, kCount> tag;
   for (size_t at = 0; at < kCount; at += hn::Lanes(tag)) {
     hn::Vec<decltype(tag)> sum[kRows];
     for (int r = 0; r < kRows; ++r) sum[r] = hn::Load(tag, to[r] + at);
-    for (int k = 0; k < count; ++k) {
-      const auto v = hn::LoadU(tag, from + k * from_step + at);
-      for (int r = 0; r < kRows; ++r)
-        sum[r] = hn::MulAdd(hn::Set(tag, factors[k * factor_step + r]), v, sum[r]);
+    for (int k = 0; k < pixels; ++k) {
+      const auto v = hn::Set(tag, weight[k]) * hn::LoadU(tag, from.of(k) + at);
+      const float* factor = factors.of(k);
+      for (int r = 0; r < kRows; ++r) sum[r] = hn::MulAdd(hn::Set(tag, factor[r]), v, sum[r]);
     }
     for (int r = 0; r < kRows; ++r) hn::Store(sum[r], tag, to[r] + at);
   }
 }
 
+constexpr float kOne[1] = {1};
+
 template <int kNumbers>
 HWY_INLINE void add_vertices(const PixelRun& p, VertexSums* sums) {
   const size_t* block = p.block.data();
-  const size_t step = p.at(1, 0);
+  const auto slot = [&](size_t i) { return Rows{p.vertices.data() + p.at(0, i), p.at(1, 0)}; };
+  const Rows photo = {p.photo->data(), kPhotoFloats}, one = {kOne, 0};
   for (size_t i = 0; i < p.slots.size(); ++i) {
-    const float* g = p.vertices.data() + p.at(0, i);
     VertexRow& row = sums->vertex[p.slots[i]];
-    add_outer<kNumbers, kPhotoFloats>(g, step, p.photo_weighted[0], kPhotoFloats, p.count,
-                                      row.photo);
-    add_outer<1, kVertexFloats>(p.Bt_r, 1, g, step, p.count, &row.b);
+    add_outer<kNumbers, kPhotoFloats>(slot(i), photo, p.ww, p.count, row.photo);
+    add_outer<1, kVertexFloats>(one, slot(i), p.Bt_r, p.count, &row.b);
     for (size_t j = i; j < p.slots.size(); ++j, ++block)
-      add_outer<kNumbers, kVertexFloats>(p.weighted.data() + p.at(0, j), step, g, step, p.count,
+      add_outer<kNumbers, kVertexFloats>(slot(j), slot(i), p.ww, p.count,
                                          sums->block[*block].value);
   }
 }
@@ -50,9 +58,9 @@ void add_pixels_lanes(const PixelRun& p, VertexSums* sums) {
     add_vertices<3>(p, sums);
   else
     add_vertices<6>(p, sums);
-  add_outer<kPhotoColumns, kPhotoFloats>(p.photo[0], kPhotoFloats, p.photo_weighted[0],
-                                         kPhotoFloats, p.count, sums->photo.photo);
-  add_outer<1, kPhotoFloats>(p.Bt_r, 1, p.photo[0], kPhotoFloats, p.count, &sums->photo.b);
+  const Rows photo = {p.photo->data(), kPhotoFloats}, one = {kOne, 0};
+  add_outer<kPhotoColumns, kPhotoFloats>(photo, photo, p.ww, p.count, sums->photo.photo);
+  add_outer<1, kPhotoFloats>(one, photo, p.Bt_r, p.count, &sums->photo.b);
 }
 
 /// Rows kRows of Y at once, one vector of columns after the other.

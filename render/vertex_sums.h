@@ -4,13 +4,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "render/optics.h"
+#include "render/renderer.h"
 
 namespace hookeye {
 
 constexpr int kVertexFloats = 8;  ///< position 0-2, normal or reference position 3-5, two zeros
-constexpr int kPhotoFloats = 16;  ///< kPhotoColumns and a zero
-static_assert(kPhotoColumns <= kPhotoFloats);
 
 /// Floats: each sums the few hundred pixels about a vertex.
 struct alignas(64) VertexBlock {
@@ -33,20 +31,20 @@ struct VertexSums {
 /// Derivatives g of neighbouring pixels by the same vertices and by the photo's numbers.
 struct PixelRun {
   static constexpr int kPixels = 16;
-  std::vector<int> slots;                 ///< of VertexSums::vertex
-  std::vector<size_t> block;              ///< of slots (i, j), i <= j, row by row
-  int numbers = 6;                        ///< of a vertex: 6, or 3 where the last three are zero
-  int count = 0;                          ///< pixels
-  std::vector<float> vertices, weighted;  ///< kVertexFloats by slot and pixel, and w^2 times that
-  alignas(64) float photo[kPixels][kPhotoFloats], photo_weighted[kPixels][kPhotoFloats];
-  float Bt_r[kPixels];
+  std::vector<int> slots;        ///< of VertexSums::vertex
+  std::vector<size_t> block;     ///< of slots (i, j), i <= j, row by row
+  int numbers = 6;               ///< of a vertex: 6, or 3 where the last three are zero
+  int count = 0;                 ///< pixels
+  std::vector<float> vertices;   ///< kVertexFloats by slot and pixel
+  const PhotoDerivative* photo;  ///< of the first; the others follow
+  float ww[kPixels], Bt_r[kPixels];
   /// Of a pixel's slot.
   size_t at(int pixel, size_t slot) const {
     return (static_cast<size_t>(pixel) * slots.size() + slot) * kVertexFloats;
   }
 };
 
-/// M += w^2 g g^T, b += Bt_r g.
+/// M += ww g g^T, b += Bt_r g.
 void add_pixels(const PixelRun& run, VertexSums* sums);
 
 /// Y += factor block Z for `rows` numbers of a vertex, row-major with `columns` columns.

@@ -108,10 +108,12 @@ Eigen::MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loa
 Vector3d support_force(const Equilibrium& equilibrium, const Region& region);
 Vector3d support_moment(const Equilibrium& equilibrium, const Region& region,
                         const Vector3d& about);
-/// Their derivative by parameters: dR = dR/dp + K S (3n x m) and S = dq/dp. 3 x m.
-Eigen::MatrixXd d_support_force(const Region& region, const Eigen::MatrixXd& dR);
+/// Their derivatives by parameters, 3 x m, from dR/dp at fixed q and S = dq/dp (3n x m):
+/// dR = dR/dp + K S.
+Eigen::MatrixXd d_support_force(const Equilibrium& equilibrium, const Region& region,
+                                const Eigen::MatrixXd& dR_dp, const Eigen::MatrixXd& S);
 Eigen::MatrixXd d_support_moment(const Equilibrium& equilibrium, const Region& region,
-                                 const Vector3d& about, const Eigen::MatrixXd& dR,
+                                 const Vector3d& about, const Eigen::MatrixXd& dR_dp,
                                  const Eigen::MatrixXd& S);
 
 }  // namespace hookeye

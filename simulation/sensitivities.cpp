@@ -13,7 +13,8 @@ MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
   if (dqc_dp.size()) {
     for (size_t i = 0; i < loading.prescribed.size(); ++i)
       S.row(loading.prescribed[i]) = dqc_dp.row(static_cast<Eigen::Index>(i));
-    rhs += equilibrium.K * S;
+    for (Eigen::Index j = 0; j < S.cols(); ++j)  // few parameters move a support
+      if (!dqc_dp.col(j).isZero(0.0)) rhs.col(j) += equilibrium.K * S.col(j);
   }
   const MatrixXd B = -rhs(free, Eigen::all);
   MatrixXd X;
@@ -36,23 +37,37 @@ Vector3d support_moment(const Equilibrium& equilibrium, const Region& region,
   return m;
 }
 
-MatrixXd d_support_force(const Region& region, const MatrixXd& dR) {
-  MatrixXd d = MatrixXd::Zero(3, dR.cols());
-  for (int a : region.nodes) d += dR.middleRows<3>(3 * a);
-  return d;
+namespace {
+
+/// W^T (dR/dp + K S), without the whole of K S.
+MatrixXd of_reactions(const Equilibrium& equilibrium, const MatrixXd& W, const MatrixXd& dR_dp,
+                      const MatrixXd& S) {
+  const MatrixXd KtW = equilibrium.K.transpose() * W;
+  return W.transpose() * dR_dp + KtW.transpose() * S;
+}
+
+}  // namespace
+
+MatrixXd d_support_force(const Equilibrium& equilibrium, const Region& region,
+                         const MatrixXd& dR_dp, const MatrixXd& S) {
+  MatrixXd W = MatrixXd::Zero(S.rows(), 3);
+  for (int a : region.nodes) W.middleRows<3>(3 * a).setIdentity();
+  return of_reactions(equilibrium, W, dR_dp, S);
 }
 
 MatrixXd d_support_moment(const Equilibrium& equilibrium, const Region& region,
-                          const Vector3d& about, const MatrixXd& dR, const MatrixXd& S) {
-  MatrixXd d = MatrixXd::Zero(3, dR.cols());
+                          const Vector3d& about, const MatrixXd& dR_dp, const MatrixXd& S) {
+  MatrixXd W = MatrixXd::Zero(S.rows(), 3), by_q = W;  // arm x dR + dq x R
+  const auto crossed = [](const Vector3d& a) {         // [a]x^T
+    Eigen::Matrix3d m;
+    m << 0, a.z(), -a.y(), -a.z(), 0, a.x(), a.y(), -a.x(), 0;
+    return m;
+  };
   for (int a : region.nodes) {
-    const Vector3d arm = equilibrium.q.segment<3>(3 * a) - about,
-                   R = equilibrium.R.segment<3>(3 * a);
-    for (Eigen::Index j = 0; j < dR.cols(); ++j)
-      d.col(j) += arm.cross(Vector3d(dR.col(j).segment<3>(3 * a))) +
-                  Vector3d(S.col(j).segment<3>(3 * a)).cross(R);
+    W.middleRows<3>(3 * a) = crossed(equilibrium.q.segment<3>(3 * a) - about);
+    by_q.middleRows<3>(3 * a) = -crossed(equilibrium.R.segment<3>(3 * a));
   }
-  return d;
+  return of_reactions(equilibrium, W, dR_dp, S) + by_q.transpose() * S;
 }
 
 }  // namespace hookeye
