@@ -15,6 +15,7 @@
 #include "app/progress.h"
 #include "capture_io/input_error.h"
 #include "capture_io/scope.h"
+#include "estimation/evaluation.h"
 
 namespace hookeye {
 namespace {
@@ -173,6 +174,7 @@ int run_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   hookeye::watch_interrupts();
+  hookeye::keep_freed_memory();
   hookeye::remember_invocation(argc, argv);
   try {
     return hookeye::run_program(argc, argv);

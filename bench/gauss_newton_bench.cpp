@@ -111,4 +111,8 @@ BENCHMARK(gauss_newton)
 }  // namespace
 }  // namespace hookeye
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  hookeye::keep_freed_memory();  // as the program does
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -1,5 +1,8 @@
 #include "estimation/evaluation.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
@@ -88,6 +91,13 @@ Camera camera_at_level(const Camera& camera, int level) {
   coarse.cx = (camera.cx + 0.5) * s - 0.5;
   coarse.cy = (camera.cy + 0.5) * s - 0.5;
   return coarse;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
 }
 
 struct Workspace::Impl {

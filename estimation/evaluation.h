@@ -86,6 +86,11 @@ struct Evaluation {
   double motion_px() const;  ///< the same, cruder, of all photos here (needs registered)
 };
 
+/// Once a process: evaluations ask for hundreds of MB and give them back, time and again. What was
+/// given back stays with the process instead of being cleared by the kernel each time (a fifth of
+/// an iteration with 100 parameters). Where the C library is not glibc, nothing happens.
+void keep_freed_memory();
+
 /// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.
 /// Evaluating a form of another scene (a finer mesh) moves the workspace there.
 class Workspace {

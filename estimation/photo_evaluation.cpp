@@ -123,13 +123,11 @@ PhotoState coverage_state(PhotoState state) {
 VertexSensitivity vertex_sensitivity(const Renderer& renderer, const RenderSurface& surface,
                                      const Matrix3Xd& x, const Eigen::MatrixXd& S,
                                      const Eigen::MatrixXd* S_reference, bool normals) {
-  auto on_vertices = [&](const Eigen::MatrixXd& nodal) {
-    Eigen::MatrixXd out(3 * surface.W.rows(), nodal.cols());
-    for (int j = 0; j < nodal.cols(); ++j) {
-      const Eigen::Map<const Matrix3Xd> at_nodes(nodal.col(j).data(), 3, nodal.rows() / 3);
-      Eigen::Map<Matrix3Xd>(out.col(j).data(), 3, surface.W.rows()) =
-          (surface.W * at_nodes.transpose()).transpose();
-    }
+  const auto on_vertices = [&](const RowMatrix& nodal) {
+    RowMatrix out = RowMatrix::Zero(3 * surface.W.rows(), nodal.cols());
+    for (int v = 0; v < surface.W.outerSize(); ++v)
+      for (decltype(surface.W)::InnerIterator w(surface.W, v); w; ++w)
+        out.middleRows<3>(3 * w.row()) += w.value() * nodal.middleRows<3>(3 * w.col());
     return out;
   };
   VertexSensitivity out;
@@ -197,22 +195,25 @@ const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Ima
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
                           bool silhouette, bool mask, const PhotoState& state) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   Comparison out;
   out.residual = Image{photo.I.width, photo.I.height, 1, {}};
-  out.residual.values.assign(photo.I.pixels(), std::numeric_limits<float>::quiet_NaN());
+  out.residual.values.resize(photo.I.pixels());
   const auto telling = mask ? telling_pixels(rendering.I, photo.I) : std::vector<unsigned char>();
+  size_t count = 0;
   for (size_t i = 0; i < photo.I.pixels(); ++i) {
-    if (!photo.valid.empty() && !photo.valid[i]) continue;
-    const double coverage = rendering.coverage.values[i];
+    const float coverage = rendering.coverage.values[i];
     const bool counts = mask         ? telling[i] != 0
-                        : silhouette ? coverage > 0.0 || shows_body(photo, i, state)
-                                     : coverage > 1.0 - 1e-6;
-    if (!counts) continue;
-    const double r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
-    out.residual.values[i] = static_cast<float>(r);
-    out.r2 += r * r;
-    out.count += 1.0;
+                        : silhouette ? coverage > 0.0f || shows_body(photo, i, state)
+                                     : coverage > 1.0f - 1e-6f;
+    out.residual.values[i] = kNone;
+    if (!counts || (!photo.valid.empty() && !photo.valid[i])) continue;
+    const float r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
+    out.residual.values[i] = r;
+    out.r2 += double(r) * r;
+    ++count;
   }
+  out.count = static_cast<double>(count);
   return out;
 }
 
@@ -282,7 +283,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
   if (columns)
     S = vertex_sensitivity(impl_->renderer, surface, x, example.S,
                            reference.state ? &reference.state->S : nullptr, has_light);
-  const Eigen::MatrixXd second_on_vertices = S.second;
+  const RowMatrix second_on_vertices = S.second;
   Rendering rendering;  // one for all photos: its memory is used again
   Image larger_sigma;
 

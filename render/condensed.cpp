@@ -10,7 +10,6 @@
 namespace hookeye {
 
 using Eigen::MatrixXd;
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Symmetric M by blocks: vertex with vertex (upper half), vertex with photo columns, photo alone.
 struct NodeNormalEquations::Impl {
@@ -197,7 +196,7 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
   const Impl& m = *impl_;
   const Eigen::Index params = S.position.cols(), n = m.numbers();
   const Eigen::Index rows = n * static_cast<Eigen::Index>(m.seen.size());
-  RowMajor Z(rows, params), with_photo(rows, kPhotoColumns);
+  RowMatrix Z(rows, params), with_photo(rows, kPhotoColumns);
   VectorXd b(rows);
   for (size_t i = 0; i < m.seen.size(); ++i) {
     const Eigen::Index at = n * static_cast<Eigen::Index>(i), v = 3 * m.seen[i];
@@ -209,7 +208,7 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
     }
   }
   // J^T J = Z^T M Z with M = U + U^T - D: Y = (U - D/2) Z, then Z^T Y + Y^T Z.
-  RowMajor Y = RowMajor::Zero(rows, params);
+  RowMatrix Y = RowMatrix::Zero(rows, params);
   for (size_t i = 0; i < m.seen.size(); ++i)
     for (const Impl::Neighbour& j : m.row[i])
       add_product(m.sums.block[j.block], j.slot == int(i) ? 0.5 : 1.0,
