@@ -6,6 +6,8 @@
 #include "render/frame.h"
 #include "render/scene.h"
 
+extern "C" void openblas_set_num_threads(int);
+
 namespace hookeye {
 namespace {
 
@@ -97,7 +99,8 @@ void rays_of_the_product(benchmark::State& s) {
   s.SetItemsProcessed(blocks * 16);
 }
 
-/// Refit, rays, residual, derivative, J^T J. Arguments: rays per axis, parameters, threads.
+/// Refit, rays, residual, derivative, J^T J. Arguments: rays per axis, parameters, threads, and
+/// whether the sun casts shadows and gloss (the floors count neither).
 void one_view(benchmark::State& s) {
   Bench& b = bench();
   RenderOptions options;
@@ -105,6 +108,7 @@ void one_view(benchmark::State& s) {
   options.filter_width_px = options.rays_per_axis == 1 ? 0.5 : 3.0;
   options.visibility_rays = 0;
   options.threads = int(s.range(2));
+  options.cast_shadows = options.gloss_derivative = s.range(3) != 0;
   const Eigen::Index m = s.range(1), nv = 3 * b.surface.X.cols();
   VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m),
                       Eigen::MatrixXd::Random(kPhotoColumns, m)};
@@ -125,15 +129,19 @@ void one_view(benchmark::State& s) {
 BENCHMARK(rays_of_the_library)->Unit(benchmark::kMillisecond);
 BENCHMARK(rays_of_the_product)->Unit(benchmark::kMillisecond);
 BENCHMARK(one_view)
-    ->Args({1, 10, 1})
-    ->Args({1, 100, 1})
-    ->Args({2, 10, 1})
-    ->Args({3, 10, 1})
-    ->Args({3, 10, 2})
+    ->Args({1, 10, 1, 0})
+    ->Args({1, 100, 1, 0})
+    ->Args({1, 10, 1, 1})
+    ->Args({3, 10, 1, 1})
+    ->Args({3, 10, 2, 1})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
 }  // namespace
 }  // namespace hookeye
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  openblas_set_num_threads(1);  // as simulation does
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

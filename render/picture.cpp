@@ -123,7 +123,7 @@ const EdgeSegment* first_from(const std::vector<EdgeSegment>& edges, int pixel) 
 class PixelSum {
  public:
   PixelSum(const BandTask& task, const Tile& tile, Rendering* out, ImageDerivative::Part* part)
-      : task_(task), tile_(tile), out_(out), part_(part) {}
+      : task_(task), tile_(tile), out_(out), part_(part), single_(task.filter.taps() == 1) {}
 
   void add_row(int first, int last, int y) {
     const int row = y * out_->I.width;
@@ -138,7 +138,8 @@ class PixelSum {
  private:
   void add(int x, int y, int pixel) {
     const Taps taps = tile_.at(x, y);
-    const auto [I, missing] = filter_rays(taps, task_.filter);
+    const auto [I, missing] = single_ ? Filtered{*taps.I, *taps.triangle < 0 ? 1.0f : 0.0f}
+                                      : filter_rays(taps, task_.filter);
     const bool body = missing <= 1 - 1e-6f;
     if (body) {
       out_->I.values[pixel] = I + missing * static_cast<float>(task_.frame.photo.behind(pixel));
@@ -155,25 +156,31 @@ class PixelSum {
   }
 
   void add_body(int pixel, const Taps& taps, float missing) {
-    groups_.clear();
-    sum_by_triangle(taps, task_.filter, &groups_);
     const size_t begin = part_->segments.size();
-    PhotoDerivative photo = PhotoDerivative::Zero();
+    PhotoDerivative& photo = part_->photo.emplace_back();
+    photo.setZero();
     photo[kBackground] = missing;
-    for (const TriangleSum& g : groups_) {
-      const float* at = g.sum.value;
-      photo.head<kBlur>() += Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
-      part_->segments.push_back({g.triangle, Eigen::Map<const Eigen::Matrix3f>(at + kByPosition),
-                                 Eigen::Map<const Eigen::Matrix3f>(at + kBySecond)});
+    if (single_) {
+      add_segment(*taps.triangle, *taps.rays, &photo);
+    } else {
+      groups_.clear();
+      sum_by_triangle(taps, task_.filter, &groups_);
+      for (const TriangleSum& g : groups_) add_segment(g.triangle, g.sum, &photo);
     }
-    part_->photo.push_back(photo);
     edge_ = close_pixel(pixel, begin, edge_, last_edge_, part_);
+  }
+  void add_segment(int triangle, const RayRow& sum, PhotoDerivative* photo) {
+    const float* at = sum.value;
+    photo->head<kBlur>() += Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
+    part_->segments.push_back({triangle, Eigen::Map<const Eigen::Matrix3f>(at + kByPosition),
+                               Eigen::Map<const Eigen::Matrix3f>(at + kBySecond)});
   }
 
   const BandTask& task_;
   const Tile& tile_;
   Rendering* out_;
   ImageDerivative::Part* part_;
+  bool single_;  ///< one ray is the whole pixel
   const EdgeSegment *edge_ = nullptr, *last_edge_ = nullptr;
   std::vector<TriangleSum> groups_;
 };
@@ -217,6 +224,11 @@ void render_band(const BandTask& task, int row, int last_row, Rendering* out,
                  ImageDerivative::Part* part) {
   const View& view = task.frame.view;
   const int columns = std::max(8, kTileRays / task.filter.n);
+  if (task.frame.options.derivatives) {
+    const size_t most = static_cast<size_t>(last_row - row) * (view.x1 - view.x0);
+    part->pixel.reserve(most), part->first.reserve(most + 1);
+    part->segments.reserve(most), part->photo.reserve(most);
+  }
   for (int x0 = view.x0; x0 < view.x1; x0 += columns) {
     const int x1 = std::min(x0 + columns, view.x1);
     const Tile tile(task, x0, x1, row, last_row);
