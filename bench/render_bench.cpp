@@ -120,7 +120,7 @@ void one_view(benchmark::State& s) {
     VectorXd residual(Eigen::Index(r.dI.pixels()));
     r.dI.for_each_pixel([&](size_t i, int pixel) { residual[i] = 0.5 - r.I.values[pixel]; });
     const VectorXd w = VectorXd::Ones(residual.size());
-    const auto sums = NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, true);
+    const auto sums = NodeNormalEquations::accumulate(b.surface, r.dI, residual, w, residual, {});
     benchmark::DoNotOptimize(sums.reduce(S).r2);
     s.counters["active_px"] = double(residual.size());
   }

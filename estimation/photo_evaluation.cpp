@@ -220,7 +220,7 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
 /// Normal equations of the counted pixels; Huber weights by iteratively reweighted squares.
 NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
                              const SurfaceMesh& surface, double blur_variance, double huber,
-                             bool second) {
+                             CondensedColumns columns) {
   const ImageDerivative& dI = rendering.dI;
   const auto count = static_cast<Eigen::Index>(dI.pixels());
   VectorXd r = VectorXd::Zero(count), w = r, Bt_r = r;
@@ -240,7 +240,7 @@ NodeNormalEquations condense(const Rendering& rendering, const Image& residuals,
     adjoint = blur(adjoint, blur_variance);
     dI.for_each_pixel([&](size_t k, int pixel) { Bt_r[k] = adjoint.values[pixel]; });
   }
-  return NodeNormalEquations::accumulate(surface, dI, r, w, Bt_r, second);
+  return NodeNormalEquations::accumulate(surface, dI, r, w, Bt_r, columns);
 }
 
 }  // namespace
@@ -305,8 +305,12 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       RenderOptions render_options =
           at_level(base_options, options.level, texture, options.single_rays);
       render_options.derivatives = columns != nullptr;
-      render_options.gloss_derivative =
-          columns != nullptr && !columns->dphoto[k].row(kSpecular).isZero(0.0);
+      const auto moves = [&](PhotoColumn column) {
+        return columns != nullptr && !columns->dphoto[k].row(column).isZero(0.0);
+      };
+      render_options.gloss_derivative = moves(kSpecular);
+      render_options.blur_derivative = moves(kBlur);
+      render_options.centres = options.pictures;
       impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
                              render_options, silhouette, &photo.valid, &rendering);
       const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
@@ -338,7 +342,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
         }
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
         one.sums = condense(rendering, residual, sigma, surface.mesh, state.blur_variance,
-                            options.huber, S.second.size() > 0)
+                            options.huber, {S.second.size() > 0, !S.photo.isZero(0.0)})
                        .reduce(S);
       }
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);

@@ -13,9 +13,9 @@ using Eigen::MatrixXd;
 
 /// Symmetric M by blocks: vertex with vertex (upper half), vertex with photo columns, photo alone.
 struct NodeNormalEquations::Impl {
-  bool second = false;
-  int numbers() const { return second ? 6 : 3; }  ///< of a vertex
-  std::vector<int> seen;                          ///< vertices that any pixel depends on
+  CondensedColumns columns;
+  int numbers() const { return columns.second ? 6 : 3; }  ///< of a vertex
+  std::vector<int> seen;                                  ///< vertices that any pixel depends on
   struct Neighbour {
     int slot;
     size_t block;  ///< of `sums.block`
@@ -46,6 +46,7 @@ std::vector<int> NodeNormalEquations::Impl::number_vertices(const SurfaceMesh& s
     if (slot[v] == 0) slot[v] = static_cast<int>(seen.size()), seen.push_back(static_cast<int>(v));
   row.resize(seen.size());
   sums.vertex.resize(seen.size());
+  sums.block.reserve(4 * seen.size());
   return slot;
 }
 
@@ -76,6 +77,7 @@ class RunOfPixels {
               NodeNormalEquations::Impl* sums)
       : surface_(surface), slot_(slot), sums_(*sums), blocks_of_(surface.triangles.size()) {
     run_.numbers = sums->numbers();
+    run_.with_photo = sums->columns.photo;
   }
 
   void add(const Part& part, size_t pixel, float w, float Bt_r) {
@@ -173,10 +175,10 @@ class RunOfPixels {
 NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
                                                     const ImageDerivative& dI, const VectorXd& r,
                                                     const VectorXd& w, const VectorXd& Bt_r,
-                                                    bool second) {
+                                                    CondensedColumns columns) {
   NodeNormalEquations out;
   Impl& m = *out.impl_;
-  m.second = second;
+  m.columns = columns;
   m.r2 = r.squaredNorm();
   m.count = static_cast<size_t>((w.array() != 0).count());
   m.photo.setZero(), m.b_photo.setZero();
@@ -196,15 +198,16 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
   const Impl& m = *impl_;
   const Eigen::Index params = S.position.cols(), n = m.numbers();
   const Eigen::Index rows = n * static_cast<Eigen::Index>(m.seen.size());
-  RowMatrix Z(rows, params), with_photo(rows, kPhotoColumns);
+  RowMatrix Z(rows, params), with_photo(m.columns.photo ? rows : 0, kPhotoColumns);
   VectorXd b(rows);
   for (size_t i = 0; i < m.seen.size(); ++i) {
     const Eigen::Index at = n * static_cast<Eigen::Index>(i), v = 3 * m.seen[i];
     Z.middleRows(at, 3) = S.position.middleRows(v, 3);
-    if (m.second) Z.middleRows(at + 3, 3) = S.second.middleRows(v, 3);
+    if (m.columns.second) Z.middleRows(at + 3, 3) = S.second.middleRows(v, 3);
     for (Eigen::Index c = 0; c < n; ++c) {
       b[at + c] = m.sums.vertex[i].b[c];
-      for (int k = 0; k < kPhotoColumns; ++k) with_photo(at + c, k) = m.sums.vertex[i].photo[c][k];
+      for (int k = 0; k < kPhotoColumns && m.columns.photo; ++k)
+        with_photo(at + c, k) = m.sums.vertex[i].photo[c][k];
     }
   }
   // J^T J = Z^T M Z with M = U + U^T - D: Y = (U - D/2) Z, then Z^T Y + Y^T Z.
@@ -214,12 +217,16 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
       add_product(m.sums.block[j.block], j.slot == int(i) ? 0.5 : 1.0,
                   {static_cast<int>(n), static_cast<int>(params)}, Z.row(n * j.slot).data(),
                   Y.row(n * static_cast<Eigen::Index>(i)).data());
-  Y.noalias() += with_photo * S.photo;
+  if (m.columns.photo) Y.noalias() += with_photo * S.photo;
   const MatrixXd ZtY = Z.transpose() * Y;
   CondensedPhoto out;
-  const auto photo = m.photo.topLeftCorner<kPhotoColumns, kPhotoColumns>();
-  out.JtJ = ZtY + ZtY.transpose() + S.photo.transpose() * photo * S.photo;
-  out.Jtr = Z.transpose() * b + S.photo.transpose() * m.b_photo.head<kPhotoColumns>();
+  out.JtJ = ZtY + ZtY.transpose();
+  out.Jtr = Z.transpose() * b;
+  if (m.columns.photo) {
+    const auto photo = m.photo.topLeftCorner<kPhotoColumns, kPhotoColumns>();
+    out.JtJ += S.photo.transpose() * photo * S.photo;
+    out.Jtr += S.photo.transpose() * m.b_photo.head<kPhotoColumns>();
+  }
   out.r2 = m.r2;
   out.count = m.count;
   return out;

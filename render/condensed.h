@@ -20,6 +20,11 @@ struct VertexSensitivity {
   Eigen::MatrixXd photo;
 };
 
+/// What of a VertexSensitivity is not zero.
+struct CondensedColumns {
+  bool second = true, photo = true;
+};
+
 /// Normal equations of one photo.
 struct CondensedPhoto {
   Eigen::MatrixXd JtJ;  ///< m x m
@@ -37,7 +42,7 @@ class NodeNormalEquations {
   /// VertexSensitivity has it.
   static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
                                         const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
-                                        bool second);
+                                        CondensedColumns columns);
   CondensedPhoto reduce(const VertexSensitivity& S) const;
   NodeNormalEquations();
   ~NodeNormalEquations();

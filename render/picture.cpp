@@ -235,7 +235,7 @@ void render_band(const BandTask& task, int row, int last_row, Rendering* out,
     PixelSum sum(task, tile, out, part);
     for (int y = row; y < last_row; ++y) {
       sum.add_row(x0, x1, y);
-      mark_centres(task, tile, x0, x1, y, out);
+      if (task.frame.options.centres) mark_centres(task, tile, x0, x1, y, out);
     }
   }
 }

@@ -117,7 +117,7 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> Renderer::normal_derivative(const M
 
 namespace {
 
-void clear(const PhotoState& photo, Rendering* out) {
+void clear(const PhotoState& photo, bool centres, Rendering* out) {
   out->I.width = out->coverage.width = photo.camera.width;
   out->I.height = out->coverage.height = photo.camera.height;
   out->I.channels = out->coverage.channels = 1;
@@ -126,8 +126,8 @@ void clear(const PhotoState& photo, Rendering* out) {
   else
     out->I.values.assign(out->I.pixels(), static_cast<float>(photo.background));
   out->coverage.values.assign(out->I.pixels(), 0.0f);
-  out->triangle.assign(out->I.pixels(), -1);
-  out->uv.assign(out->I.pixels(), Eigen::Vector2f::Zero());
+  out->triangle.assign(centres ? out->I.pixels() : 0, -1);
+  out->uv.assign(centres ? out->I.pixels() : 0, Eigen::Vector2f::Zero());
 }
 
 /// dI/dv of the blurred picture: T(n, v) is the diffusion semigroup, dT/dv = 1/2 second difference.
@@ -194,7 +194,7 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
     frame.reference_view = &*reference_view;
     frame.spline = &m.spline(texture.photo);
   }
-  clear(photo, out);
+  clear(photo, options.centres, out);
   const std::vector<EdgeSegment> edges = options.derivatives
                                              ? contours(frame, filter, m.edges, options.threads)
                                              : std::vector<EdgeSegment>();
@@ -210,7 +210,7 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
   parts[bands].clear();
   add_outer_edges(task, &parts[bands]);
   if (photo.blur_variance > 0) out->I = blur(out->I, photo.blur_variance);
-  if (options.derivatives)
+  if (options.derivatives && options.blur_derivative)
     for_each_task(bands + 1, options.threads, [&](int i) { set_blur_column(out->I, &parts[i]); });
 }
 

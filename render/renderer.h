@@ -22,6 +22,8 @@ struct RenderOptions {
   int visibility_rays = 64;  ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
   bool derivatives = true;
   bool gloss_derivative = true;  ///< false: kSpecular of a body without gloss stays zero
+  bool blur_derivative = true;   ///< false: kBlur stays zero
+  bool centres = true;           ///< false: Rendering::triangle and uv stay empty
   int threads = 1;
 };
 

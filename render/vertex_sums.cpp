@@ -45,7 +45,7 @@ HWY_INLINE void add_vertices(const PixelRun& p, VertexSums* sums) {
   const Rows photo = {p.photo->data(), kPhotoFloats}, one = {kOne, 0};
   for (size_t i = 0; i < p.slots.size(); ++i) {
     VertexRow& row = sums->vertex[p.slots[i]];
-    add_outer<kNumbers, kPhotoFloats>(slot(i), photo, p.ww, p.count, row.photo);
+    if (p.with_photo) add_outer<kNumbers, kPhotoFloats>(slot(i), photo, p.ww, p.count, row.photo);
     add_outer<1, kVertexFloats>(one, slot(i), p.Bt_r, p.count, &row.b);
     for (size_t j = i; j < p.slots.size(); ++j, ++block)
       add_outer<kNumbers, kVertexFloats>(slot(j), slot(i), p.ww, p.count,
@@ -58,6 +58,7 @@ void add_pixels_lanes(const PixelRun& p, VertexSums* sums) {
     add_vertices<3>(p, sums);
   else
     add_vertices<6>(p, sums);
+  if (!p.with_photo) return;
   const Rows photo = {p.photo->data(), kPhotoFloats}, one = {kOne, 0};
   add_outer<kPhotoColumns, kPhotoFloats>(photo, photo, p.ww, p.count, sums->photo.photo);
   add_outer<1, kPhotoFloats>(one, photo, p.Bt_r, p.count, &sums->photo.b);

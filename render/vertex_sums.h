@@ -34,6 +34,7 @@ struct PixelRun {
   std::vector<int> slots;        ///< of VertexSums::vertex
   std::vector<size_t> block;     ///< of slots (i, j), i <= j, row by row
   int numbers = 6;               ///< of a vertex: 6, or 3 where the last three are zero
+  bool with_photo = true;        ///< false: nothing is summed with the photo's numbers
   int count = 0;                 ///< pixels
   std::vector<float> vertices;   ///< kVertexFloats by slot and pixel
   const PhotoDerivative* photo;  ///< of the first; the others follow

@@ -43,12 +43,20 @@ TEST(condensed, equals_explicit_rows) {
           J.row(i) += g.d_second.col(k).cast<double>().transpose() * S.second.middleRows(v, 3);
         }
     J = (w.asDiagonal() * J).eval();
-    const auto sums = NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, true);
+    const auto sums = NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, {});
     const CondensedPhoto c = sums.reduce(S);
     EXPECT_LT((c.JtJ - J.transpose() * J).norm(), 1e-5 * c.JtJ.norm());
     EXPECT_LT((c.Jtr - J.transpose() * r).norm(), 1e-5 * c.Jtr.norm());
     EXPECT_NEAR(c.r2, r.squaredNorm(), 1e-9 * c.r2);
     EXPECT_EQ(c.count, size_t(n));
+    // What is told to be zero is not summed.
+    VertexSensitivity motion = S;
+    motion.photo.setZero();
+    const CondensedPhoto all = sums.reduce(motion);
+    const CondensedPhoto less =
+        NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, {true, false}).reduce(motion);
+    EXPECT_LT((less.JtJ - all.JtJ).norm(), 1e-6 * all.JtJ.norm());
+    EXPECT_LT((less.Jtr - all.Jtr).norm(), 1e-6 * all.Jtr.norm());
   }
 }
 
