@@ -49,7 +49,10 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
       if (parameters.size() > 1)
         for (const Parameter& parameter : parameters)
           one.hypothesis.grows.push_back(parameter.low >= parameter.value);
-      if (one.hypothesis.one_sided) one.hypothesis.most = parameters[0].high - parameters[0].value;
+      if (parameters.size() == 1) {
+        one.hypothesis.least = parameters[0].low - parameters[0].value;
+        one.hypothesis.most = parameters[0].high - parameters[0].value;
+      }
       column += one.hypothesis.count;
       all.push_back(std::move(one));
     }

@@ -113,11 +113,10 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   // The step and its share come from the plain sums: that is what a refit will minimise.
   const ProjectedHypothesis plain =
       project(context.sums.fitted.JtJ, weighted.base, candidate.hypothesis);
-  const VectorXd t = plain.step(context.sums.fitted.Jtr);
-  score.values = null_values + t;
+  score.values = null_values + plain.step(context.sums.fitted.Jtr);
   for (int i = 0; i < score.dof; ++i)
     score.values[i] = std::clamp(score.values[i], parameters[i].low, parameters[i].high);
-  score.base_step = -plain.to_base * t;
+  score.base_step = -plain.to_base * (score.values - null_values);
   const DiagnosisSums& sums = context.sums;
   const double structured = sums.photo_r2 - sums.photo_count * sums.pixel_floor2;
   const double held = sums.held_r2 - sums.held_count * sums.pixel_floor2;

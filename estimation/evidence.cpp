@@ -22,7 +22,8 @@ ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis
   out.base = base;
   out.typical = hypothesis.typical;
   out.one_sided = hypothesis.one_sided && hypothesis.count == 1;
-  out.most = hypothesis.most;
+  if (hypothesis.count == 1) out.least = hypothesis.least, out.most = hypothesis.most;
+  if (out.one_sided) out.least = 0.0;
   const auto H_ac = H.block(0, hypothesis.first, base, hypothesis.count);
   out.to_base = pseudo_inverse(H.topLeftCorner(base, base)) * H_ac;
   const auto D = hypothesis.typical.asDiagonal();
@@ -59,12 +60,11 @@ Eigen::MatrixXd ProjectedHypothesis::inverse() const {
 
 Eigen::VectorXd ProjectedHypothesis::step(const Eigen::VectorXd& s) const {
   Eigen::VectorXd score = modes.transpose() * typical.cwiseProduct(projected_score(s));
-  const double least = 1e-9 * std::max(best_signal(), 1e-300);
+  const double no_signal = 1e-9 * std::max(best_signal(), 1e-300);
   for (int i = 0; i < score.size(); ++i)
-    score[i] = eigenvalues[i] > least ? -score[i] / eigenvalues[i] : 0.0;
+    score[i] = eigenvalues[i] > no_signal ? -score[i] / eigenvalues[i] : 0.0;
   Eigen::VectorXd t = typical.cwiseProduct(modes * score);
-  if (one_sided) t = t.cwiseMax(0.0).cwiseMin(most);
-  return t;
+  return t.cwiseMax(least).cwiseMin(most);
 }
 
 double ProjectedHypothesis::fall(const Eigen::VectorXd& s) const {
@@ -127,10 +127,9 @@ double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd
   if (hypothesis.one_sided && hypothesis.projected_score(s)[0] >= 0.0) return 0.0;
   const Eigen::VectorXd score =
       hypothesis.modes.transpose() * hypothesis.typical.cwiseProduct(hypothesis.projected_score(s));
-  const double most = hypothesis.one_sided && score[0] != 0.0
-                          ? std::min(hypothesis.most / hypothesis.typical[0],
-                                     std::abs(score[0]) / hypothesis.eigenvalues[0])
-                          : 0.0;
+  // a step that its bound cuts short gains what it gains there
+  const double bounded =
+      score.size() == 1 ? hypothesis.fall(s) : std::numeric_limits<double>::infinity();
   double best = 0.0;  // prior variance 0: the effect is not there
   for (int k = -16; k <= 16; ++k) {
     const double prior = std::pow(10.0, 0.5 * k);  // variance over typical^2
@@ -139,9 +138,7 @@ double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd
       gain = 0.0;
       for (int i = 0; i < score.size(); ++i)
         gain += score[i] * score[i] * prior / (prior * hypothesis.eigenvalues[i] + noise);
-      // a step that its bound cuts short gains what it gains there
-      if (hypothesis.one_sided)
-        gain = std::min(gain, most * (2.0 * std::abs(score[0]) - most * hypothesis.eigenvalues[0]));
+      gain = std::min(gain, bounded);
       noise = std::max(floor2, (r2 - gain) / count);
     }
     double log_det = 0.0;

@@ -23,7 +23,9 @@ struct Hypothesis {
   int first = 0, count = 0;
   Eigen::VectorXd typical;  ///< prior scale of each parameter
   bool one_sided = false;   ///< one parameter that may only grow from its null
-  double most = std::numeric_limits<double>::infinity();  ///< and by no more than this
+  /// Bounds of a single parameter, from its null.
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
   /// Parameters that may only grow from their nulls; empty: none of several (one: one_sided).
   std::vector<bool> grows = {};
   std::vector<bool> held = {};  ///< parameters that stay at their nulls; empty: none
@@ -40,15 +42,17 @@ struct ProjectedHypothesis {
   Eigen::VectorXd typical;
   int first = 0, base = 0;
   bool one_sided = false;
+  double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
   /// Largest squared signal over noise that a change of typical size makes: below 4 (two standard
   /// deviations) these photos cannot test an effect of that size.
   double best_signal() const;
   Eigen::VectorXd projected_score(const Eigen::VectorXd& s) const;  ///< s~
   Eigen::MatrixXd inverse() const;                                  ///< M^+
-  /// Step t = -M^+ s~ (directions without signal stay at the null).
+  /// Step t = -M^+ s~ (directions without signal stay at the null), of a single parameter within
+  /// its bounds.
   Eigen::VectorXd step(const Eigen::VectorXd& s) const;
-  double fall(const Eigen::VectorXd& s) const;  ///< s~^T M^+ s~
+  double fall(const Eigen::VectorXd& s) const;  ///< s~^T M^+ s~, or less within bounds
 };
 ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis);
 

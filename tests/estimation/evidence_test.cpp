@@ -105,6 +105,29 @@ TEST(Evidence, WhatMayOnlyGrowDoesNotShrink) {
   EXPECT_TRUE(within_bounds(H, 1, both, s).held.empty());
 }
 
+/// A factor on a stiffness cannot fall below -1: a best fit beyond its bound counts for what it
+/// gains at the bound, whichever side that is on.
+TEST(Evidence, ABoundCutsTheGainOnBothSides) {
+  std::mt19937 engine(9);
+  Data data = noise(engine, 200, 2);
+  data.r -= 0.8 * data.J.col(1);
+  const MatrixXd H = data.J.transpose() * data.J;
+  const double r2 = data.r.squaredNorm();
+  for (const double sign : {1.0, -1.0}) {
+    const VectorXd s = sign * data.J.transpose() * data.r;
+    Hypothesis free{1, 1, VectorXd::Ones(1)}, bounded = free, other = free;
+    bounded.least = -0.1, bounded.most = 0.1;
+    (sign > 0 ? other.least : other.most) = sign * -0.1;  // the side where the fit is not
+    const auto p = project(H, 1, bounded);
+    EXPECT_DOUBLE_EQ(p.step(s)[0], sign * 0.1);
+    const double gained = log_evidence(p, s, r2, 200.0, 1.0);
+    const double best = log_evidence(project(H, 1, free), s, r2, 200.0, 1.0);
+    EXPECT_GT(gained, 5.0);
+    EXPECT_LT(gained, 0.6 * best);
+    EXPECT_DOUBLE_EQ(log_evidence(project(H, 1, other), s, r2, 200.0, 1.0), best);
+  }
+}
+
 TEST(Evidence, WhatTheBaseCanImitateIsNoEvidence) {
   std::mt19937 engine(7);
   Data data = noise(engine, 200, 3);
