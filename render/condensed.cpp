@@ -197,6 +197,7 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
 CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
   const Impl& m = *impl_;
   const Eigen::Index params = S.position.cols(), n = m.numbers();
+  if (params == 0) return {MatrixXd(0, 0), VectorXd(0), m.r2, m.count};  // no product for BLAS
   const Eigen::Index rows = n * static_cast<Eigen::Index>(m.seen.size());
   RowMatrix Z(rows, params), with_photo(m.columns.photo ? rows : 0, kPhotoColumns);
   VectorXd b(rows);

@@ -193,4 +193,23 @@ double mouth_px(const Image& inside, int below) {
   return best;
 }
 
+std::vector<NotchFrame> predict_notched(const fs::path& data, const fs::path& capture, double mu) {
+  Tension tension;
+  tension.frames = {20, 40, 60};
+  tension.fit_jaw = false;
+  tension.material = fmt::format("{{law: neo-hookean, mu: {}, kappa_over_mu: 100}}", mu);
+  tension.fit = "";
+  write_tango_notched(data, capture, tension);
+  const Case sheet = fit_capture(capture);
+  std::vector<NotchFrame> out;
+  for (const auto& frame : tango_frames(data, true)) {
+    const int e = sheet.scene->example_index(fmt::format("f{:03d}", frame.frame));
+    if (e < 0) continue;
+    out.push_back({frame.frame, pull_N(sheet, e), frame.force_N - tension.load_cell_zero_N,
+                   mouth_px(sheet.fitted.evaluation.find(e)->photos.at(0).model, 2),
+                   mouth_px(sheet.scene->photos[e][0].planes[0], 2)});
+  }
+  return out;
+}
+
 }  // namespace hookeye::real

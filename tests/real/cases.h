@@ -53,6 +53,14 @@ DicDifference compare_with_dic(const Case& openhole, const fs::path& data, int s
 /// Force [N] that pulls the left end of a sheet in tension outwards.
 double pull_N(const Case& sheet, int example);
 
+/// The sheet with two notches, predicted with a shear modulus [MPa] of the other sheet, nothing
+/// fitted. Mouths: mouth_px of the model and of the photo.
+struct NotchFrame {
+  int frame = 0;
+  double predicted_N = 0, measured_N = 0, mouth_px = 0, seen_px = 0;
+};
+std::vector<NotchFrame> predict_notched(const fs::path& data, const fs::path& capture, double mu);
+
 /// Prints how neo-Hooke, Yeoh, Ogden and the additive model fit the sheet with two holes and
 /// predict the one with two notches; captures go to `out`.
 void compare_laws(const fs::path& data, const fs::path& out);

@@ -95,14 +95,27 @@ void silicone(const fs::path& data, const fs::path& out, real::Silicone told) {
 
 void tango(const fs::path& data, const fs::path& out) {
   // No picture of these: the data has no licence.
+  real::Tension tension;
+  tension.frames = {10, 20, 40, 60};
+  double mu = 0.0;
   for (bool fit_jaw : {true, false}) {
     const fs::path folder = out / "capture" / (fit_jaw ? "holes-jaw-fitted" : "holes-jaw-told");
-    real::Tension tension;
-    tension.frames = {10, 20, 40, 60};
     tension.fit_jaw = fit_jaw;
     real::write_tango_holes(data, folder, tension);
-    print_parameters(real::fit_capture(folder));
+    const real::Case sheet = real::fit_capture(folder);
+    print_parameters(sheet);
+    mu = sheet.parameter("mu").value;
   }
+  for (const auto& frame : real::predict_notched(data, out / "capture" / "notches", mu))
+    fmt::print(
+        "  notches, frame {}: {:.3f} N, measured {:.3f} N; mouth {:.1f} px, photo {:.1f} px\n",
+        frame.frame, frame.predicted_N, frame.measured_N, frame.mouth_px, frame.seen_px);
+  tension.frames = {0, 10, 20, 40, 60};
+  tension.load_cell_zero_N = 0.0;
+  const fs::path folder = out / "capture" / "holes-zero-not-told";
+  real::write_tango_holes(data, folder, tension);
+  real::Case sheet = real::fit_capture(folder);
+  fmt::print("load cell's zero not told: {}", real::table(real::diagnose_case(sheet)));
 }
 
 void run(const fs::path& data, const fs::path& out, const std::string& only) {

@@ -43,25 +43,13 @@ TEST(ElastomerSheet, NotchedSheetIsPredicted) {
   tension.frames = {10, 20, 40, 60};
   tension.fit_jaw = false;
   const double mu = two_holes(tension, holes.path()).parameter("mu").value;
-  tension.frames = {20, 40, 60};
-  tension.material = fmt::format("{{law: neo-hookean, mu: {}, kappa_over_mu: 100}}", mu);
-  tension.fit = "";
-  real::write_tango_notched(data, notches.path(), tension);
-  const real::Case sheet = real::fit_capture(notches.path());
-  for (const auto& frame : real::tango_frames(data, true)) {
-    const int e = sheet.scene->example_index(fmt::format("f{:03d}", frame.frame));
-    if (e < 0) continue;
-    const double predicted = real::pull_N(sheet, e);
-    const double measured = frame.force_N - tension.load_cell_zero_N;
-    const Image& model = sheet.fitted.evaluation.find(e)->photos.at(0).model;
-    const double mouth = real::mouth_px(model, 2),
-                 seen = real::mouth_px(sheet.scene->photos[e][0].planes[0], 2);
+  for (const auto& frame : real::predict_notched(data, notches.path(), mu)) {
     fmt::print(
         "frame {}: {:.3f} N where {:.3f} N were measured; mouth {:.1f} px, photo {:.1f} px\n",
-        frame.frame, predicted, measured, mouth, seen);
-    EXPECT_NEAR(predicted, measured, 0.05 * measured);
+        frame.frame, frame.predicted_N, frame.measured_N, frame.mouth_px, frame.seen_px);
+    EXPECT_NEAR(frame.predicted_N, frame.measured_N, 0.05 * frame.measured_N);
     // A pixel here is 0.16 mm; the notch is 3 px wide at rest.
-    EXPECT_NEAR(mouth, seen, 1.0);
+    EXPECT_NEAR(frame.mouth_px, frame.seen_px, 1.0);
   }
 }
 

@@ -69,6 +69,28 @@ void expect_same(const ImageDerivative& first, const ImageDerivative& second) {
     ASSERT_TRUE(a.segments[i].d_position == b.segments[i].d_position);
 }
 
+TEST(condensed, without_parameters_and_without_a_body) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 2, 0.05);
+  const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  Renderer renderer(surface);
+  testing::internal::CaptureStdout();
+  for (const double aside : {0.0, 1e3}) {
+    const Matrix3Xd x = surface.X.array() + aside;
+    const Rendering out = renderer.render(x, nullptr, {}, state, {}, true);
+    const VectorXd r = VectorXd::Ones(Eigen::Index(out.dI.pixels()));
+    const auto sums = NodeNormalEquations::accumulate(surface, out.dI, r, r, r, {});
+    for (const Eigen::Index m : {0, 2}) {
+      const CondensedPhoto c =
+          sums.reduce({RowMatrix::Zero(3 * x.cols(), m), RowMatrix::Zero(3 * x.cols(), m),
+                       Eigen::MatrixXd::Zero(kPhotoColumns, m)});
+      EXPECT_EQ(c.JtJ.rows(), m);
+      EXPECT_EQ(c.Jtr.size(), m);
+      EXPECT_EQ(c.count, size_t(r.size()));
+    }
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "") << "BLAS complains there";
+}
+
 TEST(renderer, threads_agree_bit_by_bit) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
   Renderer renderer(surface);
