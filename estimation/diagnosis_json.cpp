@@ -119,6 +119,23 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
   return out;
 }
 
+json to_json(const std::vector<FreeForm>& fields) {
+  json out = json::array();
+  for (const FreeForm& field : fields) {
+    const double most = field.forces.colwise().norm().maxCoeff();
+    out.push_back({{"name", field.name},
+                   {"example", field.example.empty() ? json() : json(field.example)},
+                   {"evidence", field.evidence},
+                   {"explains", field.explains},
+                   {"explains_held_out", field.explains_held_out},
+                   {"most", most},
+                   {"unit", field.unit},
+                   {"place", {field.place.x(), field.place.y(), field.place.z()}},
+                   {"sentence", field.sentence}});
+  }
+  return out;
+}
+
 json to_json(const Plan& plan) {
   auto separation = [](const Separation& s) -> json {
     if (s.effect.empty()) return {};

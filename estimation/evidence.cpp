@@ -121,7 +121,8 @@ double log_evidence_of_told_noise(const ProjectedHypothesis& hypothesis, const E
 }
 
 double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
-                    double count, double floor2) {
+                    double count, double floor2, Eigen::VectorXd* mean) {
+  if (mean) mean->setZero(hypothesis.typical.size());
   const double null_noise = std::max(floor2, r2 / count);
   const double null = -0.5 * count * std::log(null_noise) - 0.5 * r2 / null_noise;
   if (hypothesis.one_sided && hypothesis.projected_score(s)[0] >= 0.0) return 0.0;
@@ -146,7 +147,13 @@ double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd
       log_det += std::log1p(prior * hypothesis.eigenvalues[i] / noise);
     const double value =
         -0.5 * count * std::log(noise) - 0.5 * std::max(r2 - gain, 0.0) / noise - 0.5 * log_det;
-    best = std::max(best, value - null + (hypothesis.one_sided ? std::log(2.0) : 0.0));
+    const double over = value - null + (hypothesis.one_sided ? std::log(2.0) : 0.0);
+    if (over <= best) continue;
+    best = over;
+    if (!mean) continue;
+    const Eigen::VectorXd shrunk =
+        -prior * score.cwiseQuotient((prior * hypothesis.eigenvalues.array() + noise).matrix());
+    *mean = hypothesis.typical.cwiseProduct(hypothesis.modes * shrunk);
   }
   return best;
 }

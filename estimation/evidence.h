@@ -62,8 +62,9 @@ Hypothesis within_bounds(const Eigen::MatrixXd& H, int base, const Hypothesis& h
                          const Eigen::VectorXd& s);
 
 /// log p(r | effect) - log p(r | no effect) for the score s and |r|^2 = r2 (base part removed).
+/// `mean`: the parameters' mean under the prior that it chose.
 double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
-                    double count, double floor2);
+                    double count, double floor2, Eigen::VectorXd* mean = nullptr);
 /// The same where the noise is told (sensors): `noise2`, or what the effect itself leaves of few
 /// values, if that is more, in both likelihoods. One value 100 deviations off speaks for whatever
 /// removes it, and an effect that removes half of a misfit does not feed on the other half.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimation/discover.h"
+#include "estimation/free_form.h"
 #include "estimation/plan.h"
 
 namespace hookeye {
@@ -18,6 +19,8 @@ nlohmann::json to_json(const Diagnosis& diagnosis);
 Diagnosis diagnosis_from_json(const nlohmann::json& document, const Model& model,
                               const std::filesystem::path& file);
 nlohmann::json to_json(const Plan& plan);
+/// Without the forces at the nodes, which are in the vtu.
+nlohmann::json to_json(const std::vector<FreeForm>& fields);
 /// The step's entry of run.json.
 nlohmann::json timeline_entry(const Step& step);
 /// metrics.json: chi, rms_px and whiteness of every photo, by camera, example and region, measured

@@ -73,6 +73,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));
   session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));
+  if (found.verdict == Verdict::unexplained)
+    tell_free_form(run, bench, found.steps.back(), session);
   say_pictures(run.steps().back(), session);
   session.say("run: {}\n", arguments.run);
 }

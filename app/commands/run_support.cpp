@@ -2,10 +2,12 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "estimation/contest.h"
 #include "estimation/doubts.h"
 #include "estimation/removed.h"
 #include "estimation/step_json.h"
@@ -131,6 +133,24 @@ void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions&
   step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
   reach_for_mesh(step.fitted, step.diagnosis);
   record_diagnosis(run, step);
+}
+
+void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& session) {
+  constexpr size_t kTold = 3;
+  const std::filesystem::path folder = run.steps().back();
+  for (const char* stale : {"free_form.json", "free_form.vtu"})
+    std::filesystem::remove(folder / stale);
+  if (at_floor(step.fitted, step.diagnosis.floor) || !leaders(step.diagnosis).empty()) return;
+  auto fields = value_or_fail(free_form(bench.workspace, step.fitted, &interrupted()));
+  if (fields.empty()) return;
+  session.document["free_form"] = to_json(fields);
+  write_text(folder / "free_form.json", session.document["free_form"].dump(1) + "\n");
+  fields.resize(std::min(fields.size(), kTold));
+  write_free_form(folder / "free_form.vtu", *step.fitted.form.scene, fields);
+  session.say("{}", wrapped("no effect of the catalogue explains what is left. Forces that would, "
+                            "whatever they stand for, show where to look:"));
+  for (const FreeForm& field : fields) session.say("{}", wrapped("- " + field.sentence));
+  session.say("for ParaView: {}\n", (folder / "free_form.vtu").string());
 }
 
 void say_pictures(const std::filesystem::path& step, const Session& session) {

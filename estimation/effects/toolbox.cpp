@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <limits>
+#include <set>
 
 #include "estimation/base_ingredients.h"
 
@@ -117,6 +119,28 @@ std::vector<Vector3d> spread_centres(const Scene& scene, int count) {
     distance.maxCoeff(&next);
   }
   return out;
+}
+
+Region whole_boundary(const TetMesh& mesh) {
+  Region region;
+  region.name = "surface";
+  region.nodal_area = VectorXd::Zero(mesh.nodes());
+  std::set<int> nodes;
+  for (int f = 0; f < mesh.boundary.cols(); ++f) {
+    const auto face = mesh.boundary.col(f);
+    const Vector3d a = mesh.X.col(face[0]), b = mesh.X.col(face[1]), c = mesh.X.col(face[2]);
+    const double area = 0.5 * (b - a).cross(c - a).norm();
+    // integrals of the shape functions: linear A/3 each; quadratic 0 at corners, A/3 at middles
+    const int first = mesh.order == 1 ? 0 : 3;
+    for (int k = 0; k < 3; ++k) region.nodal_area[face[first + k]] += area / 3.0;
+    for (int k = 0; k < face.size(); ++k) nodes.insert(face[k]);
+    region.faces.emplace_back(f, 1.0);
+    region.centroid += area / 3.0 * (a + b + c);
+    region.area += area;
+  }
+  region.centroid /= region.area;
+  region.nodes.assign(nodes.begin(), nodes.end());
+  return region;
 }
 
 VectorXd gaussian_bump(const TetMesh& mesh, const Vector3d& centre, double radius) {

@@ -43,6 +43,8 @@ VectorXd element_volumes(const TetMesh& mesh);
 /// `count` centres spread over the body by farthest points, rounded to 4 digits (they are written
 /// into variants, and read back they must be the same).
 std::vector<Vector3d> spread_centres(const Scene& scene, int count);
+/// The boundary of the mesh as a region.
+Region whole_boundary(const TetMesh& mesh);
 /// exp(-|X - centre|^2 / (2 radius^2)) at the element centroids.
 VectorXd gaussian_bump(const TetMesh& mesh, const Vector3d& centre, double radius);
 

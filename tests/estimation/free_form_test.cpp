@@ -1,0 +1,73 @@
+// Forces of no name: do they stand where the hidden ones do?
+#include "estimation/free_form.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "estimation/contest.h"
+#include "support/temporary_folder.h"
+#include "tests/estimation/small_capture.h"
+
+namespace hookeye {
+namespace {
+
+using test::SmallScene;
+
+Fitted base_fit(Workspace& workspace) {
+  const ModelForm form = base_form(workspace.scene().shared_from_this());
+  return std::get<Fitted>(fit(workspace, form, form.initial()));
+}
+
+/// A weight is a body force that is the same everywhere and in all examples.
+TEST(FreeForm, FindsAWeightWithoutItsName) {
+  const SmallScene small({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, "
+                                    "gravity.z: -7000}}\n"});
+  Workspace workspace(small.scene);
+  const Fitted fitted = base_fit(workspace);
+  const auto result = free_form(workspace, fitted, nullptr);
+  const auto& fields = std::get<std::vector<FreeForm>>(result);
+  ASSERT_FALSE(fields.empty());
+  const FreeForm& first = fields.front();
+  EXPECT_EQ(first.name, "body_force") << first.sentence;
+  EXPECT_EQ(first.example, "");
+  // One linear step, and shrunk.
+  EXPECT_GT(first.explains, 0.8);
+  EXPECT_GT(first.explains_held_out, 0.8);
+  // Of the free half of the body: what presses on the clamp moves nothing.
+  const Matrix3Xd& X = small.scene->body->mesh.X;
+  const double middle = 0.5 * (X.row(2).minCoeff() + X.row(2).maxCoeff());
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  for (Eigen::Index a = 0; a < X.cols(); ++a)
+    if (X(2, a) > middle) sum += first.forces.col(a), ++count;
+  const double density = small.scene->capture.body.density;
+  const Vector3d weight = density * Vector3d(4000, 0, -7000);
+  // Along the axis of the body a force moves little that is seen, and the prior holds it back.
+  const Vector3d mean = sum / count;
+  EXPECT_GT(mean.normalized().dot(weight.normalized()), std::cos(15.0 * EIGEN_PI / 180.0));
+  EXPECT_GT(mean.norm(), 0.5 * weight.norm());
+  EXPECT_LT(mean.norm(), 1.1 * weight.norm());
+}
+
+TEST(FreeForm, SaysNothingWhereNothingIsHidden) {
+  const SmallScene small({.same_renderer = true});
+  Workspace workspace(small.scene);
+  const Fitted fitted = base_fit(workspace);
+  const auto result = free_form(workspace, fitted, nullptr);
+  EXPECT_TRUE(std::get<std::vector<FreeForm>>(result).empty());
+}
+
+TEST(FreeForm, IsWrittenAtTheNodes) {
+  const SmallScene small({});
+  const int n = small.scene->body->mesh.nodes();
+  FreeForm field;
+  field.name = "traction", field.example = "pull";
+  field.forces = Matrix3Xd::Random(3, n);
+  const test::TemporaryFolder folder;
+  write_free_form(folder.path() / "a.vtu", *small.scene, {field});
+  EXPECT_EQ(read_vtu_array(folder.path() / "a.vtu", "traction in pull"), field.forces);
+}
+
+}  // namespace
+}  // namespace hookeye
