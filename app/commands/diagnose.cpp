@@ -22,7 +22,7 @@ void run_diagnose(const std::string& folder, Session& session) {
   session.say("{}", diagnosis_table(step.diagnosis));
   session.say("{}", wrapped(conclusion(step.diagnosis)));
   if (const auto& note = step.diagnosis.mesh_note; !note.empty()) session.say("{}", wrapped(note));
-  tell_free_form(run, bench, step, session);
+  if (leaders(step.diagnosis).empty()) tell_free_form(run, bench, step, session);
   say_pictures(run.steps().back(), session);
 }
 

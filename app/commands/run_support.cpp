@@ -140,15 +140,15 @@ void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& ses
   const std::filesystem::path folder = run.steps().back();
   for (const char* stale : {"free_form.json", "free_form.vtu"})
     std::filesystem::remove(folder / stale);
-  if (at_floor(step.fitted, step.diagnosis.floor) || !leaders(step.diagnosis).empty()) return;
+  if (at_floor(step.fitted, step.diagnosis.floor)) return;
   auto fields = value_or_fail(free_form(bench.workspace, step.fitted, &interrupted()));
   if (fields.empty()) return;
   session.document["free_form"] = to_json(fields);
   write_text(folder / "free_form.json", session.document["free_form"].dump(1) + "\n");
   fields.resize(std::min(fields.size(), kTold));
   write_free_form(folder / "free_form.vtu", *step.fitted.form.scene, fields);
-  session.say("{}", wrapped("no effect of the catalogue explains what is left. Forces that would, "
-                            "whatever they stand for, show where to look:"));
+  session.say("{}", wrapped("no effect of the catalogue explains what is left. Forces that would "
+                            "show where to look, whatever they stand for:"));
   for (const FreeForm& field : fields) session.say("{}", wrapped("- " + field.sentence));
   session.say("for ParaView: {}\n", (folder / "free_form.vtu").string());
 }

@@ -55,8 +55,8 @@ void record_diagnosis(Run& run, const Step& step);
 /// Diagnoses the newest step and writes it down; its intervals reach for the mesh.
 void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions& options);
 
-/// Where nothing of the catalogue stands out and the photos are not explained: the forces that
-/// would explain them (free_form.h), said, and written beside the newest step's diagnosis.
+/// Where the photos are not explained: the forces that would explain them (free_form.h), said, and
+/// written beside the newest step's diagnosis. For when no effect of the catalogue is left to try.
 void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& session);
 
 /// Names the folders of a step's pictures.
