@@ -178,9 +178,12 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     return total_chi(a.fitted) < total_chi(b.fitted);
   });
   out.reference = best->fitted;
-  out.before = refit_score(step.fitted, out.reference, step.diagnosis.floor);
-  for (auto& refit : refits)
-    refit.score = refit_score(refit.fitted, out.reference, step.diagnosis.floor);
+  out.measured_noise2 = measured_noise2(step.fitted);
+  for (const auto& refit : refits)
+    out.measured_noise2 = std::min(out.measured_noise2, measured_noise2(refit.fitted));
+  const Yardstick yardstick{&out.reference, &step.diagnosis.floor, out.measured_noise2};
+  out.before = refit_score(step.fitted, yardstick);
+  for (auto& refit : refits) refit.score = refit_score(refit.fitted, yardstick);
   std::stable_sort(refits.begin(), refits.end(),
                    [](auto& a, auto& b) { return a.score > b.score; });
   return out;
@@ -193,6 +196,7 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
                                                                 const DiscoverEvents& events) {
   std::optional<Pair> best;
   const auto& refits = contest.refits;
+  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
   for (size_t i = 0; i < refits.size(); ++i)
     for (size_t k = i + 1; k < refits.size(); ++k) {
       if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
@@ -213,7 +217,7 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
       }
       auto& fitted = std::get<Fitted>(result);
       if (events.refitted) events.refitted(both, fitted);
-      const double score = refit_score(fitted, contest.reference, step.diagnosis.floor);
+      const double score = refit_score(fitted, yardstick);
       if (!best || score > best->second.score)
         best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
     }

@@ -26,9 +26,10 @@ struct Refit {
 
 struct Contest {
   std::vector<Raced> raced;
-  std::vector<Refit> refits;  ///< best first
-  double before = 0.0;        ///< score of the step that they start from
-  Fitted reference;           ///< whose correlation all scores are of
+  std::vector<Refit> refits;     ///< best first
+  double before = 0.0;           ///< score of the step that they start from
+  Fitted reference;              ///< whose correlation all scores are of
+  double measured_noise2 = 1.0;  ///< Yardstick's
 };
 
 /// Forces, moments and positions, of fitted and of held-out examples each, are no further off than

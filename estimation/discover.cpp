@@ -78,8 +78,7 @@ EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool
   return out;
 }
 
-/// The same of forces, moments and positions. Their noise is told: what a renderer gets wrong in
-/// the photos is none of it, and a force zero shows in no photo.
+/// The same of forces, moments and positions.
 EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
   EffectiveMisfit out;
   for (const auto& example : fitted.evaluation.examples)
@@ -89,23 +88,38 @@ EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
   return out;
 }
 
+int parameters_of_sensors(const ModelForm& form) {
+  int count = 0;
+  for (const auto& ingredient : form.ingredients)
+    if (sensors_alone(*ingredient)) count += static_cast<int>(ingredient->parameters().size());
+  return count;
+}
+
 }  // namespace
 
-double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor) {
-  const EffectiveMisfit photos = photo_misfit(fitted, reference, false);
+double measured_noise2(const Fitted& fitted) { return measured_misfit(fitted, false).noise(1.0); }
+
+double refit_score(const Fitted& fitted, const Yardstick& yardstick) {
+  const EffectiveMisfit photos = photo_misfit(fitted, *yardstick.reference, false);
   const EffectiveMisfit measured = measured_misfit(fitted, false);
-  return photos.log_likelihood(floor.cell_variance) + measured.log_likelihood(1.0) -
-         0.5 * fitted.form.size() * std::log(std::max(photos.count + measured.count, 2.0));
+  const int of_sensors = parameters_of_sensors(fitted.form);
+  const auto price = [](int parameters, double count) {
+    return 0.5 * parameters * std::log(std::max(count, 2.0));
+  };
+  return photos.log_likelihood(yardstick.floor->cell_variance) -
+         0.5 * measured.r2 / yardstick.measured_noise2 -
+         price(fitted.form.size() - of_sensors, photos.count + measured.count) -
+         price(of_sensors, measured.count);
 }
 
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor, double least) {
-  const EffectiveMisfit photos = photo_misfit(with, with, true);
-  const EffectiveMisfit measured = measured_misfit(with, true);
   const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(true), 2); };
-  double loss = measured_misfit(without, true).log_likelihood(1.0) - measured.log_likelihood(1.0);
+  const EffectiveMisfit before = measured_misfit(without, true),
+                        after = measured_misfit(with, true);
+  double loss = 0.5 * (after.r2 - before.r2) / std::min(before.noise(1.0), after.noise(1.0));
   if (r2(with) > r2(without) + least)
     loss += photo_misfit(without, with, true).log_likelihood(floor.cell_variance) -
-            photos.log_likelihood(floor.cell_variance);
+            photo_misfit(with, with, true).log_likelihood(floor.cell_variance);
   return loss < kTie;
 }
 
@@ -191,7 +205,8 @@ std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, si
 /// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
                               size_t first_effect, const DiscoverOptions& options) {
-  const double full = refit_score(current, current, floor);
+  const Yardstick yardstick{&current, &floor, measured_noise2(current)};
+  const double full = refit_score(current, yardstick);
   int offset = 0;
   for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
     const auto own = current.form.ingredients[i]->parameters();
@@ -199,7 +214,7 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
     const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
     if (i >= first_effect && !mesh && !stands(current, offset, own))
       if (auto lighter = fit_without(workspace, current, i, options.fit)) {
-        const double score = refit_score(*lighter, current, floor);
+        const double score = refit_score(*lighter, yardstick);
         if (score > full - kTie)
           return Refit{current.form.ingredients[i]->name(), std::move(*lighter), score};
       }
@@ -212,12 +227,13 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
 /// the winner does without: as it is, which costs that effect's parameters, or without it too.
 bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,
                        const std::string& dropped, const Floor& floor, const FitOptions& options) {
-  const double enough = refit_score(winner, winner, floor) - kTie;
-  if (refit_score(rival, winner, floor) > enough) return true;
+  const Yardstick yardstick{&winner, &floor, measured_noise2(winner)};
+  const double enough = refit_score(winner, yardstick) - kTie;
+  if (refit_score(rival, yardstick) > enough) return true;
   for (size_t i = 0; i < rival.form.ingredients.size(); ++i)
     if (rival.form.ingredients[i]->name() == dropped) {
       const auto lighter = fit_without(workspace, rival, i, options);
-      return lighter && refit_score(*lighter, winner, floor) > enough;
+      return lighter && refit_score(*lighter, yardstick) > enough;
     }
   return false;
 }
@@ -300,7 +316,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
     if (added >= options.max_effects || only_numerical_left(step.fitted, step.diagnosis)) break;
     auto contest = refit_leaders(workspace, step, options, events);
     if (auto* failure = std::get_if<NumericalFailure>(&contest)) return *failure;
-    auto& [raced, ranked, before, reference] = std::get<Contest>(contest);
+    auto& [raced, ranked, before, reference, noise2] = std::get<Contest>(contest);
     if (ranked.empty()) break;
     Refit& winner = ranked.front();
     refused = why_refused(step, before, winner);

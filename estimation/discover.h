@@ -12,9 +12,22 @@
 
 namespace hookeye {
 
+/// What refits are scored by, the same for all that are compared.
+struct Yardstick {
+  const Fitted* reference;  ///< whose residuals' correlation counts
+  const Floor* floor;
+  /// Variance of forces, moments and positions in units of what was told of them: the least that
+  /// any of the compared leaves. A renderer's errors in the photos are none of it.
+  double measured_noise2;
+};
+
+/// Mean square of what `fitted` leaves of forces, moments and positions, 1 (as told) at least.
+double measured_noise2(const Fitted& fitted);
+
 /// log-likelihood of a fitted model with the effective number of residuals: fitted and held-out
-/// photos and measurements; minus (dof/2) log N (BIC). `reference` gives the correlation.
-double refit_score(const Fitted& fitted, const Fitted& reference, const Floor& floor);
+/// photos and measurements; minus (dof/2) log N (BIC). N is of the values that show a parameter:
+/// for an error of the sensors, which no photo shows, the measured ones alone.
+double refit_score(const Fitted& fitted, const Yardstick& yardstick);
 
 /// Whether the held-out examples speak against `with`: by their log-likelihood, less than a tie
 /// (kTie) is no word. Nor is a rise of the photos' chi^2 by no more than `least`, which meshes and

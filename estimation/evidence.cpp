@@ -14,6 +14,14 @@ namespace {
 /// be told of it is what the fit left undone along them.
 constexpr double kOwn = 1e-5;
 
+/// |r|^2 with which the noise is left once the hypothesis has taken its part. Sums over cells hold
+/// motion and brightness; a blur takes away more than they have, and without this all that takes
+/// more would be of one evidence, from whichever example on.
+double with_noise_left(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
+                       double count, double floor2) {
+  return std::max(r2, hypothesis.fall(s) + floor2 * count);
+}
+
 }  // namespace
 
 ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis) {
@@ -92,6 +100,7 @@ Hypothesis within_bounds(const Eigen::MatrixXd& H, int base, const Hypothesis& h
 
 double bayes_information(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
                          double count, double floor2) {
+  r2 = with_noise_left(hypothesis, s, r2, count, floor2);
   const auto likelihood = [&](double left) {
     const double noise = std::max(floor2, left / count);
     return -0.5 * count * std::log(noise) - 0.5 * left / noise;
@@ -123,6 +132,7 @@ double log_evidence_of_told_noise(const ProjectedHypothesis& hypothesis, const E
 double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
                     double count, double floor2, Eigen::VectorXd* mean) {
   if (mean) mean->setZero(hypothesis.typical.size());
+  r2 = with_noise_left(hypothesis, s, r2, count, floor2);
   const double null_noise = std::max(floor2, r2 / count);
   const double null = -0.5 * count * std::log(null_noise) - 0.5 * r2 / null_noise;
   if (hypothesis.one_sided && hypothesis.projected_score(s)[0] >= 0.0) return 0.0;

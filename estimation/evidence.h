@@ -61,7 +61,8 @@ ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis
 Hypothesis within_bounds(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis,
                          const Eigen::VectorXd& s);
 
-/// log p(r | effect) - log p(r | no effect) for the score s and |r|^2 = r2 (base part removed).
+/// log p(r | effect) - log p(r | no effect) for the score s and |r|^2 = r2 (base part removed; or
+/// more, such that the effect leaves the noise: what it removes may be more than cells show).
 /// `mean`: the parameters' mean under the prior that it chose.
 double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
                     double count, double floor2, Eigen::VectorXd* mean = nullptr);

@@ -142,12 +142,13 @@ int main_of(int argc, char** argv) {
                "Leave what is hidden out of the catalogue: no other name may explain it");
   app.add_option("-e,--effects", options.effects,
                  "Names, or several at once as gravity+creep; `none` hides nothing (default: none "
-                 "and the whole catalogue)")
+                 "and the catalogue but mesh_resolution, which every truth has: its mesh is finer)")
       ->delimiter(',');
   CLI11_PARSE(app, argc, argv);
   if (options.effects.empty()) {
     options.effects = {"none"};
-    for (const Effect* effect : catalogue()) options.effects.push_back(effect->name());
+    for (const Effect* effect : catalogue())
+      if (effect->group() != EffectGroup::numerical) options.effects.push_back(effect->name());
   }
   const std::vector<Score> scores = all(options);
   fmt::print("\n{}", summary(scores));

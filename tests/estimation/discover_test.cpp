@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "estimation/additive_material.h"
 #include "estimation/contest.h"
 #include "estimation/trial.h"
 #include "tests/estimation/small_capture.h"
@@ -102,9 +103,10 @@ TEST(RefitScore, ForcesCountByTheirOwnNoise) {
   Floor exact, rough;
   rough.cell_variance = 100.0;
   const auto loss = [&](const Floor& floor) {
-    return refit_score(right, right, floor) - refit_score(wrong, right, floor);
+    const Yardstick yardstick{&right, &floor, 1.0};
+    return refit_score(right, yardstick) - refit_score(wrong, yardstick);
   };
-  EXPECT_GT(loss(exact), 2.0);
+  EXPECT_NEAR(loss(exact), 0.5 * moved * 36.0, 0.1 * moved * 36.0);  // r^2 / 2 over noise of 1
   EXPECT_NEAR(loss(rough), loss(exact), 1e-9);
 }
 
@@ -163,6 +165,38 @@ TEST(Discover, NamesTheHiddenWeightAndTheErrorFalls) {
   EXPECT_NEAR(g, -9000.0, 300.0);
   parameter(last, "gravity.x", &g);
   EXPECT_NEAR(g, 4000.0, 300.0);
+}
+
+/// Seven deviations of one measured force, and nothing in any photo: few values pay for what they
+/// alone can show.
+TEST(Discover, NamesAForceZeroOfAFewDeviations) {
+  const Discovery found =
+      discover(SmallScene({.hidden = "hidden:\n  - {effect: force_zero, values: {force_zero.x: "
+                                     "-0.08, force_zero.y: 0.06, force_zero.z: 0.1}}\n",
+                           .same_renderer = true}));
+  double r2 = 0.0;
+  for (const auto& example : found.steps[0].fitted.evaluation.examples)
+    for (const auto& measured : example.measured) r2 += measured.r.squaredNorm();
+  ASSERT_GT(r2, 30.0);
+  ASSERT_LT(r2, 100.0);
+  EXPECT_THAT(found.missing, testing::ElementsAre("force_zero")) << found.sentence;
+  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+}
+
+/// What is missing beside an additive material is named as beside a law of the textbooks.
+TEST(Discover, NamesTheHiddenWeightBesideAnAdditiveMaterial) {
+  const SmallScene small({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, "
+                                    "gravity.z: -9000}}\n",
+                          .told = "0.021"});
+  Workspace workspace(small.scene);
+  const ModelForm base = base_form(small.scene);
+  const auto [form, p] = to_additive(base, base.initial());
+  const Discovery found = std::get<Discovery>(discover(workspace, form, p, {}));
+  EXPECT_THAT(found.missing, testing::ElementsAre("gravity")) << found.sentence;
+  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+  double g = 0.0;
+  parameter(found.steps.back().fitted, "gravity.z", &g);
+  EXPECT_NEAR(g, -9000.0, 300.0);
 }
 
 /// Stiffening's linear step shows a third of what it can do; the race gives it three.
@@ -227,8 +261,8 @@ TEST(Contest, PairsAreRefittedTogether) {
             {name, std::get<Fitted>(add_effect(workspace, step.fitted, score, {})), 0.0});
   ASSERT_EQ(contest.refits.size(), 2u);
   contest.reference = contest.refits[0].fitted;
-  for (Refit& one : contest.refits)
-    one.score = refit_score(one.fitted, contest.reference, step.diagnosis.floor);
+  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
+  for (Refit& one : contest.refits) one.score = refit_score(one.fitted, yardstick);
   const auto found = refit_pairs(workspace, step, contest, {}, {});
   const auto& pair = std::get<std::optional<Pair>>(found);
   ASSERT_TRUE(pair);

@@ -128,6 +128,20 @@ TEST(Evidence, ABoundCutsTheGainOnBothSides) {
   }
 }
 
+/// A blur that is in four photos and told of three: both take away more than the cells' sums hold,
+/// the four more than the three.
+TEST(Evidence, WhatTakesMoreThanCellsShowStillRanks) {
+  const Eigen::MatrixXd H = VectorXd({{40000.0, 30000.0}}).asDiagonal();
+  const VectorXd s = -0.4 * H.diagonal();
+  const double r2 = 3000.0, count = 200.0;
+  const auto four = project(H, 0, {0, 1, VectorXd::Ones(1)});
+  const auto three = project(H, 0, {1, 1, VectorXd::Ones(1)});
+  ASSERT_GT(three.fall(s), r2);
+  EXPECT_GT(log_evidence(four, s, r2, count, 1.0), log_evidence(three, s, r2, count, 1.0) + 20.0);
+  EXPECT_GT(bayes_information(four, s, r2, count, 1.0),
+            bayes_information(three, s, r2, count, 1.0) + 20.0);
+}
+
 TEST(Evidence, WhatTheBaseCanImitateIsNoEvidence) {
   std::mt19937 engine(7);
   Data data = noise(engine, 200, 3);

@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Matrix and fibres as they are usually written; derivatives by hand, checked in sheet_test.cpp.
+/// Matrix and fibres as they are usually written; derivatives by hand, checked in
+/// additive_fit_test.cpp.
 class Woven final : public EnergyTerm {
  public:
   Woven(double mu, double kappa, std::array<double, 2> k, std::array<double, 2> lock)
