@@ -308,6 +308,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       const auto moves = [&](PhotoColumn column) {
         return columns != nullptr && !columns->dphoto[k].row(column).isZero(0.0);
       };
+      render_options.photo_derivative = columns != nullptr && !columns->dphoto[k].isZero(0.0);
       render_options.gloss_derivative = moves(kSpecular);
       render_options.blur_derivative = moves(kBlur);
       render_options.centres = options.pictures;

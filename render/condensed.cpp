@@ -86,7 +86,7 @@ class RunOfPixels {
     const bool same = is(part, first, last);
     if (!same || run_.count == PixelRun::kPixels) flush();
     if (!same) set(part, first, last);
-    if (run_.count == 0) run_.photo = &part.photo[pixel];
+    if (run_.count == 0 && run_.with_photo) run_.photo = &part.photo[pixel];
     float* g = run_.vertices.data() + run_.at(run_.count, 0);
     if (triangles_.size() == 1)
       set_corners(part.segments[first], g);
@@ -109,9 +109,9 @@ class RunOfPixels {
  private:
   void set_corners(const DerivativeSegment& segment, float* g) const {
     for (int k = 0; k < 3; ++k) {
-      float* to = g + local_[k] * kVertexFloats;
-      std::copy_n(segment.d_position.data() + 3 * k, 3, to);
-      std::copy_n(segment.d_second.data() + 3 * k, 3, to + 3);
+      float* to = g + local_[k] * kVertexFloats;  // maps: std::copy calls memmove for three floats
+      Eigen::Map<Eigen::Vector3f>(to + 0) = segment.d_position.col(k);
+      Eigen::Map<Eigen::Vector3f>(to + 3) = segment.d_second.col(k);
     }
   }
   void add_corners(const DerivativeSegment* segments, float* g) const {

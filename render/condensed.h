@@ -39,7 +39,7 @@ class NodeNormalEquations {
  public:
   /// `r` and `w` per active pixel of `dI` (as for_each_pixel counts them). `Bt_r`: per active
   /// pixel, B^T(w r): the blurred adjoint (equal to w*r where there is no blur). `second`:
-  /// VertexSensitivity has it.
+  /// VertexSensitivity has it. `columns.photo` needs RenderOptions::photo_derivative.
   static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
                                         const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
                                         CondensedColumns columns);

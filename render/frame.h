@@ -60,6 +60,12 @@ constexpr int kBySecond = 9;    ///< 3 x 3: by unit vertex normals; by reference
 constexpr int kByPhoto = 18;    ///< by PhotoColumn, those before kBlur
 constexpr int kRayFloats = 32;
 static_assert(kByPhoto + kBlur <= kRayFloats);
+constexpr int kFloatsWithoutPhoto =
+    (kByPhoto + 3) / 4 * 4;  ///< a multiple of four, as lanes.h asks
+/// Those of them that are wanted; the others have any finite value.
+inline int wanted_floats(const RenderOptions& options) {
+  return options.photo_derivative ? kRayFloats : kFloatsWithoutPhoto;
+}
 struct alignas(64) RayRow {
   float value[kRayFloats];
 };

@@ -79,7 +79,11 @@ class Tile {
     store_.I[at] = hit ? shading.I[lane] : 0.0f;  // what is behind comes in with the pixel
     if (!hit) return;
     store_.uv[at] = {samples.bary[1][lane], samples.bary[2][lane]};
-    if (task_.frame.options.derivatives) store_.rays[at] = shading.ray[lane];
+    if (!task_.frame.options.derivatives) return;
+    if (task_.frame.options.photo_derivative)
+      store_.rays[at] = shading.ray[lane];
+    else  // of known length: a call of memmove costs as much as the copy
+      std::copy_n(shading.ray[lane].value, kFloatsWithoutPhoto, store_.rays[at].value);
   }
 
   static thread_local Store store_;
@@ -94,7 +98,7 @@ thread_local Tile::Store Tile::store_;
 const EdgeSegment* close_pixel(int pixel, size_t begin, const EdgeSegment* edge,
                                const EdgeSegment* end, ImageDerivative::Part* part) {
   for (; edge != end && edge->pixel == pixel; ++edge) {
-    part->photo.back().head<7>() += edge->d_camera.cast<float>();
+    if (!part->photo.empty()) part->photo.back().head<7>() += edge->d_camera.cast<float>();
     size_t s = begin;
     while (s < part->segments.size() && part->segments[s].triangle != edge->triangle) ++s;
     if (s == part->segments.size())
@@ -106,11 +110,16 @@ const EdgeSegment* close_pixel(int pixel, size_t begin, const EdgeSegment* edge,
   return edge;
 }
 
-const EdgeSegment* add_edges_alone(const EdgeSegment* edge, const EdgeSegment* end,
-                                   ImageDerivative::Part* part) {
-  PhotoDerivative photo = PhotoDerivative::Zero();
-  photo[kBackground] = 1;
-  part->photo.push_back(photo);
+/// The photo's numbers of the next pixel, `missing` of whose filter no triangle covers.
+void add_photo(float missing, ImageDerivative::Part* part) {
+  PhotoDerivative& photo = part->photo.emplace_back();
+  photo.setZero();
+  photo[kBackground] = missing;
+}
+
+const EdgeSegment* add_edges_alone(const BandTask& task, const EdgeSegment* edge,
+                                   const EdgeSegment* end, ImageDerivative::Part* part) {
+  if (task.frame.options.photo_derivative) add_photo(1, part);
   return close_pixel(edge->pixel, part->segments.size(), edge, end, part);
 }
 
@@ -151,27 +160,27 @@ class PixelSum {
     if (body) {
       add_body(pixel, taps, missing);
     } else if (edge_ != last_edge_ && edge_->pixel == pixel) {
-      edge_ = add_edges_alone(edge_, last_edge_, part_);
+      edge_ = add_edges_alone(task_, edge_, last_edge_, part_);
     }
   }
 
   void add_body(int pixel, const Taps& taps, float missing) {
     const size_t begin = part_->segments.size();
-    PhotoDerivative& photo = part_->photo.emplace_back();
-    photo.setZero();
-    photo[kBackground] = missing;
+    if (task_.frame.options.photo_derivative) add_photo(missing, part_);
     if (single_) {
-      add_segment(*taps.triangle, *taps.rays, &photo);
+      add_segment(*taps.triangle, *taps.rays);
     } else {
       groups_.clear();
       sum_by_triangle(taps, task_.filter, &groups_);
-      for (const TriangleSum& g : groups_) add_segment(g.triangle, g.sum, &photo);
+      for (const TriangleSum& g : groups_) add_segment(g.triangle, g.sum);
     }
     edge_ = close_pixel(pixel, begin, edge_, last_edge_, part_);
   }
-  void add_segment(int triangle, const RayRow& sum, PhotoDerivative* photo) {
+  void add_segment(int triangle, const RayRow& sum) {
     const float* at = sum.value;
-    photo->head<kBlur>() += Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
+    if (task_.frame.options.photo_derivative)
+      part_->photo.back().head<kBlur>() +=
+          Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
     part_->segments.push_back({triangle, Eigen::Map<const Eigen::Matrix3f>(at + kByPosition),
                                Eigen::Map<const Eigen::Matrix3f>(at + kBySecond)});
   }
@@ -227,7 +236,8 @@ void render_band(const BandTask& task, int row, int last_row, Rendering* out,
   if (task.frame.options.derivatives) {
     const size_t most = static_cast<size_t>(last_row - row) * (view.x1 - view.x0);
     part->pixel.reserve(most), part->first.reserve(most + 1);
-    part->segments.reserve(most), part->photo.reserve(most);
+    part->segments.reserve(most);
+    if (task.frame.options.photo_derivative) part->photo.reserve(most);
   }
   for (int x0 = view.x0; x0 < view.x1; x0 += columns) {
     const int x1 = std::min(x0 + columns, view.x1);
@@ -251,7 +261,7 @@ void add_outer_edges(const BandTask& task, ImageDerivative::Part* part) {
     if (inner || !task.wants(e->pixel))
       ++e;
     else
-      e = add_edges_alone(e, end, part);
+      e = add_edges_alone(task, e, end, part);
   }
 }
 

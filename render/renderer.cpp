@@ -210,7 +210,7 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
   parts[bands].clear();
   add_outer_edges(task, &parts[bands]);
   if (photo.blur_variance > 0) out->I = blur(out->I, photo.blur_variance);
-  if (options.derivatives && options.blur_derivative)
+  if (options.derivatives && options.photo_derivative && options.blur_derivative)
     for_each_task(bands + 1, options.threads, [&](int i) { set_blur_column(out->I, &parts[i]); });
 }
 

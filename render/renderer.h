@@ -21,6 +21,8 @@ struct RenderOptions {
   bool cast_shadows = true;
   int visibility_rays = 64;  ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
   bool derivatives = true;
+  bool photo_derivative =
+      true;  ///< false: Part::photo stays empty, and kBlur and kSpecular with it
   bool gloss_derivative = true;  ///< false: kSpecular of a body without gloss stays zero
   bool blur_derivative = true;   ///< false: kBlur stays zero
   bool centres = true;           ///< false: Rendering::triangle and uv stay empty
@@ -49,7 +51,7 @@ struct ImageDerivative {
     std::vector<int> pixel;  ///< y*width + x
     std::vector<int> first;  ///< pixel.size() + 1
     std::vector<DerivativeSegment> segments;
-    std::vector<PhotoDerivative> photo;
+    std::vector<PhotoDerivative> photo;  ///< as pixel; empty where not wanted
     void clear();
   };
   std::vector<Part> parts;

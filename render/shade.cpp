@@ -82,7 +82,8 @@ Light light(const Frame& f, const Samples& s, const V* b, V3 n, bool derivatives
   out.diffuse = set(static_cast<float>(f.photo.ambient)) * out.visibility * out.share +
                 only(out.sunny, cosine);
   out.glossy = !f.photo.sun.isZero(0.0) &&
-               (f.photo.specular != 0 || (derivatives && f.options.gloss_derivative));
+               (f.photo.specular != 0 ||
+                (derivatives && f.options.photo_derivative && f.options.gloss_derivative));
   if (out.glossy) out.gloss = gloss(f, s, n, at);
   return out;
 }
@@ -114,13 +115,16 @@ V3 differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const 
   if (l.glossy) {
     by_n = by_n + gain * l.gloss.by_n;
     by_sun = by_sun + gain * l.gloss.by_sun;
-    store(gain * l.gloss.by_specular, out[kByPhoto + kSpecular] + at);
+    if (f.options.photo_derivative)
+      store(gain * l.gloss.by_specular, out[kByPhoto + kSpecular] + at);
   }
   const V by_visibility = gain * albedo * set(static_cast<float>(f.photo.ambient));
   for (int k = 0; k < 3; ++k)
     by_bary[k] = by_bary[k] + by_visibility * l.share * load(s.of_triangle[kVisibility + k] + at);
-  store(gain * albedo * l.visibility * l.share, out[kByPhoto + kAmbient] + at);
-  store3(by_sun, kByPhoto + kSun, out, at);
+  if (f.options.photo_derivative) {
+    store(gain * albedo * l.visibility * l.share, out[kByPhoto + kAmbient] + at);
+    store3(by_sun, kByPhoto + kSun, out, at);
+  }
   if (!f.options.smooth_normals) return by_n;
   const V by_share = set(0.5f) * by_visibility * l.visibility;
   by_n = by_n + by_share * load3(s.of_triangle + kFacet, at);
@@ -183,6 +187,7 @@ void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V*
   V by_zoom = zoomed * (zx * g.x + zy * g.y);
   if (f.photo.shaded) add_facet_normal(s, by_facet, &by, at);
   store_corners(by, b, out, at);
+  if (!f.options.photo_derivative) return;
   if (l.glossy && f.photo.specular != 0) {
     // The camera turns, and the direction to it with it: d(to camera) = -w x (to camera).
     const V gain = set(static_cast<float>(f.photo.gain));
@@ -212,8 +217,9 @@ void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivat
     I = gain * I;
     store(I, out->I + at);
     if (!derivatives) continue;
-    for (int k = kBySecond; k < kRayFloats; ++k) store(set(0), value[k] + at);
-    store(I, value[kByPhoto + kLogGain] + at);
+    const int floats = wanted_floats(f.options);
+    for (int k = kBySecond; k < floats; ++k) store(set(0), value[k] + at);
+    if (f.options.photo_derivative) store(I, value[kByPhoto + kLogGain] + at);
     V by_bary[3];
     for (int k = 0; k < 3; ++k) by_bary[k] = gain * l.diffuse * load(a.by_bary[k] + at);
     V3 by_facet = {set(0), set(0), set(0)};
@@ -226,7 +232,7 @@ void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivat
   if (!derivatives) return;
   float* rows[kLanes];
   for (int i = 0; i < kLanes; ++i) rows[i] = out->ray[i].value;
-  to_rows(value, kRayFloats, rows);
+  to_rows(value, wanted_floats(f.options), rows);
 }
 
 }  // namespace hookeye::HWY_NAMESPACE

@@ -31,13 +31,13 @@ struct VertexSums {
 /// Derivatives g of neighbouring pixels by the same vertices and by the photo's numbers.
 struct PixelRun {
   static constexpr int kPixels = 16;
-  std::vector<int> slots;        ///< of VertexSums::vertex
-  std::vector<size_t> block;     ///< of slots (i, j), i <= j, row by row
-  int numbers = 6;               ///< of a vertex: 6, or 3 where the last three are zero
-  bool with_photo = true;        ///< false: nothing is summed with the photo's numbers
-  int count = 0;                 ///< pixels
-  std::vector<float> vertices;   ///< kVertexFloats by slot and pixel
-  const PhotoDerivative* photo;  ///< of the first; the others follow
+  std::vector<int> slots;                  ///< of VertexSums::vertex
+  std::vector<size_t> block;               ///< of slots (i, j), i <= j, row by row
+  int numbers = 6;                         ///< of a vertex: 6, or 3 where the last three are zero
+  bool with_photo = true;                  ///< false: nothing is summed with the photo's numbers
+  int count = 0;                           ///< pixels
+  std::vector<float> vertices;             ///< kVertexFloats by slot and pixel
+  const PhotoDerivative* photo = nullptr;  ///< of the first; the others follow
   float ww[kPixels], Bt_r[kPixels];
   /// Of a pixel's slot.
   size_t at(int pixel, size_t slot) const {

@@ -104,6 +104,44 @@ TEST(renderer, threads_agree_bit_by_bit) {
   expect_same(a.dI, b.dI);
 }
 
+// Many fits have no camera, light or exposure among their parameters.
+TEST(renderer, without_the_photos_numbers_motions_stay_the_same) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
+  Renderer renderer(surface);
+  PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  for (const int rays : {1, 3}) {
+    RenderOptions with, without;
+    with.rays_per_axis = without.rays_per_axis = rays;
+    without.photo_derivative = false;
+    const Rendering all = renderer.render(surface.X, nullptr, {}, state, with, true);
+    const Rendering some = renderer.render(surface.X, nullptr, {}, state, without, true);
+    EXPECT_EQ(all.I.values, some.I.values);
+    ASSERT_EQ(all.dI.parts.size(), some.dI.parts.size());
+    for (size_t i = 0; i < all.dI.parts.size(); ++i) {
+      const auto &a = all.dI.parts[i], &b = some.dI.parts[i];
+      EXPECT_TRUE(b.photo.empty());
+      EXPECT_EQ(a.pixel, b.pixel);
+      EXPECT_EQ(a.first, b.first);
+      ASSERT_EQ(a.segments.size(), b.segments.size());
+      for (size_t s = 0; s < a.segments.size(); ++s) {
+        EXPECT_EQ(a.segments[s].triangle, b.segments[s].triangle);
+        EXPECT_EQ(a.segments[s].d_position, b.segments[s].d_position);
+        EXPECT_EQ(a.segments[s].d_second, b.segments[s].d_second);
+      }
+    }
+    const Eigen::Index m = 3, nv = 3 * surface.X.cols();
+    const VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m),
+                              Eigen::MatrixXd::Zero(kPhotoColumns, m)};
+    const VectorXd r = VectorXd::Random(Eigen::Index(all.dI.pixels()));
+    const auto reduced = [&](const Rendering& rendering, CondensedColumns columns) {
+      return NodeNormalEquations::accumulate(surface, rendering.dI, r, r, r, columns).reduce(S);
+    };
+    const CondensedPhoto a = reduced(all, {}), b = reduced(some, {true, false});
+    EXPECT_LT((a.JtJ - b.JtJ).norm(), 1e-6 * a.JtJ.norm());
+    EXPECT_LT((a.Jtr - b.Jtr).norm(), 1e-6 * a.Jtr.norm());
+  }
+}
+
 // Pictures of other sizes and of other bodies may have been in the memory before.
 TEST(renderer, memory_used_again_leaves_nothing_behind) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
