@@ -188,6 +188,8 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
       const VectorXd move = next.x - x;
       // Below a promise of 0.01 the parameters move by a tenth of their standard deviation.
       if (-2.0 * step.g.dot(move) - move.dot(step.H * move) < 0.01) break;
+      if (not_convex(form.realise(p)))
+        continue;  // an upper bound took from an addend that others need
       auto trial = sums_at(p);
       if (const auto* failed = std::get_if<NumericalFailure>(&trial)) {
         if (failed->reason == "cancelled") return *failed;

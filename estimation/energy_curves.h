@@ -32,13 +32,14 @@ VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
 VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
                         const VectorXd& q, int part = 0);
 
-/// `metrics.energy` of a material told by laws, effects included, in the same form: a pull at
-/// constant volume (along x, y and z where that differs) and a change of volume, of the mean over
-/// the body. Bands to first order in the parameters.
+/// The first of `metrics.energy`, of any material, effects included: a pull at constant volume
+/// (along x, y and z where that differs) and a change of volume, of the mean over the body. Bands
+/// to first order in the parameters.
 nlohmann::json law_curves(const Scene& scene, const Fitted& fitted);
-/// `metrics.energy`: one curve an addend {name, unit, axis, stretch, value, low, high, visited,
-/// beyond}: Psi over its component (`stretch` holds the strains, `axis` names them), a
-/// two-component addend along its first component with the second at its largest visited size.
+/// The rest of `metrics.energy`, of additive materials: one curve an addend {name, unit, axis,
+/// stretch, value, low, high, visited, beyond}: Psi over its component (`stretch` holds the
+/// strains, `axis` names them), a two-component addend along its first component with the second at
+/// its largest visited size.
 nlohmann::json energy_curves(const Scene& scene, const Fitted& fitted);
 /// `metrics.additive`: smallest eigenvalue now and over all accepted steps that led here (null
 /// where only named values were fitted), refinements. Null where no material is additive.

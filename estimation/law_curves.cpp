@@ -1,4 +1,4 @@
-// What the data say of a material that is told by laws: its energy under a pull and under pressure,
+// What the data say of a material: its energy under a pull and under pressure,
 // with the band that the parameters' covariance gives, over the strains that the examples visit.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -97,8 +97,8 @@ std::vector<std::pair<Eigen::Index, std::array<MeanEnergy, 2>>> neighbours(
       const double deviation = std::sqrt(std::max(0.0, covariance(own, own)));
       if (!ingredient->touches().energy || deviation == 0.0) continue;
       VectorXd up = p, down = p;
-      const double h =
-          std::min(deviation, 1e-3 * (parameter.positive ? p[own] : parameter.typical));
+      const double scale = parameter.positive && p[own] > 0.0 ? p[own] : parameter.typical;
+      const double h = std::min(deviation, 1e-3 * scale);
       up[own] += h;
       down[own] -= h;
       step.push_back(2.0 * h);

@@ -1,6 +1,8 @@
 #include "estimation/lost_ellipticity.h"
 
+#include <Eigen/Eigenvalues>
 #include <limits>
+#include <vector>
 
 #include "simulation/ellipticity.h"
 
@@ -19,6 +21,24 @@ Matrix9d stiffness_of(const EnergyModel& energy, int e, const Matrix3d& F) {
   return D;
 }
 
+/// Of an element's points the most strained and the most compressed: Green strain has no limit in
+/// tension and ends at -1/2 in compression, where laws fail first.
+std::vector<Matrix3d> extremes(const Matrix3d* F, size_t points) {
+  double most = -1.0, least = std::numeric_limits<double>::infinity();
+  size_t strained = 0, compressed = 0;
+  for (size_t i = 0; i < points; ++i) {
+    const Matrix3d C = F[i].transpose() * F[i];
+    const double strain = (C - Matrix3d::Identity()).norm();
+    const double stretch2 = Eigen::SelfAdjointEigenSolver<Matrix3d>()
+                                .computeDirect(C, Eigen::EigenvaluesOnly)
+                                .eigenvalues()[0];
+    if (strain > most) most = strain, strained = i;
+    if (stretch2 < least) least = stretch2, compressed = i;
+  }
+  if (strained == compressed) return {F[strained]};
+  return {F[strained], F[compressed]};
+}
+
 }  // namespace
 
 json lost_ellipticity(const Scene& scene, const Fitted& fitted) {
@@ -33,21 +53,18 @@ json lost_ellipticity(const Scene& scene, const Fitted& fitted) {
     const auto all = deformation_gradients(scene.body->mesh, example.equilibrium->q);
     const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
     for (int e = 0; e < scene.body->mesh.size(); ++e) {
-      const Matrix3d* F = nullptr;
-      double most = -1.0;
-      for (size_t i = 0; i < points; ++i) {
-        const Matrix3d& here = all[static_cast<size_t>(e) * points + i];
-        const double strain = (here.transpose() * here - Matrix3d::Identity()).norm();
-        if (strain > most) most = strain, F = &here;
+      bool here = false;
+      for (const Matrix3d& F : extremes(all.data() + static_cast<size_t>(e) * points, points)) {
+        const Matrix9d D = stiffness_of(energy, e, F);
+        const double value = ellipticity(D, kStarts).smallest;
+        here = here || value <= 0.0;
+        if (value >= least) continue;
+        least = value;
+        worst = D;
+        out["example"] = scene.capture.examples[example.example].name;
+        out["element"] = e;
       }
-      const Matrix9d D = stiffness_of(energy, e, *F);
-      const double value = ellipticity(D, kStarts).smallest;
-      lost += value <= 0.0;
-      if (value >= least) continue;
-      least = value;
-      worst = D;
-      out["example"] = scene.capture.examples[example.example].name;
-      out["element"] = e;
+      lost += here;
     }
   }
   if (out.is_null()) return out;

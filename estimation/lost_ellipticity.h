@@ -7,10 +7,11 @@
 
 namespace hookeye {
 
-/// `metrics.ellipticity`, at the most strained point of every element of every example:
-/// {smallest, example, element, elements_lost}: the smallest eigenvalue of the acoustic tensor
-/// [stress], where it is, and how many elements have one that is not positive (ellipticity.h), over
-/// all examples. Of any law: StVK loses ellipticity at a uniaxial stretch of 0.577 or before.
+/// `metrics.ellipticity`, at the most strained and the most compressed point of every element of
+/// every example: {smallest, example, element, elements_lost}: the smallest eigenvalue of the
+/// acoustic tensor [stress], where it is, and how many elements have one that is not positive
+/// (ellipticity.h), over all examples. Of any law: StVK loses ellipticity at a uniaxial stretch of
+/// 0.577 or before.
 nlohmann::json lost_ellipticity(const Scene& scene, const Fitted& fitted);
 
 }  // namespace hookeye

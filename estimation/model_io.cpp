@@ -175,6 +175,9 @@ std::pair<ModelForm, VectorXd> read_model(const std::filesystem::path& file,
     for (const AdditivePart& part : additive_parts(form, so_far_values))
       if (const auto wrong = fault(part.model))
         throw InputError(node.place, wrong->wrong, wrong->right);
+    for (const ConvexPart& part : convex_parts(form, so_far_values))
+      if (const auto wrong = convexity_fault(part.model))
+        throw InputError(node.place, wrong->wrong, wrong->right);
   }
   return {form, Eigen::Map<const VectorXd>(values.data(), values.size())};
 }

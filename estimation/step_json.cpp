@@ -146,10 +146,13 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
   return all;
 }
 
-/// A curve and its band for every addend, or for every load path of textbook laws.
+/// A curve and its band for every load path, and for every addend. Where several addends share a
+/// strain their sum is known better than each.
 json energy(const Scene& scene, const Fitted& fitted) {
-  return has_additive(fitted.form.realise(fitted.p)) ? energy_curves(scene, fitted)
-                                                     : law_curves(scene, fitted);
+  json all = law_curves(scene, fitted);
+  if (has_additive(fitted.form.realise(fitted.p)))
+    for (json& one : energy_curves(scene, fitted)) all.push_back(std::move(one));
+  return all;
 }
 
 }  // namespace

@@ -71,8 +71,11 @@ const AdditiveModel* additive_model(const EnergyTerm& law);
 struct AdditiveFault {
   std::string key, wrong, right;
 };
-/// Structure, finite numbers, a right-handed orthonormal frame.
+/// Structure, finite numbers, a right-handed orthonormal frame, unit directions, the barrier's
+/// range.
 std::optional<AdditiveFault> structure_fault(const AdditiveModel& model);
+/// The energy is not convex, by more than rounding.
+std::optional<AdditiveFault> convexity_fault(const AdditiveModel& model);
 /// The same, and convexity, and stiffness against every strain at rest.
 std::optional<AdditiveFault> fault(const AdditiveModel& model);
 /// Reads `material: {law: additive, ...}`. Throws InputError with the place.

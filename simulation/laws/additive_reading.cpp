@@ -191,10 +191,6 @@ class Reader {
     const auto& below = need("barrier.below", 1, "a volume ratio J between 0 and 1");
     model.barrier_modulus = modulus.numbers[0];
     model.barrier_below = below.numbers[0];
-    if (!(model.barrier_modulus >= 0) || !std::isfinite(model.barrier_modulus))
-      throw InputError(modulus.place,
-                       fmt::format("the barrier's modulus is {}", modulus.numbers[0]),
-                       "a number from 0");
     if (!(model.barrier_below > 0 && model.barrier_below < 1))
       throw InputError(below.place, fmt::format("the barrier begins at J = {}", below.numbers[0]),
                        "a volume ratio between 0 and 1");
@@ -281,6 +277,19 @@ std::optional<AdditiveFault> structure_fault(const AdditiveModel& model) {
   if (!(model.frame.determinant() > 0))
     return AdditiveFault{"frame", "the material frame is left-handed",
                          "axis 3 is the cross product of axes 1 and 2: turn one of the axes round"};
+  for (const StrainComponent& c : model.components)
+    if (c.kind == StrainComponent::Kind::fibre && !(std::abs(c.direction.norm() - 1.0) < 1e-9))
+      return AdditiveFault{c.name + ".direction",
+                           fmt::format("the direction of {} is no unit vector", c.name),
+                           "three numbers whose squares add up to 1"};
+  if (!(model.barrier_modulus >= 0) || !std::isfinite(model.barrier_modulus))
+    return AdditiveFault{"barrier.modulus",
+                         fmt::format("the barrier's modulus is {}", model.barrier_modulus),
+                         "a number from 0"};
+  if (model.barrier_modulus > 0 && !(model.barrier_below > 0 && model.barrier_below < 1))
+    return AdditiveFault{"barrier.below",
+                         fmt::format("the barrier begins at J = {}", model.barrier_below),
+                         "a volume ratio between 0 and 1"};
   std::set<std::set<int>> seen;
   for (const Addend& a : model.addends) {
     if (auto wrong = addend_fault(model, a)) return wrong;
@@ -291,16 +300,20 @@ std::optional<AdditiveFault> structure_fault(const AdditiveModel& model) {
   return {};
 }
 
-std::optional<AdditiveFault> fault(const AdditiveModel& model) {
-  if (auto wrong = structure_fault(model)) return wrong;
+std::optional<AdditiveFault> convexity_fault(const AdditiveModel& model) {
   double scale = 0.0;
   for (const Addend& a : model.addends) scale = std::max(scale, a.stiffness.cwiseAbs().maxCoeff());
   const ConvexityTest convex = smallest_eigenvalue(model);
-  if (convex.smallest < -1e-12 * scale)
-    return AdditiveFault{least_convex(model, convex),
-                         fmt::format("the energy is not convex at {}: smallest eigenvalue {:.3g}",
-                                     convex.where, convex.smallest),
-                         "raise the tangent moduli there, or lower the coupling moduli"};
+  if (convex.smallest >= -1e-12 * scale) return {};
+  return AdditiveFault{least_convex(model, convex),
+                       fmt::format("the energy is not convex at {}: smallest eigenvalue {:.3g}",
+                                   convex.where, convex.smallest),
+                       "raise the tangent moduli there, or lower the coupling moduli"};
+}
+
+std::optional<AdditiveFault> fault(const AdditiveModel& model) {
+  if (auto wrong = structure_fault(model)) return wrong;
+  if (auto wrong = convexity_fault(model)) return wrong;
   return rest_fault(model);
 }
 

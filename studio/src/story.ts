@@ -14,7 +14,7 @@ const many = (count: number, what: string): string => `${count} ${what}${count =
 /** What the body is taken for: the addends that a fit found take the place of the capture's law. */
 function law(): string {
   const own = run.value.steps[0]?.metrics;
-  const addends = own?.additive ? own.energy?.map((curve) => curve.name) ?? [] : [];
+  const addends = own?.additive ? own.energy?.filter((curve) => curve.beyond !== undefined).map((curve) => curve.name) ?? [] : [];
   if (addends.length) return ` whose energy is a sum over ${listed(addends)}`;
   const laws = [...new Set(run.value.capture?.laws ?? [])];
   return laws.length ? ` of ${listed(laws)} law` : '';

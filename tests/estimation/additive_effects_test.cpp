@@ -1,14 +1,18 @@
 // The material effects on top of an additive base model: null is bit-equal, derivatives are right,
 // forces of the base are unchanged in kind.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
+#include <filesystem>
+#include <fstream>
 
 #include "estimation/additive_function.h"
 #include "estimation/additive_material.h"
 #include "estimation/effects_scene.h"
 #include "estimation/fit.h"
+#include "estimation/model.h"
 #include "simulation/equilibrium.h"
 #include "support/derivative.h"
 
@@ -227,6 +231,21 @@ TEST(EffectsOnAdditive, StayConvexWithTheMaterial) {
   const VectorXd q = with_values(form, Eigen::Vector2d(-0.03, -0.09));
   ASSERT_TRUE(not_convex(form.realise(q)));
   EXPECT_NE(not_convex(form.realise(q))->reason.find("I1bar = 0.4"), std::string::npos);
+  // A file whose material is convex, and each of its numbers in range, but not their sum.
+  VectorXd damaged = with_values(form, one->parameters()[1].low * Eigen::Vector2d(1, 1));
+  const auto parameters = form.parameters();
+  for (size_t k = 0; k < parameters.size(); ++k)
+    if (parameters[k].name == "I1bar.2") damaged[static_cast<Eigen::Index>(k)] = 0.02;
+  ASSERT_TRUE(not_convex(form.realise(damaged)));
+  const auto file = std::filesystem::temp_directory_path() / "hookeye_not_convex.yaml";
+  std::ofstream(file) << write_model(form, damaged);
+  try {
+    read_model(file, scene);
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.wrong(), testing::HasSubstr("not convex at I1bar = "));
+  }
+  std::filesystem::remove(file);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(q.size(), q.size());
   const ConvexProjection back = project_convex(parts, q, I);
   ASSERT_TRUE(back.converged);

@@ -97,6 +97,11 @@ TEST(AdditiveMaterial, IsReadBackFromItsVariantAndFile) {
   };
   EXPECT_THAT(damaged("[-0.1,0.2]", "[0.2,-0.1]"), testing::HasSubstr("out of order"));
   EXPECT_THAT(damaged("[-0.1,0.2]", "[]"), testing::HasSubstr("values"));
+  EXPECT_THAT(damaged("[0.6,0.8,0.0]", "[0,0,2]"), testing::HasSubstr("no unit vector"));
+  EXPECT_THAT(damaged("\"barrier\":[", "\"barrier\":[1,1.5],\"y\":["),
+              testing::HasSubstr("begins at J = 1.5"));
+  EXPECT_THAT(damaged("\"barrier\":[", "\"barrier\":[-1,0.99],\"y\":["),
+              testing::HasSubstr("modulus is -1"));
   EXPECT_THAT(damaged("\"frame\":[", "\"frame\":[2,0,0,0,1,0,0,0,1],\"x\":["),
               testing::HasSubstr("not orthonormal"));
   EXPECT_THROW(additive_material_from("{\"additive\": 1}", scene->capture.units),

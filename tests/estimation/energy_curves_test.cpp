@@ -62,6 +62,37 @@ TEST(LostEllipticity, IsToldOfTextbookLawsToo) {
   EXPECT_GT(kept.at("smallest").get<double>(), 0.0);
 }
 
+/// Elements that one side compresses and the other stretches by more: what is lost is on the side
+/// of the smaller strain.
+TEST(LostEllipticity, IsFoundInTheCompressedCornerOfAStretchedElement) {
+  const auto scene = block_of(law("stvk", {{"lambda", 0.0}, {"mu", 0.05}}), {"mu"});
+  const TetMesh& mesh = scene->body->mesh;
+  Fitted fitted = stretched(scene, 1.0);
+  const double low = mesh.X.row(0).minCoeff(), length = mesh.X.row(0).maxCoeff() - low;
+  auto state = std::make_shared<Equilibrium>();
+  Matrix3Xd x = mesh.X;
+  for (auto& value : x.row(0)) {
+    const double s = (value - low) / length;
+    value = length * (0.3 * s + 2.5 * s * s);  // stretches from 0.3 to 5.3
+  }
+  state->q = x.reshaped();
+  fitted.evaluation.examples[0].equilibrium = state;
+  const auto F = deformation_gradients(mesh, state->q);
+  const size_t points = F.size() / static_cast<size_t>(mesh.size());
+  int lost = 0, hidden = 0;  // an element's point below 0.577, and another farther from rest
+  for (size_t e = 0; e < static_cast<size_t>(mesh.size()); ++e) {
+    double least = 10.0, most = 0.0;
+    for (size_t i = 0; i < points; ++i) {
+      const double stretch = F[e * points + i](0, 0);
+      least = std::min(least, stretch), most = std::max(most, stretch);
+    }
+    lost += least < 1.0 / std::sqrt(3.0);
+    hidden += least < 1.0 / std::sqrt(3.0) && most * most - 1.0 > 1.0 - least * least;
+  }
+  ASSERT_GT(hidden, 0);
+  EXPECT_EQ(lost_ellipticity(*scene, fitted).at("elements_lost"), lost);
+}
+
 /// The block told additively, at its equilibria: curves, bands and what they are made of.
 class AdditiveBlock : public testing::Test {
  protected:
