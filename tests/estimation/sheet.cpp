@@ -126,7 +126,7 @@ examples:
 }
 
 struct Motion {
-  std::string name, grip, text;
+  std::string name, grip, text;  ///< grip: moved by a force that can be measured, "" where told
   bool validate;
 };
 
@@ -156,6 +156,12 @@ std::vector<Motion> motions(const SheetOptions& o) {
                      -6.0 * s, 4.0 * s, 9.0 * s),
          o.fitted != "shear" || middle});
   }
+  if (o.dead_force)
+    all.push_back({o.fitted + "_pull", "",
+                   fmt::format("      - {{region: left, fix: [x, y, z]}}\n    loads:\n"
+                               "      - {{region: right, force: [{:g}, {:g}, {:g}]}}\n",
+                               o.dead_force->x(), o.dead_force->y(), o.dead_force->z()),
+                   false});
   if (o.only_fitted)
     std::erase_if(all, [&](const Motion& m) { return m.name.rfind(o.fitted, 0) != 0; });
   return all;
@@ -259,13 +265,12 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
         text += fmt::format(
             "      - {{position_of: [{:g}, {:g}, {:g}], value: {}, sigma: {:g}}}\n", X.x(), X.y(),
             X.z(), noisy(moved(scene->body->mesh, state.q, X), o.position_sigma), o.position_sigma);
-    if (o.kinds.count("forces") && example.name != "rest") {
-      const std::string& grip = std::find_if(all.begin(), all.end(), [&](const Motion& m) {
-                                  return m.name == example.name;
-                                })->grip;
-      const Vector3d force = support_force(state, scene->body->regions.at(grip));
+    const auto motion = std::find_if(all.begin(), all.end(),
+                                     [&](const Motion& m) { return m.name == example.name; });
+    if (o.kinds.count("forces") && motion != all.end() && !motion->grip.empty()) {
+      const Vector3d force = support_force(state, scene->body->regions.at(motion->grip));
       const double sigma = std::max(o.force_sigma, o.force_share * force.norm());
-      text += fmt::format("      - {{force_on: {}, value: {}, sigma: {:g}}}\n", grip,
+      text += fmt::format("      - {{force_on: {}, value: {}, sigma: {:g}}}\n", motion->grip,
                           noisy(force, sigma), sigma);
     }
     if (o.kinds.count("photos")) {

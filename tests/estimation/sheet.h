@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -26,6 +27,9 @@ struct SheetOptions {
   double stretch = 1.0;  ///< size of all motions
   double position_sigma = 0.02, force_sigma = 0.005;  ///< [mm], [N]
   double force_share = 0.0;  ///< a force's noise is at least this share of it
+  /// Fitted too: `pull`, the left edge held and this force on the right one [N]. It gives positions
+  /// and photos alone their scale.
+  std::optional<Eigen::Vector3d> dead_force;
   bool only_fitted = false;  ///< the other motion is not in the capture
   unsigned seed = 1;
 };
