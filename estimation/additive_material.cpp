@@ -8,6 +8,7 @@
 
 #include "estimation/additive_function.h"
 #include "simulation/equilibrium.h"
+#include "simulation/laws/material_frame.h"
 
 namespace hookeye {
 namespace {
@@ -263,12 +264,15 @@ std::vector<ConvexPart> convex_parts(const ModelForm& form, const VectorXd& p) {
 
 namespace {
 
-AdditiveModel start_of(const EnergyTerm& law) {
+/// The law's energy and axes.
+AdditiveModel start_of(const EnergyTerm& law, const MaterialSpec& told) {
   const Matrix9d D = law.dP_dF(Matrix3d::Identity());
   const double mu = 0.5 * (D(1, 1) + D(1, 3)), kappa = D(0, 4) + 2.0 / 3.0 * mu;
   auto exact = as_additive(law);
   AdditiveModel model = exact ? *exact : additive_neo_hookean(mu, kappa);
   if (const CylinderFrame* cylinder = law.cylinder()) model.cylinder = *cylinder;
+  if (const auto frame = told.parameters.find("frame"); !exact && frame != told.parameters.end())
+    model.frame = laws::read_frame(frame->second);
   if (model.barrier_modulus == 0) {
     model.barrier_modulus = std::max(kappa, mu);
     model.barrier_below = 0.3;
@@ -285,7 +289,7 @@ std::pair<ModelForm, VectorXd> to_additive(const ModelForm& form, const VectorXd
   const Model now = form.realise(p);
   out.ingredients.clear();
   for (size_t i = 0; i < capture.materials.size(); ++i) {
-    const AdditiveModel model = start_of(*now.energy.parts[i].term);
+    const AdditiveModel model = start_of(*now.energy.parts[i].term, capture.materials[i]);
     out.ingredients.push_back(additive_material(
         model, capture.units, {static_cast<int>(i), capture.materials[i].region}));
     const VectorXd start = model.values();

@@ -24,11 +24,6 @@ VectorXd lower_bounds(const Scaling& scaling) {
   return x;
 }
 
-VectorXd within_upper_bounds(const Scaling& scaling, VectorXd p) {
-  for (int i = 0; i < p.size(); ++i) p[i] = std::min(p[i], scaling.parameters[i].high);
-  return p;
-}
-
 /// Whether control values come from this parameter.
 bool is_control_value(const std::vector<ConvexPart>& parts, Eigen::Index parameter) {
   return std::any_of(parts.begin(), parts.end(),
@@ -184,7 +179,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
     for (; !accepted && damping < 1e6; damping = accepted ? damping : 8.0 * damping) {
       const ConvexProjection next = step.solve(parts, x, low, damping);
       if (!next.converged) continue;
-      const VectorXd p = within_upper_bounds(scaled, scaled.to_p(next.x));
+      const VectorXd p = scaled.to_p(next.x);  // the upper bounds are kept here
       const VectorXd move = next.x - x;
       // Below a promise of 0.01 the parameters move by a tenth of their standard deviation.
       if (-2.0 * step.g.dot(move) - move.dot(step.H * move) < 0.01) break;

@@ -129,9 +129,9 @@ void look_at_material(const MaterialSpec& spec, Sentences* out) {
   for (const bool pull : {true, false})
     if (const double at = stretch_of_falling(*law, pull); at > 0.0)
       out->push_back(fmt::format(
-          "{}: the energy of this {} falls again from a stretch of {:.3g} on (at constant volume): "
-          "there the body has no equilibrium that lasts",
-          of, spec.law, at));
+          "{}: {}: the energy of this {} falls again from a stretch of {:.3g} on (at constant "
+          "volume): there the body has no equilibrium that lasts",
+          spec.place.str(), of, spec.law, at));
   const auto told = spec.parameters.find("frame");
   if (told == spec.parameters.end() || told->second.numbers.size() != 9) return;
   const Matrix3d axes = Eigen::Map<const Matrix3d>(told->second.numbers.data());

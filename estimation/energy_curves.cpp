@@ -85,6 +85,16 @@ VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Mo
   return flags.rowwise().sum();
 }
 
+VectorXd addends_beyond(const Scene& scene, const Model& realised, const VectorXd& q) {
+  VectorXd out;
+  for (size_t part = 0; part < scene.capture.materials.size(); ++part)
+    if (const AdditiveModel* own = additive_model(*realised.energy.parts.at(part).term)) {
+      if (out.size() == 0) out.setZero(scene.body->mesh.size());
+      out += addends_beyond(scene, *own, realised, q, static_cast<int>(part));
+    }
+  return out;
+}
+
 namespace {
 
 /// Energy along a curve and its derivative by the control values of the addend.

@@ -31,6 +31,8 @@ VisitedStrains visited_strains(const ModelForm& form, const Fitted& fitted,
 /// Per element, of how many addends of the part's material it is beyond the control points.
 VectorXd addends_beyond(const Scene& scene, const AdditiveModel& model, const Model& realised,
                         const VectorXd& q, int part = 0);
+/// The same over all materials; empty where none is additive.
+VectorXd addends_beyond(const Scene& scene, const Model& realised, const VectorXd& q);
 
 /// The first of `metrics.energy`, of any material, effects included: a pull at constant volume
 /// (along x, y and z where that differs) and a change of volume, of the mean over the body. Bands

@@ -126,7 +126,7 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
                                                        const VectorXd& start,
                                                        const FitOptions& options,
                                                        const Scope& scope) {
-  StageResult out{start, true, 0};
+  StageResult out{start, true};
   std::optional<Look> full_size;  // of p
   for (const Stage& stage : stages(workspace.scene(), options.coarse_to_fine)) {
     if (stage.level > 0 || !full_size) {
@@ -145,6 +145,7 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
     const auto& result = std::get<StageResult>(ran);
     out.p = result.p;
     out.iterations += result.iterations;
+    out.smallest_eigenvalue = std::fmin(out.smallest_eigenvalue, result.smallest_eigenvalue);
     if (stage.level == 0) out.converged = result.converged;
   }
   return out;
@@ -167,7 +168,7 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
   if (has_additive(form)) return fit_convex_to_end(workspace, form, start, options);
-  StageResult result{start, true, 0};
+  StageResult result{start, true};
   if (form.size() > 0) {
     const Scope scope{false, std::vector<bool>(form.size(), true)};
     auto ran = run_stages(workspace, form, start, options, scope);
@@ -180,6 +181,7 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
   if (auto* out = std::get_if<Fitted>(&fitted)) {
     out->iterations = result.iterations;
     out->converged = result.converged;
+    out->smallest_eigenvalue = result.smallest_eigenvalue;
   }
   return fitted;
 }

@@ -31,7 +31,11 @@ class ReducedCost final : public ceres::CostFunction {
     // An accepted step is asked again for its Jacobian; both come from one evaluation.
     if (x.size() != cached_x_.size() || x != cached_x_) {
       const VectorXd p = scaling_.to_p(x);
-      if (named_addends_ && (failure_ = not_convex(form_.realise(p)))) return false;
+      if (named_addends_) {
+        const Model model = form_.realise(p);
+        if ((failure_ = not_convex(model))) return false;
+        smallest_eigenvalue_ = hookeye::smallest_eigenvalue(model)->smallest;
+      }
       auto result = workspace_.evaluate(form_, p, options_);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         failure_ = *failure;
@@ -52,6 +56,8 @@ class ReducedCost final : public ceres::CostFunction {
   }
   const std::optional<NumericalFailure>& failure() const { return failure_; }
   bool named_addends() const { return named_addends_; }
+  /// Of named addends, where it was asked last.
+  double smallest_eigenvalue() const { return smallest_eigenvalue_; }
   /// Fall of |r|^2 that the next Gauss-Newton step promises, and |r|^2 itself.
   double promised() const { return cached_.z.squaredNorm(); }
   double r2() const { return cached_.z.squaredNorm() + cached_.rho * cached_.rho; }
@@ -65,6 +71,7 @@ class ReducedCost final : public ceres::CostFunction {
   bool named_addends_ = false;  ///< values of an additive law: steps must stay convex
   mutable VectorXd cached_x_;
   mutable CondensedResidual cached_;
+  mutable double smallest_eigenvalue_ = std::numeric_limits<double>::quiet_NaN();
   mutable std::optional<NumericalFailure> failure_;
 };
 
@@ -75,11 +82,14 @@ class Reporter final : public ceres::IterationCallback {
       : options_(options), cost_(cost), stage_(stage), count_(count), misfit_(misfit), of_(of) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
+    if (summary.iteration == 0 || summary.step_is_successful)
+      least_ = std::fmin(least_, cost_.smallest_eigenvalue());  // asked there for its Jacobian
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (options_.progress)
       options_.progress({stage_.name(), summary.iteration, of_, chi(summary.cost)});
     return ceres::SOLVER_CONTINUE;
   }
+  double smallest_eigenvalue() const { return least_; }
 
  private:
   /// A promised fall of 0.01 moves the parameters by a tenth of their standard deviation under
@@ -119,6 +129,7 @@ class Reporter final : public ceres::IterationCallback {
   double count_, misfit_;
   int of_;
   int slow_ = 0;  ///< steps in a row
+  double least_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 double photo_count(const Evaluation& evaluation) {
@@ -195,7 +206,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   return StageResult{scaling.to_p(x),
                      summary.termination_type == ceres::CONVERGENCE ||
                          summary.termination_type == ceres::USER_SUCCESS,
-                     static_cast<int>(summary.iterations.size())};
+                     static_cast<int>(summary.iterations.size()), reporter.smallest_eigenvalue()};
 }
 
 }  // namespace hookeye

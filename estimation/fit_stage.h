@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <string>
 #include <variant>
 #include <vector>
@@ -64,6 +65,8 @@ struct StageResult {
   VectorXd p;
   bool converged = false;
   int iterations = 0;
+  /// Named values of an additive material: least over the accepted steps [stress]; else no number.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
 std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "simulation/ellipticity.h"
@@ -41,34 +42,41 @@ std::vector<Matrix3d> extremes(const Matrix3d* F, size_t points) {
 
 }  // namespace
 
+LostEllipticity lost_ellipticity(const TetMesh& mesh, const EnergyModel& energy,
+                                 const VectorXd& q) {
+  constexpr int kStarts = 8;  // a sweep
+  LostEllipticity out{std::numeric_limits<double>::infinity(), -1, Matrix9d::Zero(), 0};
+  const auto all = deformation_gradients(mesh, q);
+  const size_t points = all.size() / static_cast<size_t>(mesh.size());
+  for (int e = 0; e < mesh.size(); ++e) {
+    bool here = false;
+    for (const Matrix3d& F : extremes(all.data() + static_cast<size_t>(e) * points, points)) {
+      const Matrix9d D = stiffness_of(energy, e, F);
+      const double value = ellipticity(D, kStarts).smallest;
+      here = here || value <= 0.0;
+      if (value < out.smallest) out.smallest = value, out.element = e, out.dP_dF = D;
+    }
+    out.elements += here;
+  }
+  return out;
+}
+
 json lost_ellipticity(const Scene& scene, const Fitted& fitted) {
-  constexpr int kStarts = 8;  // a sweep; the worst element is looked at again
   const Model realised = fitted.form.realise(fitted.p);
+  std::optional<LostEllipticity> worst;
   json out;
-  double least = std::numeric_limits<double>::infinity();
-  Matrix9d worst = Matrix9d::Zero();
   int lost = 0;
   for (const auto& example : fitted.evaluation.examples) {
-    const EnergyModel energy = realised.energy_of(example.example);
-    const auto all = deformation_gradients(scene.body->mesh, example.equilibrium->q);
-    const size_t points = all.size() / static_cast<size_t>(scene.body->mesh.size());
-    for (int e = 0; e < scene.body->mesh.size(); ++e) {
-      bool here = false;
-      for (const Matrix3d& F : extremes(all.data() + static_cast<size_t>(e) * points, points)) {
-        const Matrix9d D = stiffness_of(energy, e, F);
-        const double value = ellipticity(D, kStarts).smallest;
-        here = here || value <= 0.0;
-        if (value >= least) continue;
-        least = value;
-        worst = D;
-        out["example"] = scene.capture.examples[example.example].name;
-        out["element"] = e;
-      }
-      lost += here;
-    }
+    const auto here = lost_ellipticity(scene.body->mesh, realised.energy_of(example.example),
+                                       example.equilibrium->q);
+    lost += here.elements;
+    if (worst && here.smallest >= worst->smallest) continue;
+    worst = here;
+    out["example"] = scene.capture.examples[example.example].name;
+    out["element"] = here.element;
   }
-  if (out.is_null()) return out;
-  out["smallest"] = ellipticity(worst).smallest;
+  if (!worst) return out;
+  out["smallest"] = ellipticity(worst->dP_dF).smallest;  // looked at again, with all starts
   out["elements_lost"] = lost;
   return out;
 }

@@ -14,4 +14,13 @@ namespace hookeye {
 /// 0.577 or before.
 nlohmann::json lost_ellipticity(const Scene& scene, const Fitted& fitted);
 
+/// The same of one equilibrium q.
+struct LostEllipticity {
+  double smallest;   ///< eigenvalue of the acoustic tensor [stress], a sweep's
+  int element;       ///< where it is
+  Matrix9d dP_dF;    ///< there
+  int elements = 0;  ///< that have one that is not positive
+};
+LostEllipticity lost_ellipticity(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
+
 }  // namespace hookeye

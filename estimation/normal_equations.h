@@ -1,6 +1,8 @@
 // Gauss-Newton's normal equations: their sums, their units, the covariance that follows from them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -11,10 +13,12 @@ namespace hookeye {
 /// What a fit moves: x = log p for positive parameters, p / typical for the others.
 struct Scaling {
   std::vector<Parameter> parameters;
+  /// Within the bounds, which exp(log(bound)) may miss by its rounding.
   VectorXd to_p(const VectorXd& x) const {
     VectorXd p(x.size());
     for (int i = 0; i < x.size(); ++i)
-      p[i] = parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical;
+      p[i] = std::clamp(parameters[i].positive ? std::exp(x[i]) : x[i] * parameters[i].typical,
+                        parameters[i].low, parameters[i].high);
     return p;
   }
   VectorXd to_x(const VectorXd& p) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "capture_io/run.h"
+#include "estimation/energy_curves.h"
 #include "estimation/fitted_fields.h"
 #include "render/renderer.h"
 
@@ -264,6 +265,8 @@ json example_json(const Scene& scene, const Model& model, const Shell& shell,
       {"views", std::move(views)}};
   for (const auto& [name, values] : fitted)
     out[name] = array_json(on_shell(scene, shell, values).transpose());
+  const VectorXd beyond = addends_beyond(scene, model, q);
+  if (beyond.size()) out["beyond"] = array_json(on_shell(scene, shell, beyond).transpose());
   return out;
 }
 

@@ -300,12 +300,7 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
                                   {"J", state.J.transpose(), false}};
   for (const auto& [name, values] : fitted_fields(form, model))
     arrays.push_back({name, values.transpose(), false});
-  VectorXd beyond;
-  for (size_t part = 0; part < scene.capture.materials.size(); ++part)
-    if (const AdditiveModel* own = additive_model(*model.energy.parts.at(part).term)) {
-      if (beyond.size() == 0) beyond.setZero(mesh.size());
-      beyond += addends_beyond(scene, *own, model, q, static_cast<int>(part));
-    }
+  const VectorXd beyond = addends_beyond(scene, model, q);
   if (beyond.size()) arrays.push_back({"beyond_control_points", beyond.transpose(), false});
   write_vtu(file, mesh, arrays);
 }

@@ -199,7 +199,8 @@ Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
   }
   out["mesh"] = {{"nodes", scene.body->mesh.nodes()},
                  {"elements", scene.body->mesh.size()},
-                 {"order", scene.body->mesh.order}};
+                 {"order", scene.body->mesh.order},
+                 {"elements_lost", truth.elements_lost}};
   for (size_t e = 0; e < truth.states.size(); ++e)
     if (recipe.examples[e].moves())
       out["measured"][recipe.examples[e].name] = {

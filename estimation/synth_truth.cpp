@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "capture_io/yaml_section.h"
+#include "estimation/lost_ellipticity.h"
 
 namespace hookeye::detail {
 
@@ -164,11 +165,24 @@ struct Addition {
   Model model;
   std::vector<TruthSolver::State> states;
   double rms_px = 0.0;  ///< by which it moves the pictures
+  /// Ellipticity is lost where it was not before: the same loads have several equilibria, and a fit
+  /// may rightly find another one than the pictures show.
+  bool unstable = false;
 };
+
+int elements_lost(const Model& model, const std::vector<TruthSolver::State>& states) {
+  int lost = 0;
+  for (size_t e = 0; e < states.size(); ++e)
+    lost +=
+        lost_ellipticity(model.scene->body->mesh, model.energy_of(static_cast<int>(e)), states[e].q)
+            .elements;
+  return lost;
+}
+
 std::variant<Addition, NumericalFailure> add_to(const Truth& truth, TruthSolver& solver,
                                                 const std::shared_ptr<const Ingredient>& ingredient,
                                                 const VectorXd& values) {
-  Addition out{truth.form, VectorXd(truth.p.size() + values.size()), {}, {}, 0.0};
+  Addition out{truth.form, VectorXd(truth.p.size() + values.size()), {}, {}, 0.0, false};
   out.form.ingredients.push_back(ingredient);
   out.p << truth.p, values;
   out.model = out.form.realise(out.p);
@@ -176,6 +190,8 @@ std::variant<Addition, NumericalFailure> add_to(const Truth& truth, TruthSolver&
   if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
   out.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
   out.rms_px = rms_px(*out.model.scene, truth.model, truth.states, out.model, out.states);
+  out.unstable = ingredient->touches().energy &&
+                 elements_lost(out.model, out.states) > elements_lost(truth.model, truth.states);
   return out;
 }
 
@@ -204,9 +220,10 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
       check_range(parameters[k], values[k], hidden.values_place,
                   fmt::format("{} px cannot be reached", hidden.rms_px.value_or(0.0)));
     auto added = add_to(truth, solver, ingredient, values);
-    if (auto* failure = std::get_if<NumericalFailure>(&added)) {
-      if (!hidden.drawn || i + 1 == most) return std::move(*failure);
-      largest = 0.7 * factor;  // drawn too large for an equilibrium
+    auto* failure = std::get_if<NumericalFailure>(&added);
+    if (failure && (!hidden.drawn || i + 1 == most)) return std::move(*failure);
+    if (failure || (hidden.drawn && i + 1 < most && std::get<Addition>(added).unstable)) {
+      largest = 0.7 * factor;  // drawn too large for an equilibrium, or for one alone
       factor *= 0.5;
       continue;
     }
@@ -260,6 +277,7 @@ std::variant<Truth, NumericalFailure> find_truth(const Recipe& recipe,
   truth.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
   for (const HiddenRecipe& hidden : recipe.hidden)
     if (auto failure = hide(hidden, recipe.seed, solver, truth)) return std::move(*failure);
+  truth.elements_lost = elements_lost(truth.model, truth.states);
   return truth;
 }
 

@@ -45,6 +45,7 @@ struct Truth {
   Model model;
   std::vector<TruthSolver::State> states;
   std::vector<PutIn> hidden;
+  int elements_lost = 0;  ///< without ellipticity, over all examples (lost_ellipticity.h)
 };
 
 /// Puts the recipe's hidden effects in, one after another, scaling those with rms_px.

@@ -33,10 +33,7 @@ VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquat
     const double most = scaling.parameters[i].positive ? 1.0 : 10.0;
     x[i] += std::clamp(dx[i], -most, most);
   }
-  VectorXd out = scaling.to_p(x);
-  for (int i = 0; i < out.size(); ++i)
-    out[i] = std::clamp(out[i], scaling.parameters[i].low, scaling.parameters[i].high);
-  return out;
+  return scaling.to_p(x);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ TEST_F(FittedRun, AnAdditiveFitKeepsItsEnergyAndItsConvexity) {
   }
   EXPECT_THAT(read(step / "model.yaml"), HasSubstr("I1bar"));
   EXPECT_THAT(read(step / "deformed/pull.vtu"), HasSubstr("Name=\"beyond_control_points\""));
+  EXPECT_THAT(read(step / "page/example-pull.json"), HasSubstr("\"beyond\""));
 }
 
 }  // namespace

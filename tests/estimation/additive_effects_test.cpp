@@ -11,6 +11,7 @@
 #include "estimation/additive_function.h"
 #include "estimation/additive_material.h"
 #include "estimation/effects_scene.h"
+#include "estimation/energy_curves.h"
 #include "estimation/fit.h"
 #include "estimation/model.h"
 #include "simulation/equilibrium.h"
@@ -346,6 +347,10 @@ TEST(NamedAddends, AFitStaysConvex) {
   EXPECT_FALSE(not_convex(fitted.form.realise(fitted.p)));
   // E11 has 0.02, and so has E33 at its softest: up to the root of their product.
   EXPECT_NEAR(std::abs(fitted.p[0]), 0.02, 0.005);
+  const auto told = additive_metrics(fitted);
+  EXPECT_GE(told["least_over_accepted_steps"].get<double>(), -1e-12);
+  EXPECT_LE(told["least_over_accepted_steps"].get<double>(),
+            told["smallest_eigenvalue"].get<double>());
 }
 
 }  // namespace

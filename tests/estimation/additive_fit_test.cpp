@@ -153,6 +153,26 @@ TEST(AdditiveMaterial, FramesOfATubeReachTheElements) {
   EXPECT_NEAR(A(0, 1), 0.0, 1e-12);
 }
 
+TEST(AdditiveMaterial, KeepsTheFrameOfAFibreReinforcedLaw) {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  MaterialSpec& spec = scene->capture.materials.at(0);
+  spec.law = "holzapfel";
+  spec.parameters = {{"mu", {{0.05}, {}}},     {"k1", {{0.1}, {}}},
+                     {"k2", {{2.0}, {}}},      {"kappa", {{0.5}, {}}},
+                     {"angles", {{30.0}, {}}}, {"frame", {{0, 1, 0, 0, 0, 1, 1, 0, 0}, {}}}};
+  scene->capture.fit = {"mu"};
+  scene->capture.fit_places.assign(1, {});
+  const ModelForm base = base_form(scene);
+  const auto [form, p] = to_additive(base, base.initial());
+  const AdditiveModel model = additive_parts(form, p).at(0).model;
+  EXPECT_NEAR(model.frame(1, 0), 1.0, 1e-12);
+  EXPECT_NEAR(model.frame(0, 2), 1.0, 1e-12);
+  // At rest the fibres are slack: the moduli are the matrix's.
+  const Matrix3d F = Matrix3d::Identity() * (1 + 1e-4);
+  EXPECT_NEAR(form.realise(p).energy.parts.at(0).psi(0, F),
+              base.realise(base.initial()).energy.parts.at(0).psi(0, F), 1e-12);
+}
+
 TEST(AdditiveMaterial, StartsAtTheEnergyOfTheTextbookLaw) {
   const auto scene = block_scene();
   const ModelForm base = base_form(scene);

@@ -37,6 +37,27 @@ Evaluation seen(const Eigen::MatrixXd& J) {
   return out;
 }
 
+/// A value at its bound is written and read again: rounding must not put it outside.
+TEST(Scaling, KeepsTheBoundsThatRoundingWouldLeave) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(1e-6, 3000.0);
+  int left = 0;
+  for (int i = 0; i < 200; ++i) {
+    Parameter one = stiffness("k");
+    one.low = any(random), one.high = 2.0 * one.low;
+    const Scaling scaling{{one, level("z")}};
+    for (const double bound : {one.low, one.high}) {
+      const double naive = std::exp(std::log(bound));
+      left += naive < one.low || naive > one.high;
+      const VectorXd p = scaling.to_p(scaling.to_x(Eigen::Vector2d(bound, 10.0)));
+      EXPECT_GE(p[0], one.low);
+      EXPECT_LE(p[0], one.high);
+      EXPECT_LE(p[1], 10.0);
+    }
+  }
+  EXPECT_GT(left, 0) << "rounding left no bound, the test would prove nothing";
+}
+
 /// Photos under prescribed motions know ratios of stiffness alone: each modulus may be anything,
 /// although its ratio to the other is known to a thousandth.
 TEST(ParameterCovariance, ARatioAloneLeavesBothModuliOpen) {

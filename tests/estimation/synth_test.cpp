@@ -6,6 +6,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "estimation/evaluation.h"
 #include "meshing/surface_mesh.h"
@@ -194,8 +195,26 @@ TEST_F(SynthTest, DrawsWhatTheRecipeLeavesOpenFromTheSeed) {
   EXPECT_THAT(bytes(a.truth), testing::HasSubstr("along ("));
 }
 
-/// Photos and measurements of the truth differ from the true model by their noise alone, where mesh
-/// and sampling are those of the fit.
+/// Asked for more than the material can do without shear bands, what is drawn is smaller.
+TEST_F(SynthTest, WhatIsDrawnKeepsItsEllipticity) {
+  const std::string told =
+      "hidden:\n  - {effect: tension_compression_asymmetry, variant: by a fixed share, values: "
+      "{tension_compression_asymmetry.b: 0.006}}\n";
+  const auto lost = [&](const Synthesis& made) {
+    return nlohmann::json::parse(bytes(made.truth))["mesh"]["elements_lost"].get<int>();
+  };
+  EXPECT_GT(lost(make(recipe_text(told, kFast), "told")), 0);
+  for (const char* seed : {"1", "2", "3"}) {
+    const Synthesis made = make(
+        replaced(recipe_text("hidden:\n  - {effect: tension_compression_asymmetry, rms_px: 50}\n",
+                             kFast),
+                 "seed: 3", std::string("seed: ") + seed),
+        std::string("drawn") + seed);
+    EXPECT_EQ(lost(made), 0) << seed;
+    EXPECT_GT(made.hidden.at(0).rms_px, 0.02) << seed;
+  }
+}
+
 /// A photographer that leaves an even grey of 0.25 in every picture that the stage asks for.
 std::string grey_photographer(const fs::path& folder, const std::string& size) {
   const fs::path script = folder / "photographer";
@@ -250,6 +269,8 @@ TEST_F(SynthTest, APhotographerThatFailsLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder_ / "none"));
 }
 
+/// Photos and measurements of the truth differ from the true model by their noise alone, where mesh
+/// and sampling are those of the fit.
 TEST_F(SynthTest, PhotosOfTheTruthAgreeWithinNoise) {
   const Synthesis made = make(recipe_text("", kSameAsFit), "plain");
   const auto scene = load_scene(read_capture(made.capture));

@@ -199,6 +199,32 @@ TEST(Additive, StressAndStiffnessAreDerivatives) {
   }
 }
 
+/// Over an edge of a coupling's cells the stiffness may jump and the stress must not: on both sides
+/// of every control point, along both axes, and at the corners.
+TEST(Additive, StressIsContinuousOverTheEdgesOfCells) {
+  const AdditiveModel model = every_kind();
+  const Addend& grid = *model.find("E11_E22");
+  const auto law = additive(model);
+  const auto stress = [&](double e11, double e22) {
+    const Vector3d stretch(std::sqrt(1 + 2 * e11), std::sqrt(1 + 2 * e22), 1.02);
+    Matrix3d shear = Matrix3d::Identity();
+    shear(0, 2) = 0.05;  // keeps E11 and E22
+    const Matrix3d F = shear * Matrix3d(stretch.asDiagonal());
+    return law->P(F * model.frame.transpose());
+  };
+  const auto jump = [&](double e11, double e22, double d11, double d22) {
+    return (stress(e11 + d11, e22 + d22) - stress(e11 - d11, e22 - d22)).norm();
+  };
+  const double h = 1e-6, size = stress(0.1, 0.1).norm();
+  for (double e11 : grid.at)
+    for (double e22 : {-0.15, 0.15}) EXPECT_LT(jump(e11, e22, h, 0), 50 * h * size) << e11;
+  for (double e22 : grid.at_second)
+    for (double e11 : {-0.05, 0.1}) EXPECT_LT(jump(e11, e22, 0, h), 50 * h * size) << e22;
+  for (double e11 : grid.at)
+    for (double e22 : grid.at_second)
+      for (double side : {-1.0, 1.0}) EXPECT_LT(jump(e11, e22, h, side * h), 50 * h * size);
+}
+
 TEST(Additive, ForcesAreLinearInTheControlValues) {
   const AdditiveModel model = every_kind();
   const Law law = additive(model);

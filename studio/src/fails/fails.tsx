@@ -23,6 +23,7 @@ const titles: Partial<Record<Quantity, string>> = {
   strain: 'strain: largest principal one of Green’s, no unit',
   stiffness: 'fitted stiffness: factor over the material’s, minus 1',
   swelling: 'fitted swelling: change of length, no unit',
+  beyond: 'addends beyond their control points, mean of the elements there',
 };
 
 function rampOf(q: Quantity, most: number): Ramp {

@@ -17,6 +17,7 @@ interface StoredExample {
   von_mises: StoredArray;
   stiffness?: StoredArray;  // what effects have put into the model
   swelling?: StoredArray;
+  beyond?: StoredArray;  // addends of an additive material beyond their control points
   views: {photo: string; pixel: StoredArray; seen: StoredArray}[];
 }
 export interface View {
@@ -42,6 +43,7 @@ export const quantityNames = {
   displacement: 'displacement',
   stiffness: 'stiffness change',
   swelling: 'swelling',
+  beyond: 'beyond control points',
 };
 export type Quantity = keyof typeof quantityNames;
 const quantities = keysOf(quantityNames);
@@ -59,6 +61,7 @@ export function quantitiesOf(s: Surface | undefined): Quantity[] {
 export function unitOf(q: Quantity): string {
   if (q === 'residual') return 'σ of noise';
   if (hasSign(q)) return '1';
+  if (q === 'beyond') return 'addends';
   return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
 }
 
@@ -95,6 +98,7 @@ export async function surface(step: StepEntry, example: string): Promise<Surface
       displacement: lengths(displacement),
       stiffness: state.stiffness ? array(state.stiffness) : none,
       swelling: state.swelling ? array(state.swelling) : none,
+      beyond: state.beyond ? array(state.beyond) : none,
     },
     views: state.views.map((view) => ({
       photo: view.photo,

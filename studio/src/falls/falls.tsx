@@ -60,13 +60,13 @@ function Energy(props: {curve: EnergyCurve}) {
   ], [curve]);
   const axis = curve.axis ?? 'stretch';
   const other = Object.entries(curve.at ?? {}).map(([name, value]) => `, ${name} = ${figure(value)}`).join('');
-  return <>
+  return <div>
     <Chart title={`Energy of ${curve.name}`} file={`energy-${curve.name}`}
            says={`Energy of ${curve.name} over ${axis}, with its 95 % band`} x={curve.stretch} lines={lines}
-           bands={[[1, 3]]} xLabel={axis + other} yLabel={`energy density [${curve.unit}]`} visited={curve.visited} />
+           bands={[[1, 3]]} xLabel={axis + other} yLabel={`energy [${curve.unit}]`} visited={curve.visited} />
     {curve.visited && <p class="note">{axis} visited (shaded): {figure(curve.visited[0])} to {figure(curve.visited[1])}
       {curve.beyond ? `; beyond the control points in ${curve.beyond} of ${curve.elements} elements` : ''}</p>}
-  </>;
+  </div>;
 }
 
 function errorCsv(): unknown[][] {
@@ -106,7 +106,7 @@ export function Falls() {
         {list.length > 0 && <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
                says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
                xLabel="step" yLabel="χ, residual over noise" />}
-        {curves.map((curve) => <Energy key={curve.name} curve={curve} />)}
+        <div class="curves">{curves.map((curve) => <Energy key={curve.name} curve={curve} />)}</div>
         {lost && lost.elements_lost > 0 && <p class="note">The material loses ellipticity at the strains of {lost.elements_lost} elements,
           most in {lost.example}: no resistance against wrinkles or shear bands there.</p>}
       </section>
