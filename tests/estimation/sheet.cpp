@@ -288,4 +288,28 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
   return load_scene(read_capture(o.folder));
 }
 
+MarkerErrors marker_errors(const Scene& scene, const Fitted& fitted) {
+  double sum[2] = {0, 0}, count[2] = {0, 0};
+  for (const auto& example : fitted.evaluation.examples) {
+    const auto& spec = scene.capture.examples[example.example];
+    const int motion = spec.name.rfind("shear", 0) == 0;
+    for (const auto& one : example.measured) {
+      const MeasuredSpec& told = spec.measured[one.index];
+      if (told.kind != MeasuredSpec::Kind::position) continue;
+      sum[motion] += (one.predicted - told.value).squaredNorm();
+      count[motion] += 1;
+    }
+  }
+  return {std::sqrt(sum[0] / count[0]), std::sqrt(sum[1] / count[1])};
+}
+
+std::variant<Fitted, NumericalFailure> shown_on(const std::shared_ptr<const Scene>& scene,
+                                                const Fitted& fitted) {
+  ModelForm form = fitted.form;
+  form.scene = scene;
+  form.start = base_form(scene).start;
+  Workspace workspace(scene);
+  return assess(workspace, form, fitted.p);
+}
+
 }  // namespace hookeye::test

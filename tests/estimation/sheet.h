@@ -7,7 +7,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <variant>
 
+#include "estimation/fit.h"
 #include "estimation/model.h"
 #include "simulation/energy_model.h"
 
@@ -47,5 +49,16 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& options);
 /// stiff1, stiff2: fibre moduli; lock1, lock2: how fast they stiffen.
 std::shared_ptr<const EnergyTerm> woven_sheet(double mu, double kappa, double stiff1, double lock1,
                                               double stiff2, double lock2);
+
+/// Root mean square distance [mm] of the markers from the measured places, per motion; what was not
+/// evaluated is not a number.
+struct MarkerErrors {
+  double corner = 0, shear = 0;
+};
+MarkerErrors marker_errors(const Scene& scene, const Fitted& fitted);
+
+/// The fitted model on another scene of the same sheet, nothing moved.
+std::variant<Fitted, NumericalFailure> shown_on(const std::shared_ptr<const Scene>& scene,
+                                                const Fitted& fitted);
 
 }  // namespace hookeye::test
