@@ -30,6 +30,49 @@ bool numerical(const std::string& name) {
   return effect && effect->group() == EffectGroup::numerical;
 }
 
+/// Compares the values of one ingredient with the truth: nothing where a name is missing.
+void compare(const json& found, const std::map<std::string, double>& truth,
+             std::optional<double>* error, Score* out) {
+  std::map<std::string, json> by_name;
+  for (const json& one : found) by_name[one["name"]] = one;
+  std::map<std::string, double> largest;  // by unit
+  for (const auto& [name, value] : truth) {
+    if (!by_name.count(name)) return;
+    double& most = largest[by_name[name].value("unit", "")];
+    most = std::max(most, std::abs(value));
+  }
+  for (const auto& [name, value] : truth) {
+    const json& one = by_name[name];
+    const double scale = largest[one.value("unit", "")];
+    if (!(scale > 0.0)) continue;
+    *error = std::max(error->value_or(0.0), std::abs(number(one, "value") - value) / scale);
+    ++out->values;
+    // an end that is no number is open
+    const bool above = !one["low"].is_number() || value >= one["low"].get<double>();
+    const bool below = !one["high"].is_number() || value <= one["high"].get<double>();
+    out->inside += above && below;
+  }
+}
+
+/// Every value of the base material that the run has fitted, and of every hidden effect.
+void compare_values(const json& found, const json& truth, Score* out) {
+  for (const auto& [name, values] : truth["material"].items())
+    if (values.size() == 1) compare(found, {{name, values[0]}}, &out->material_error, out);
+  for (const json& one : truth["hidden"])
+    compare(found, one["values"].get<std::map<std::string, double>>(), &out->effect_error, out);
+}
+
+/// The middle one of several, [] of none.
+std::optional<double> median(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.5f}", *value) : "";
+}
+
 }  // namespace
 
 bool Score::right_first() const {
@@ -79,6 +122,7 @@ Score score(const json& run, const json& truth) {
   out.fit_after = number(steps.back(), "chi_fit");
   out.held_before = number(steps.front(), "chi_validate");
   out.held_after = number(steps.back(), "chi_validate");
+  compare_values(steps.back()["parameters"], truth, &out);
   return out;
 }
 
@@ -86,22 +130,30 @@ std::string csv(const std::vector<Score>& scores) {
   std::string out =
       "hidden,seed,status,first,right_first,right_or_tie,exact_set,verdict,added,tie,hidden_px,"
       "floor,"
-      "fit_before,fit_after,held_out_before,held_out_after,seconds\n";
+      "fit_before,fit_after,held_out_before,held_out_after,seconds,material_error,effect_error,"
+      "values,inside\n";
   for (const Score& s : scores)
     out += fmt::format(
         "{},{},{},{},{:d},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
-        "{:.0f}\n",
+        "{:.0f},{},{},{},{}\n",
         s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(), s.exact_set(),
         s.verdict, fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px, s.floor,
-        s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds);
+        s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds, cell(s.material_error),
+        cell(s.effect_error), s.values, s.inside);
   return out;
 }
 
 std::string summary(const std::vector<Score>& scores) {
   int guilty = 0, right = 0, tie = 0, exact = 0, finer = 0, innocent = 0, alarms = 0, failed = 0;
-  std::vector<double> share;
+  int values = 0, inside = 0;
+  std::vector<double> share, material, effect;
   for (const Score& s : scores) {
     finer += std::any_of(s.added.begin(), s.added.end(), numerical);
+    if (s.status == "ok" && s.exact_set()) {  // another model has another truth
+      values += s.values, inside += s.inside;
+      if (s.material_error) material.push_back(*s.material_error);
+      if (s.effect_error) effect.push_back(*s.effect_error);
+    }
     if (s.status != "ok") {
       ++failed;
     } else if (s.hidden == "none") {
@@ -121,11 +173,17 @@ std::string summary(const std::vector<Score>& scores) {
       "false alarms          {} of {} captures that hide nothing\n"
       "finer mesh asked for  {} of {}\nfailed                {}\n",
       right, guilty, tie, guilty, exact, guilty, alarms, innocent, finer, scores.size(), failed);
-  if (!share.empty()) {
-    std::nth_element(share.begin(), share.begin() + share.size() / 2, share.end());
+  if (const auto stays = median(share))
     out += fmt::format("held-out error over the floor that stays: {:.0f} % in the median\n",
-                       100.0 * share[share.size() / 2]);
-  }
+                       100.0 * *stays);
+  if (const auto error = median(material))
+    out +=
+        fmt::format("error of the material's values, where all is named: {:.2g} % in the median\n",
+                    100.0 * *error);
+  if (const auto error = median(effect))
+    out += fmt::format("error of the effect's values: {:.2g} % in the median\n", 100.0 * *error);
+  if (values > 0)
+    out += fmt::format("true values inside their 95 % intervals: {} of {}\n", inside, values);
   return out;
 }
 

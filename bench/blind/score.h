@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@ struct Score {
   double hidden_px = 0.0;  ///< size of the first hidden effect
   double floor = 0.0, fit_before = 0.0, fit_after = 0.0, held_before = 0.0, held_after = 0.0;
   double seconds = 0.0;
+  /// The last model's numbers against the truth's, where it has those of the truth (other variants
+  /// have other names): the base material's and the hidden effects', each over the largest true
+  /// value of its unit and effect. Empty: none.
+  std::optional<double> material_error, effect_error;  ///< the largest
+  int values = 0, inside = 0;  ///< compared, and in how many 95 % intervals the truth lies
 
   /// A hidden one; where they were left out of the catalogue: no confident wrong name, which is no
   /// explanation or a field (of stiffness, of swelling) that stands for any cause.
