@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "capture_io/run.h"
 #include "capture_io/scope.h"
@@ -64,7 +65,7 @@ class Normal {
   double operator()() {
     const double u = 1.0 - detail::uniform(random_, 0.0, 1.0);
     return std::sqrt(-2.0 * std::log(u)) *
-           std::cos(2.0 * EIGEN_PI * detail::uniform(random_, 0.0, 1.0));
+           std::cos(2.0 * std::numbers::pi * detail::uniform(random_, 0.0, 1.0));
   }
 
  private:
