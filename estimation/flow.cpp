@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <vector>
 
 namespace hookeye {
 
@@ -60,7 +60,8 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
                         int cell_px) {
   FlowField field;
   field.cell_px = cell_px;
-  std::map<std::pair<int, int>, CellSums> cells;
+  const int columns = (model.width - 1) / cell_px + 1, rows = (model.height - 1) / cell_px + 1;
+  std::vector<CellSums> cells(static_cast<size_t>(columns) * rows);
   for (int y = 2; y + 2 < model.height; ++y)
     for (int x = 2; x + 2 < model.width; ++x) {
       if (std::isnan(residual.at(x, y))) continue;
@@ -68,7 +69,7 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
       if (!g.allFinite()) continue;
       const double s = sigma.at(x, y);
       const Eigen::Vector3d d(g.x() / s, g.y() / s, gain ? model.at(x, y) / s : 0.0);
-      CellSums& sums = cells[{y / cell_px, x / cell_px}];
+      CellSums& sums = cells[static_cast<size_t>(y / cell_px) * columns + x / cell_px];
       const double r = residual.at(x, y);
       sums.A += d * d.transpose();
       sums.b += d * r;
@@ -78,9 +79,9 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
     }
   // A quarter of the cell at least, of a band along a contour an eighth.
   const int least = cell_px * cell_px / (gain ? 4 : 8);
-  for (const auto& [index, sums] : cells)
-    if (sums.pixels >= least && sums.A.trace() > 0.0)
-      field.cells.push_back(solve_cell(sums, index.second, index.first));
+  for (int i = 0; i < rows * columns; ++i)
+    if (cells[i].pixels >= least && cells[i].A.trace() > 0.0)
+      field.cells.push_back(solve_cell(cells[i], i % columns, i / columns));
   return field;
 }
 
@@ -96,16 +97,52 @@ double FlowField::rms_px() const {
   return n > 0.0 ? std::sqrt(std::max(0.0, (sum - noise) / n)) : 0.0;
 }
 
+namespace {
+
+/// The cells of a photo by row and column.
+class CellGrid {
+ public:
+  explicit CellGrid(const FlowField& flow) : cells_(flow.cells) {
+    for (const auto& cell : cells_)
+      rows_ = std::max(rows_, cell.row + 1), columns_ = std::max(columns_, cell.column + 1);
+    at_.assign(static_cast<size_t>(rows_) * columns_, nullptr);
+    for (const auto& cell : cells_)
+      at_[static_cast<size_t>(cell.row) * columns_ + cell.column] = &cell;
+  }
+  struct Lag {
+    double product = 0.0, pairs = 0.0;
+  };
+  /// Sums over all pairs of cells so far apart.
+  Lag lag(int dy, int dx) const {
+    Lag out;
+    for (const auto& cell : cells_) {
+      const int row = cell.row + dy, column = cell.column + dx;
+      if (row < 0 || row >= rows_ || column < 0 || column >= columns_) continue;
+      const FlowCell* other = at_[static_cast<size_t>(row) * columns_ + column];
+      if (!other) continue;
+      out.product += cell.z.dot(other->z);
+      out.pairs += std::min(cell.known, other->known);
+    }
+    return out;
+  }
+
+ private:
+  const std::vector<FlowCell>& cells_;
+  int rows_ = 0, columns_ = 0;
+  std::vector<const FlowCell*> at_;
+};
+
+}  // namespace
+
 FlowStatistics flow_statistics(const FlowField& flow) {
   FlowStatistics out;
-  std::map<std::pair<int, int>, const FlowCell*> at;
   for (const auto& cell : flow.cells) {
-    at[{cell.row, cell.column}] = &cell;
     out.variance += cell.z.squaredNorm();
     out.count += cell.known;
   }
   if (out.count == 0.0) return out;
   out.variance /= out.count;
+  const CellGrid grid(flow);
   // Autocovariance ring by ring (Chebyshev distance). Its sum ends where a ring is
   // indistinguishable from zero: the sum over all lags is that of one number squared. The sum of
   // squares goes over all lags, less what noise alone gives: a bend is correlated across the body
@@ -115,21 +152,15 @@ FlowStatistics flow_statistics(const FlowField& flow) {
   bool correlated = true;
   for (int ring = 1; ring <= 40; ++ring) {
     double ring_product = 0.0, ring_pairs = 0.0;
-    for (int dy = -ring; dy <= ring; ++dy)
-      for (int dx = -ring; dx <= ring; ++dx) {
+    for (int dy = 0; dy <= ring; ++dy)
+      for (int dx = dy == 0 ? 1 : -ring; dx <= ring; ++dx) {  // (-dy, -dx) has the same sums
         if (std::max(std::abs(dx), std::abs(dy)) != ring) continue;
-        double product = 0.0, pairs = 0.0;
-        for (const auto& cell : flow.cells) {
-          const auto other = at.find({cell.row + dy, cell.column + dx});
-          if (other == at.end()) continue;
-          product += cell.z.dot(other->second->z);
-          pairs += std::min(cell.known, other->second->known);
-        }
-        if (pairs == 0.0) continue;
-        const double rho = product / pairs / out.variance;
-        sum_rho2 += (rho * rho * pairs - 1.0) / out.count;  // 1: mean of white noise
-        ring_product += product;
-        ring_pairs += pairs;
+        const CellGrid::Lag lag = grid.lag(dy, dx);
+        if (lag.pairs == 0.0) continue;
+        const double rho = lag.product / lag.pairs / out.variance;
+        sum_rho2 += 2.0 * (rho * rho * lag.pairs - 1.0) / out.count;  // 1: mean of white noise
+        ring_product += 2.0 * lag.product;
+        ring_pairs += 2.0 * lag.pairs;
       }
     if (ring_pairs == 0.0) break;
     // Each pair is met twice, so pairs/2 independent products of variance 1/(pairs/2).

@@ -20,7 +20,7 @@ cv::Mat eight_bits(const Image& image, float white) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x)
       out.at<unsigned char>(y, x) = static_cast<unsigned char>(
-          std::lround(255.0f * std::sqrt(std::clamp(image.at(x, y) / white, 0.0f, 1.0f))));
+          255.0f * std::sqrt(std::clamp(image.at(x, y) / white, 0.0f, 1.0f)) + 0.5f);
   return out;
 }
 
