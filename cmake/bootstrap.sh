@@ -55,13 +55,16 @@ build_jobs() {
 
 # build_hookeye [TARGET...]: sets `build_folder`. HOOKEYE_WERROR=1 makes warnings errors.
 build_hookeye() {
-  local werror=OFF
+  local werror=OFF wanted
   [ "${HOOKEYE_WERROR:-0}" = 0 ] || werror=ON
+  wanted=("HOOKEYE_WERROR:BOOL=$werror")
+  # Benchmarks are built where nobody waits for them, so that they do not rot.
+  [ -z "${HOOKEYE_CI:-}" ] || wanted+=("HOOKEYE_BENCH:BOOL=ON")
   build_folder=build/release
   if [ ! -f "$build_folder/build.ninja" ] ||
-    ! grep -qx "HOOKEYE_WERROR:BOOL=$werror" "$build_folder/CMakeCache.txt"; then
+    [ "$(grep -cxF -f <(printf '%s\n' "${wanted[@]}") "$build_folder/CMakeCache.txt")" -lt ${#wanted[@]} ]; then
     say "Configuring ($build_folder)"
-    cmake --preset release -DHOOKEYE_WERROR="$werror" || die "configuring failed (see above)"
+    cmake --preset release "${wanted[@]/#/-D}" || die "configuring failed (see above)"
   fi
   say "Building with $(build_jobs) jobs"
   cmake --build "$build_folder" -j "$(build_jobs)" ${1:+--target "$@"} ||

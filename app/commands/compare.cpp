@@ -92,9 +92,12 @@ void run_compare(const std::string& folder, Session& session) {
                                         step.filename().string(), chi_text(metrics["chi_fit"]),
                                         chi_text(metrics["chi_validate"]), floor,
                                         metrics["floor"]["source"].get<std::string>())));
-  session.say("{}\n", photo_rows(metrics["photos"], floor));
-  session.say("{}\n", chi_rows(metrics["chi_by_example"], "by example", floor));
-  session.say("{}\n", chi_rows(metrics["chi_by_camera"], "by camera", floor));
+  const bool photos = !metrics["photos"].empty();  // else forces and positions alone
+  if (photos) {
+    session.say("{}\n", photo_rows(metrics["photos"], floor));
+    session.say("{}\n", chi_rows(metrics["chi_by_example"], "by example", floor));
+    session.say("{}\n", chi_rows(metrics["chi_by_camera"], "by camera", floor));
+  }
   if (metrics.contains("chi_by_region") && !metrics["chi_by_region"].empty())
     session.say("{}\n", chi_rows(metrics["chi_by_region"], "by region", floor));
   session.say("{}", measured_rows(metrics["measured"]));

@@ -154,6 +154,7 @@ void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& ses
 }
 
 void say_pictures(const std::filesystem::path& step, const Session& session) {
+  if (std::filesystem::is_empty(step / "compare")) return;  // forces and positions alone
   session.say("pictures: {}\n", (step / "compare").string());
   if (std::filesystem::exists(step / "removed"))
     session.say("          {} (what effects would remove)\n", (step / "removed").string());

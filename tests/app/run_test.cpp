@@ -38,6 +38,7 @@ class WrittenRun : public Cli {
     const std::string step = "run/steps/" + name + "/";
     for (const char* sub : {"compare", "residuals", "page"})
       fs::create_directories(folder_ / step / sub);
+    write(step + "compare/pull_left.png", "a picture");
     const std::string longish = "an_example_with_a_long_name_indeed";
     json photos = json::array(), measured = json::array();
     for (const double chi : {22.0, 11.0, 0.5})
@@ -101,6 +102,19 @@ TEST_F(WrittenRun, CompareDrawsABarWithTheFloorForEveryPhoto) {
   EXPECT_THAT(result.out, HasSubstr("#|#############"));  // chi 22, the floor at 1.1
   EXPECT_THAT(result.out, HasSubstr("#|######......."));  // 11
   EXPECT_THAT(result.out, HasSubstr(".|............."));  // 0.5: below it
+}
+
+TEST_F(WrittenRun, OfACaptureWithoutPhotosCompareTellsForcesAlone) {
+  write("capture.yaml", read(folder_ / "capture.yaml") +
+                            "    measured:\n"
+                            "      - {force_on: top, value: [0, 0, 1.8], sigma: 0.01}\n");
+  const Result fit = hookeye("fit . -o forces");
+  ASSERT_EQ(fit.status, 0) << fit.err;
+  const Result result = hookeye("compare forces");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("force_on"));
+  for (const char* of_photos : {"pictures:", "camera", "by example"})
+    EXPECT_THAT(result.out, Not(HasSubstr(of_photos)));
 }
 
 TEST_F(WrittenRun, CompareNamesTheChannelsOfAColourPhoto) {
