@@ -141,20 +141,29 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   return score;
 }
 
+/// Information criterion of a hypothesis on the photos and all that is measured.
+double information_of(const DiagnosisSums& sums, const ProjectedHypothesis& hypothesis, double r2) {
+  return bayes_information(hypothesis, sums.effective.s, r2, sums.effective.count,
+                           sums.effective.floor2);
+}
+
 /// Of all forms of an effect the one that explains most of the held-out photos, where that is more
-/// than the best of the fitted ones does there by a twentieth of their misfit.
+/// than the best of the fitted ones does there by a twentieth of their misfit, or where the fitted
+/// ones cannot tell the two apart: what is linear in a form's parameters says little of a large
+/// one.
 std::shared_ptr<const EffectScore> other_form(const Context& context,
                                               const std::vector<Candidate>& candidates,
                                               const std::vector<ProjectedHypothesis>& projected,
-                                              const EffectScore& best) {
+                                              double r2, const EffectScore& best) {
   constexpr double kMore = 0.05;
   std::shared_ptr<const EffectScore> out;
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].effect->name() != best.effect || candidates[i].ingredient == best.best)
       continue;
     EffectScore score = describe(context, candidates[i], projected[i]);
-    if (score.explains_held_out > (out ? *out : best).explains_held_out + (out ? 0.0 : kMore) &&
-        score.explains > 0.0)
+    const bool tie = information_of(context.sums, projected[i], r2) > best.bic - kTie;
+    if ((tie || score.explains_held_out > best.explains_held_out + kMore) && score.explains > 0.0 &&
+        (!out || score.explains_held_out > out->explains_held_out))
       out = std::make_shared<EffectScore>(std::move(score));
   }
   return out;
@@ -394,11 +403,10 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   for (const auto& [name, value] : by_effect(candidates, evidence)) {
     EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
     score.evidence = value;
-    score.bic = sensors_alone(*score.best)
-                    ? value
-                    : bayes_information(projected[best[name]], sums.effective.s, r2,
-                                        sums.effective.count, sums.effective.floor2);
-    if (value >= kNameable) score.other_form = other_form(context, candidates, projected, score);
+    score.bic =
+        sensors_alone(*score.best) ? value : information_of(sums, projected[best[name]], r2);
+    if (value >= kNameable)
+      score.other_form = other_form(context, candidates, projected, r2, score);
     const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
     score.p_value = (1.0 + above) / (1.0 + null.size());
     // What the photos show they can test, however little a typical change would show of it.

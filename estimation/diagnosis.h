@@ -41,7 +41,8 @@ struct EffectScore {
   bool pictured = false;  ///< one of the kPictured leading effects
   std::string why;        ///< one plain sentence
   /// Another form of the effect that explains more of the held-out photos, though the fitted ones
-  /// speak for `best` (one load turned instead of all): a trial decides. Null: there is none.
+  /// speak for `best` (one load turned instead of all), or one that they cannot tell from it (creep
+  /// with the logarithm of the order, and steadily with it): a trial decides. Null: there is none.
   std::shared_ptr<const EffectScore> other_form;
 };
 

@@ -1,5 +1,6 @@
 #include "estimation/floor.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +25,17 @@ Eigen::VectorXd monomials(const FlowField& flow, const FlowCell& cell, int degre
 struct SmoothPart {
   double explained = 0.0;  ///< of |r|^2
   double numbers = 0.0;
+  Eigen::VectorXd coefficients;  ///< three of every monomial
 };
+
+/// The basis of a cell's motion and brightness: 3 x numbers.
+Eigen::MatrixXd basis_of(const FlowField& flow, const FlowCell& cell, int degree) {
+  const Eigen::VectorXd phi = monomials(flow, cell, degree);
+  Eigen::MatrixXd basis(3, 3 * phi.size());
+  for (int k = 0; k < phi.size(); ++k)
+    basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
+  return basis;
+}
 
 /// What motion and brightness that are polynomials of the place explain of a photo's residual:
 /// weight, swelling, placement and exposure are smooth, what a renderer gets wrong is not.
@@ -33,14 +44,24 @@ SmoothPart smooth_part(const FlowField& flow, int degree) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
   for (const auto& cell : flow.cells) {
-    const Eigen::VectorXd phi = monomials(flow, cell, degree);
-    Eigen::MatrixXd basis(3, size);
-    for (int k = 0; k < phi.size(); ++k)
-      basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
+    const Eigen::MatrixXd basis = basis_of(flow, cell, degree);
     A += basis.transpose() * cell.information * basis;
     b += basis.transpose() * (cell.information * cell.estimate);
   }
-  return {b.dot(A.completeOrthogonalDecomposition().solve(b)), static_cast<double>(size)};
+  const Eigen::VectorXd found = A.completeOrthogonalDecomposition().solve(b);
+  return {b.dot(found), static_cast<double>(size), found};
+}
+
+/// The field without its smooth part.
+FlowField without_smooth(FlowField flow, const SmoothPart& smooth, int degree) {
+  const FlowField whole = flow;  // monomials are over its extent
+  for (FlowCell& cell : flow.cells) {
+    const Eigen::Vector3d moved = basis_of(whole, cell, degree) * smooth.coefficients;
+    cell.estimate -= moved;
+    cell.z -=
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(cell.information).operatorSqrt() * moved;
+  }
+  return flow;
 }
 
 /// |r|^2 of `pixels` pixels as the middle cell has them, its own motion and brightness out.
@@ -119,7 +140,8 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
       cell_count -= aligned.numbers;
       for (const auto& cell : photo.aligned.cells)
         cells += cell.z.squaredNorm(), cell_count += cell.known;
-      inflation += flow_statistics(photo.aligned).inflation;
+      // A photo that is too bright all over is no noise that is correlated from cell to cell.
+      inflation += flow_statistics(without_smooth(photo.aligned, aligned, degree)).inflation;
       photos += 1.0;
     }
   }

@@ -13,8 +13,9 @@ struct Floor {
   /// after smooth motions and brightness changes are taken out, at least 1. Shading and texture
   /// errors of the renderer are in it; they are in every photo.
   double cell_variance = 1.0;
-  /// Variance of a smooth signature's score over that under white noise: the same errors summed
-  /// over their correlation from cell to cell (FlowStatistics::inflation).
+  /// Variance of a smooth signature's score over that under white noise: the same errors, without
+  /// smooth motion and brightness too, summed over their correlation from cell to cell
+  /// (FlowStatistics::inflation).
   double cell_inflation = 1.0;
   /// Fall of chi^2 that one pixel of motion of the whole surface brings, mean over directions and
   /// the fitted photos: how sharp and how free of noise they are.

@@ -1,0 +1,163 @@
+// How searches end where names compete: what leads, what ties, what is dropped, what has no name.
+#include <gmock/gmock.h>
+
+#include "estimation/discover.h"
+#include "estimation/refit.h"
+#include "tests/estimation/small_capture.h"
+
+namespace hookeye {
+namespace {
+
+using test::SmallScene;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+EffectScore scored(const std::string& effect, double evidence, double bic = 0.0) {
+  EffectScore out;
+  out.effect = effect;
+  out.evidence = evidence;
+  out.bic = bic;
+  out.fall = 10.0;
+  return out;
+}
+
+/// Scores by falling evidence, the gate of chance at 8.
+Diagnosis of(std::vector<EffectScore> scores) {
+  Diagnosis out;
+  out.gate = 8.0;
+  out.effects = std::move(scores);
+  return out;
+}
+
+TEST(Leaders, ChanceIsNotNamed) {
+  EXPECT_THAT(leaders(of({scored("gravity", 7.9)})), IsEmpty());
+  EXPECT_THAT(leaders(of({scored("gravity", 8.1)})), ElementsAre("gravity"));
+  Diagnosis quiet = of({scored("gravity", 4.9)});
+  quiet.gate = 1.0;  // chance reaches less, but less than kNameable is not named either
+  EXPECT_THAT(leaders(quiet), IsEmpty());
+  EXPECT_EQ(conclusion(quiet), "nothing of the catalogue stands out");
+}
+
+TEST(Leaders, WhatCannotBeTestedIsNotNamed) {
+  EffectScore blind = scored("soft_clamp", 50.0);
+  blind.testable = false;
+  EXPECT_THAT(leaders(of({blind})), IsEmpty());
+}
+
+TEST(Leaders, TiesAreDeclared) {
+  const Diagnosis tie = of(
+      {scored("gravity", 50.0), scored("swelling", 50.0 - kTie + 0.1), scored("pressure", 40.0)});
+  EXPECT_THAT(leaders(tie), ElementsAre("gravity", "swelling"));
+  EXPECT_THAT(conclusion(tie), testing::HasSubstr("swelling cannot be told from it"));
+  // The information criterion of its best form puts one before the leader.
+  EXPECT_THAT(leaders(of({scored("gravity", 50.0, 40.0), scored("pressure", 40.0, 41.0)})),
+              ElementsAre("gravity", "pressure"));
+}
+
+TEST(Leaders, TheMeshTiesWithNobody) {
+  EXPECT_THAT(leaders(of({scored("gravity", 50.0), scored("mesh_resolution", 49.0)})),
+              ElementsAre("gravity"));
+  EXPECT_THAT(leaders(of({scored("mesh_resolution", 50.0), scored("gravity", 49.0)})),
+              ElementsAre("mesh_resolution"));
+}
+
+TEST(Leaders, WhatRenderersErrByIsNotNamed) {
+  Diagnosis found = of({scored("gravity", 50.0)});
+  found.effects[0].fall = 0.9;
+  found.floor.chi = std::sqrt(10.0 + 1.0);  // a tenth of what the rest photos keep over their noise
+  EXPECT_NEAR(least_fall(found), 1.0, 1e-12);
+  EXPECT_THAT(leaders(found), IsEmpty());
+  found.effects[0].fall = 1.1;
+  EXPECT_THAT(leaders(found), ElementsAre("gravity"));
+}
+
+const char* const kWeight =
+    "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9650}}\n";
+
+Step fitted_base(Workspace& workspace, const ModelForm& form) {
+  Step step;
+  step.name = "base";
+  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  return step;
+}
+
+/// A swollen body explains part of a weight. Once the weight is found it does nothing, and goes.
+TEST(Discover, AnEarlierEffectThatALaterOneMakesIdleIsDropped) {
+  const SmallScene small({.hidden = kWeight});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Step step = fitted_base(workspace, form);
+  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+  const auto swelling =
+      std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
+                   [](const EffectScore& score) { return score.effect == "swelling"; });
+  ASSERT_NE(swelling, step.diagnosis.effects.end());
+  Step wrong;
+  wrong.name = wrong.added = "swelling";
+  wrong.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *swelling, {}));
+  ASSERT_LT(wrong.fitted.evaluation.chi(false), step.fitted.evaluation.chi(false));
+  const auto found = discover_from(workspace, std::move(wrong), {}, {});
+  const Discovery& discovery = std::get<Discovery>(found);
+  EXPECT_THAT(discovery.missing, ElementsAre("gravity")) << discovery.sentence;
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+  bool dropped = false;
+  for (const Step& one : discovery.steps)
+    dropped = dropped || std::count(one.dropped.begin(), one.dropped.end(), "swelling");
+  EXPECT_TRUE(dropped);
+}
+
+/// Creep with the logarithm of the order or steadily with it: three loads and a free modulus cannot
+/// tell, the held-out one can, and what is added is its form.
+TEST(Discover, HeldOutPhotosTellTheFormsOfAnEffectApart) {
+  const SmallScene small({.hidden =
+                              "hidden:\n  - {effect: creep, variant: steadily with the order, "
+                              "values: {creep.c: 0.81}}\n"});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const auto found = hookeye::discover(workspace, form, form.initial(), {});
+  const Discovery& discovery = std::get<Discovery>(found);
+  EXPECT_THAT(discovery.missing, ElementsAre("creep"));
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+  const Fitted& last = discovery.steps.back().fitted;
+  EXPECT_EQ(last.form.ingredients.back()->variant(), "steadily with the order");
+  EXPECT_NEAR(last.p[last.p.size() - 1], 0.81, 0.01);
+}
+
+/// Without its name in the catalogue, and without those that are easily taken for it, no other may
+/// stand for it.
+TEST(Discover, WhatTheCatalogueDoesNotHaveEndsUnexplained) {
+  const SmallScene small({.hidden = kWeight});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  DiscoverOptions options;
+  options.diagnosis.without = {"gravity", "placement", "swelling", "pressure", "stiffness_field"};
+  options.max_effects = 1;
+  const auto found = hookeye::discover(workspace, form, form.initial(), options);
+  const Discovery& discovery = std::get<Discovery>(found);
+  EXPECT_EQ(discovery.verdict, Verdict::unexplained) << discovery.sentence;
+  for (const std::string& name : options.diagnosis.without)
+    EXPECT_THAT(discovery.missing, testing::Not(testing::Contains(name)));
+  EXPECT_GT(discovery.steps.back().fitted.evaluation.chi(false), 1.3 * discovery.floor.chi);
+}
+
+/// What is wrong at rest as well is no noise of the rest photos: chance does not reach as far as
+/// it.
+TEST(Diagnose, APhotoThatIsTooBrightFromTheStartIsNoCorrelatedNoise) {
+  for (const char* hidden : {"exposure, variant: cam1 from the start",
+                             "light_direction, variant: "
+                             "sun from the start"}) {
+    const SmallScene small(
+        {.hidden = std::string("hidden:\n  - {effect: ") + hidden + ", rms_px: 1.5}\n"});
+    Workspace workspace(small.scene);
+    const ModelForm form = base_form(small.scene);
+    const Step step = fitted_base(workspace, form);
+    const auto diagnosis = diagnose(workspace, step.fitted);
+    const Diagnosis& found = std::get<Diagnosis>(diagnosis);
+    EXPECT_LT(found.gate, 0.1 * found.effects[0].evidence) << hidden;
+    EXPECT_THAT(leaders(found), ElementsAre(found.effects[0].effect));
+    EXPECT_THAT(hidden, testing::StartsWith(found.effects[0].effect));
+  }
+}
+
+}  // namespace
+}  // namespace hookeye
