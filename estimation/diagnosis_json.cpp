@@ -34,6 +34,7 @@ json effect_json(const EffectScore& score) {
   const VectorXd low = score.values - kNormal95 * score.standard_error;
   const VectorXd high = score.values + kNormal95 * score.standard_error;
   out["predicted"] = parameters_json(score.best->parameters(), score.values, &low, &high);
+  out["fitted_move"] = std::vector<double>(score.base_step.begin(), score.base_step.end());
   if (score.other_form) out["other_form"] = effect_json(*score.other_form);
   return out;
 }
@@ -78,6 +79,8 @@ EffectScore score_from_json(const json& one, const Model& model) {
     score.values[i] = predicted[i].at("value");
     score.standard_error[i] = (predicted[i].at("high").get<double>() - score.values[i]) / kNormal95;
   }
+  const auto step = one.value("fitted_move", std::vector<double>{});
+  score.base_step = VectorXd::Map(step.data(), static_cast<Eigen::Index>(step.size()));
   score.explains = one.at("explains");
   score.explains_held_out = one.at("explains_held_out");
   score.fall = one.at("fall");

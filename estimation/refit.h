@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -24,6 +25,7 @@ struct Racer {
   std::string effect;
   ModelForm form;
   Trial trial;
+  std::optional<Trial> next;  ///< after one step more, where it was needed to choose a form
   double chi() const { return trial.chi_fit + trial.chi_validate; }
   /// The part of it that is no noise, on fitted and on held-out photos; at least what
   /// kLeftByRenderers times the floor is.

@@ -15,7 +15,7 @@ nlohmann::json parameters_json(const std::vector<Parameter>& parameters, const V
                                const VectorXd* low, const VectorXd* high);
 nlohmann::json to_json(const Diagnosis& diagnosis);
 /// A diagnosis as to_json() wrote it, for the model it was made of: what `plan` and `add` need of
-/// it (no base_step). Throws InputError (`file`) where it is not one.
+/// it. Throws InputError (`file`) where it is not one.
 Diagnosis diagnosis_from_json(const nlohmann::json& document, const Model& model,
                               const std::filesystem::path& file);
 nlohmann::json to_json(const Plan& plan);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "estimation/floor.h"
-#include "estimation/normal_equations.h"
 
 namespace hookeye {
 
@@ -22,12 +21,17 @@ EvaluationOptions half_size(const FitOptions& options) {
   return out;
 }
 
-/// Parameters after `share` of the Gauss-Newton step, within bounds; no parameter moves by more
-/// than a factor e or by its typical size times ten.
+/// Parameters after `share` of the Gauss-Newton step.
 VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquations& sums,
                     double share) {
   const CondensedResidual condensed = condense(sums, scaling.dp_dx(p));
   const VectorXd dx = -condensed.R.completeOrthogonalDecomposition().solve(condensed.z) * share;
+  return bounded_step(scaling, p, dx);
+}
+
+}  // namespace
+
+VectorXd bounded_step(const Scaling& scaling, const VectorXd& p, const VectorXd& dx) {
   VectorXd x = scaling.to_x(p);
   for (int i = 0; i < x.size(); ++i) {
     const double most = scaling.parameters[i].positive ? 1.0 : 10.0;
@@ -35,8 +39,6 @@ VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquat
   }
   return scaling.to_p(x);
 }
-
-}  // namespace
 
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,

@@ -2,8 +2,13 @@
 #pragma once
 
 #include "estimation/fit.h"
+#include "estimation/normal_equations.h"
 
 namespace hookeye {
+
+/// p after the step dx in units of `scaling`, within bounds; no parameter moves by more than a
+/// factor e or by its typical size times ten.
+VectorXd bounded_step(const Scaling& scaling, const VectorXd& p, const VectorXd& dx);
 
 /// What one Gauss-Newton step on the motion in half-size pictures makes of a model.
 struct Trial {

@@ -33,7 +33,7 @@ class TwoForms : public testing::Test {
     score.best = find_effect(score.effect)->candidate(base_.form.realise(base_.p), variant);
     score.dof = static_cast<int>(score.best->parameters().size());
     score.values = VectorXd::Constant(score.dof, 0.01);
-    score.base_step = VectorXd::Zero(base_.p.size());
+    score.base_step = VectorXd::Constant(base_.p.size(), 1e-5);
     score.standard_error = VectorXd::Constant(score.dof, 0.01);
     return score;
   }
@@ -62,6 +62,7 @@ TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   ASSERT_TRUE(again.effects.at(0).other_form);
   EXPECT_EQ(again.effects[0].other_form->best->variant(), "in all");
   EXPECT_EQ(again.effects[0].other_form->values, score_.other_form->values);
+  EXPECT_EQ(again.effects[0].base_step, score_.base_step);
 }
 
 TEST(Racer, IsJudgedByWhatIsNoNoise) {
