@@ -69,7 +69,7 @@ bool may_tie(const Racer& rival, const Racer& winner) {
 
 /// Left with three times the misfit of the first after as many steps: nobody came from there to
 /// win, and the refit of a field costs as much as all others. Not asked of the effect of the
-/// largest evidence.
+/// largest evidence, nor of those that tie with it: two steps from afar say less than the scores.
 bool out_of_reach(const Racer& rival, const Racer& winner) {
   return rival.chi() > 3.0 * winner.chi();
 }
@@ -92,6 +92,11 @@ const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
+  const auto ties = [&](const std::string& effect) {
+    return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
+      return score.effect == effect && score.evidence > diagnosis.effects.front().evidence - kTie;
+    });
+  };
   const Racer winner = racers.front();
   std::vector<Racer> kept;
   int places = most;
@@ -99,7 +104,7 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
     places -= racers[i].effect == first;
   for (Racer& racer : racers) {
     const bool held = racer.effect == first || sensors_alone(*racer.form.ingredients.back());
-    if (!held && out_of_reach(racer, winner)) continue;
+    if (!held && !ties(racer.effect) && out_of_reach(racer, winner)) continue;
     if (held || places-- > 0 || (numerical(racer.effect) && may_tie(racer, winner)))
       kept.push_back(std::move(racer));
   }

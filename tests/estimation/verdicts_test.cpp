@@ -156,6 +156,21 @@ TEST(Discover, WhatTheModulusHadMadeUpForIsFound) {
   EXPECT_NEAR(p[2], 4.94e-4, 0.3e-4);
 }
 
+/// A wall that stops the pull resembles a body that was stiffer until then, and gets farther in two
+/// steps; softening ties with creep in evidence, and is refitted for that.
+TEST(Discover, WhoTiesInEvidenceIsRefittedHoweverSlow) {
+  const SmallScene small(
+      {.hidden = "hidden:\n  - {effect: softening, variant: from side on, values: {softening.d: "
+                 "0.412937}}\n",
+       .seed = 11});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const auto found = hookeye::discover(workspace, form, form.initial(), {});
+  const Discovery& discovery = std::get<Discovery>(found);
+  EXPECT_THAT(discovery.missing, ElementsAre("softening"));
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+}
+
 /// Without its name in the catalogue, and without those that are easily taken for it, no other may
 /// stand for it.
 TEST(Discover, WhatTheCatalogueDoesNotHaveEndsUnexplained) {
