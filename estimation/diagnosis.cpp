@@ -113,9 +113,11 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   // The step and its share come from the plain sums: that is what a refit will minimise.
   const ProjectedHypothesis plain =
       project(context.sums.fitted.JtJ, weighted.base, candidate.hypothesis);
-  score.values = null_values + plain.step(context.sums.fitted.Jtr);
-  for (int i = 0; i < score.dof; ++i)
-    score.values[i] = std::clamp(score.values[i], parameters[i].low, parameters[i].high);
+  VectorXd low(score.dof), high(score.dof);
+  for (int i = 0; i < score.dof; ++i) low[i] = parameters[i].low, high[i] = parameters[i].high;
+  score.values = null_values +
+                 plain.step_within(context.sums.fitted.Jtr, low - null_values, high - null_values);
+  score.values = score.values.cwiseMax(low).cwiseMin(high);  // null + (bound - null) rounds
   score.base_step = -plain.to_base * (score.values - null_values);
   const DiagnosisSums& sums = context.sums;
   const double structured = sums.photo_r2 - sums.photo_count * sums.pixel_floor2;

@@ -75,6 +75,25 @@ Eigen::VectorXd ProjectedHypothesis::step(const Eigen::VectorXd& s) const {
   return t.cwiseMax(least).cwiseMin(most);
 }
 
+Eigen::VectorXd ProjectedHypothesis::step_within(const Eigen::VectorXd& s,
+                                                 const Eigen::VectorXd& low,
+                                                 const Eigen::VectorXd& high) const {
+  Eigen::VectorXd t = step(s);
+  const auto bounded = [&] { return t.cwiseMax(low).cwiseMin(high).eval(); };
+  Eigen::VectorXd open = Eigen::VectorXd::Ones(t.size());
+  for (Eigen::Index held = 0; held < t.size(); ++held) {
+    Eigen::Index worst;
+    const Eigen::VectorXd out = open.cwiseProduct(t - bounded()).cwiseQuotient(typical);
+    if (out.cwiseAbs().maxCoeff(&worst) == 0.0) break;
+    t[worst] = bounded()[worst];
+    open[worst] = 0.0;
+    t -= open.cwiseProduct(t);
+    const Eigen::VectorXd slope = open.cwiseProduct(projected_score(s) + M * t);
+    t -= pseudo_inverse(open.asDiagonal() * M * open.asDiagonal()) * slope;
+  }
+  return t;
+}
+
 double ProjectedHypothesis::fall(const Eigen::VectorXd& s) const {
   const Eigen::VectorXd t = step(s);
   return -2.0 * t.dot(projected_score(s)) - t.dot(M * t);

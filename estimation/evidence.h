@@ -52,6 +52,11 @@ struct ProjectedHypothesis {
   /// Step t = -M^+ s~ (directions without signal stay at the null), of a single parameter within
   /// its bounds.
   Eigen::VectorXd step(const Eigen::VectorXd& s) const;
+  /// The same with every parameter in [low, high] (from its null): those that the step takes out of
+  /// it stay at the bound, the farthest first, and the others step given that. Clamped alone, one
+  /// of two parameters that nearly undo each other would leave the other's large step behind.
+  Eigen::VectorXd step_within(const Eigen::VectorXd& s, const Eigen::VectorXd& low,
+                              const Eigen::VectorXd& high) const;
   double fall(const Eigen::VectorXd& s) const;  ///< s~^T M^+ s~, or less within bounds
 };
 ProjectedHypothesis project(const Eigen::MatrixXd& H, int base, const Hypothesis& hypothesis);

@@ -128,6 +128,33 @@ TEST(Evidence, ABoundCutsTheGainOnBothSides) {
   }
 }
 
+/// Two higher moduli of a law nearly undo each other: held at its bound alone, one would leave the
+/// other's large step behind, which is worse than none.
+TEST(Evidence, AStepWithinBoundsIsTheBestThere) {
+  std::mt19937 engine(9);
+  Data data = noise(engine, 200, 3);
+  data.J.col(2) = data.J.col(1) + 0.05 * data.J.col(2);
+  data.r -= 4.0 * data.J.col(1) - 6.0 * data.J.col(2);
+  const MatrixXd H = data.J.transpose() * data.J;
+  const VectorXd s = data.J.transpose() * data.r;
+  const auto p = project(H, 1, {1, 2, VectorXd::Ones(2)});
+  const auto change = [&](const VectorXd& t) {
+    return 2.0 * t.dot(p.projected_score(s)) + t.dot(p.M * t);
+  };
+  const double inf = std::numeric_limits<double>::infinity();
+  const Eigen::Vector2d low(-inf, -1.0), high(inf, 1.0);
+  ASSERT_LT(p.step(s)[1], -3.0);
+  const VectorXd t = p.step_within(s, low, high);
+  EXPECT_EQ(t[1], -1.0);
+  EXPECT_LT(change(t), 0.0);
+  EXPECT_GT(change(Eigen::Vector2d(p.step(s)[0], -1.0)), 0.0);
+  for (const double off : {-0.01, 0.01}) {
+    EXPECT_GT(change(t + Eigen::Vector2d(off, 0.0)), change(t));
+    EXPECT_GT(change(Eigen::Vector2d(t[0] + off, -0.99)), change(t));
+  }
+  EXPECT_EQ(p.step_within(s, Eigen::Vector2d(-inf, -inf), high), p.step(s));
+}
+
 /// A blur that is in four photos and told of three: both take away more than the cells' sums hold,
 /// the four more than the three.
 TEST(Evidence, WhatTakesMoreThanCellsShowStillRanks) {
