@@ -89,7 +89,7 @@ cv::Rect around_counted(const Image& residual) {
 cv::Mat find_flow(const Image& model, const Image& photo, const cv::Rect& box) {
   const float white = white_level(photo);
   auto search = cv::DISOpticalFlow::create(cv::DISOpticalFlow::PRESET_MEDIUM);
-  search->setFinestScale(0);
+  search->setFinestScale(1);  // half size: the flow is blurred below, and the residual linear in it
   cv::Mat flow;
   search->calc(eight_bits(photo, white)(box).clone(), eight_bits(model, white)(box).clone(), flow);
   // Single pixels of the flow are noise; what physics moves is smooth over a cell.

@@ -158,25 +158,29 @@ auto Assembly::dispatch(Function&& f) const {
 Assembly::Assembly(const TetMesh& mesh)
     : npe_(mesh.nodes_per_element()), n_(mesh.nodes()), nodes_(mesh.elements) {
   const TetRule& rule = stiffness_rule(mesh.order);
-  std::vector<MatrixXd> dN;
-  for (const auto& p : rule.points) dN.push_back(shape_derivatives(mesh.order, p));
-  points_ = static_cast<int>(dN.size());
+  points_ = static_cast<int>(rule.points.size());
   corners_ = mesh.order == 1 ? 0 : 4;
-  for (int c = 0; c < corners_; ++c)
-    dN.push_back(shape_derivatives(mesh.order, Eigen::Vector4d::Unit(c)));
-  gradients_.resize(static_cast<size_t>(elements()) * dN.size() * npe_ * 3);
+  gradients_.resize(static_cast<size_t>(elements()) * (points_ + corners_) * npe_ * 3);
   volume_.resize(static_cast<size_t>(elements()) * points_);
-  double* out = gradients_.data();
-  MatrixXd x(3, npe_);
-  for (int e = 0; e < elements(); ++e) {
-    for (int i = 0; i < npe_; ++i) x.col(i) = mesh.X.col(nodes_(i, e));
-    for (size_t p = 0; p < dN.size(); ++p, out += 3 * npe_) {
-      const Matrix3d jacobian = x * dN[p];
-      Eigen::Map<MatrixXd>(out, npe_, 3) = dN[p] * jacobian.inverse();
-      if (static_cast<int>(p) < points_)
-        volume_[e * points_ + p] = rule.weights[p] * jacobian.determinant() / 6.0;
+  dispatch([&]<int N>(Kernel<N>) {
+    using Gradients = Eigen::Matrix<double, N, 3>;
+    std::vector<Gradients> dN;
+    for (const auto& p : rule.points) dN.push_back(shape_derivatives(mesh.order, p));
+    for (int c = 0; c < corners_; ++c)
+      dN.push_back(shape_derivatives(mesh.order, Eigen::Vector4d::Unit(c)));
+    double* out = gradients_.data();
+    Eigen::Matrix<double, 3, N> x;
+    for (int e = 0; e < elements(); ++e) {
+      for (int i = 0; i < N; ++i) x.col(i) = mesh.X.col(nodes_(i, e));
+      for (size_t p = 0; p < dN.size(); ++p, out += 3 * N) {
+        const Matrix3d jacobian = x * dN[p];
+        Eigen::Map<Gradients>(out).noalias() = dN[p] * jacobian.inverse();
+        if (static_cast<int>(p) < points_)
+          volume_[e * points_ + p] = rule.weights[p] * jacobian.determinant() / 6.0;
+      }
     }
-  }
+    return 0;
+  });
 }
 
 double Assembly::energy(const EnergyModel& model, const VectorXd& q) const {
@@ -184,6 +188,7 @@ double Assembly::energy(const EnergyModel& model, const VectorXd& q) const {
 }
 
 void Assembly::add_forces(const EnergyModel& model, const VectorXd& q, VectorXd& R) const {
+  if (model.parts.empty()) return;  // forces alone are asked for (effects, linear in a load)
   dispatch([&](auto kernel) {
     for (int e = 0; e < elements(); ++e)
       kernel.scatter(kernel.force(q, e, [&](const Matrix3d& F) { return stress(model, e, F); }), e,

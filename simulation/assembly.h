@@ -5,10 +5,10 @@
 
 namespace hookeye {
 
-/// Shape gradients of one mesh at its quadrature points and corners, and the sparsity pattern of
-/// its tangent. Costs about one assembly; keep it. Holds no reference to the mesh.
 using Eigen::MatrixXd;
 
+/// Shape gradients of one mesh at its quadrature points and corners, and the sparsity pattern of
+/// its tangent. Costs about one assembly; keep it. Holds no reference to the mesh.
 class Assembly {
  public:
   explicit Assembly(const TetMesh& mesh);
