@@ -133,9 +133,22 @@ std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const 
   return misfit(std::get<Fitted>(second)) <= misfit(*larger) ? second : result;
 }
 
-/// Racer::chi() after its second step, or where it stands if there is none.
-double after_two(const Racer& racer) {
-  return racer.next ? racer.next->chi_fit + racer.next->chi_validate : racer.chi();
+/// After its second step, or where it stands if there is none.
+const Trial& newest(const Racer& racer) { return racer.next ? *racer.next : racer.trial; }
+
+/// Which of two forms of an effect gets farther on fitted and held-out photos together; one that
+/// takes from the fitted ones not half of what the other does gets nowhere, and has spoilt no
+/// held-out photo for that alone.
+bool gets_farther(const Racer& one, const Racer& other, const TrialScale& scale) {
+  const auto taken = [&](const Racer& racer) {
+    return scale.chi * scale.chi - std::pow(newest(racer).chi_fit, 2);
+  };
+  if (taken(one) < 0.5 * taken(other)) return false;
+  if (taken(other) < 0.5 * taken(one)) return true;
+  const auto chi = [](const Racer& racer) {
+    return newest(racer).chi_fit + newest(racer).chi_validate;
+  };
+  return chi(one) < chi(other);
 }
 
 /// Steps once more from where the racer stands.
@@ -178,7 +191,7 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
           one->next = std::get<Trial>(std::move(further));
         }
       }
-    if (!other || after_two(racer) < after_two(*other)) best = std::move(racer);
+    if (!other || gets_farther(racer, *other, scale)) best = std::move(racer);
   }
   return best;
 }
