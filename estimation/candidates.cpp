@@ -2,15 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace hookeye {
 
 namespace {
 
+/// Those that have parameters of their own: the other camera, the load of another example.
+Ingredients not_yet_in(const ModelForm& form, const Ingredients& candidates) {
+  std::set<std::string> taken;
+  for (const Parameter& parameter : form.parameters()) taken.insert(parameter.name);
+  Ingredients out;
+  for (const auto& candidate : candidates) {
+    const auto own = candidate->parameters();
+    if (std::none_of(own.begin(), own.end(), [&](const auto& p) { return taken.count(p.name); }))
+      out.push_back(candidate);
+  }
+  return out;
+}
+
 bool already_in(const ModelForm& form, const std::string& name) {
-  for (const auto& ingredient : form.ingredients)
-    if (ingredient->name() == name) return true;
-  return false;
+  return std::any_of(form.ingredients.begin(), form.ingredients.end(),
+                     [&](const auto& ingredient) { return ingredient->name() == name; });
 }
 
 }  // namespace
@@ -25,9 +38,11 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
   for (const Effect* effect : tested) {
     if (std::count(options.without.begin(), options.without.end(), effect->name())) continue;
     std::string why_not;
-    if (already_in(fitted.form, effect->name())) why_not = "already in the model";
-    const auto candidates = why_not.empty() ? effect->candidates(model, &why_not)
-                                            : std::vector<std::shared_ptr<const Ingredient>>{};
+    Ingredients candidates = effect->candidates(model, &why_not);
+    if (already_in(fitted.form, effect->name())) {
+      candidates = effect->several() ? not_yet_in(fitted.form, candidates) : Ingredients{};
+      if (candidates.empty()) why_not = "already in the model";
+    }
     if (candidates.empty()) {
       EffectScore score;
       score.effect = effect->name();

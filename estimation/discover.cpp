@@ -29,7 +29,9 @@ bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis) {
 std::vector<std::string> effects_in(const ModelForm& form) {
   std::vector<std::string> names;
   for (size_t i = base_form(form.scene).ingredients.size(); i < form.ingredients.size(); ++i)
-    names.push_back(form.ingredients[i]->name());
+    if (const std::string name = form.ingredients[i]->name();
+        std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
   return names;
 }
 

@@ -66,7 +66,8 @@ struct Step {
   std::vector<Rival> rivals;  ///< those of them that were refitted, the added one among them
 };
 
-/// Names of what stands in `form` beyond the capture's own model, in order.
+/// Names of what stands in `form` beyond the capture's own model, in order; each
+/// once (Effect::several).
 std::vector<std::string> effects_in(const ModelForm& form);
 
 enum class Verdict { explained, unexplained, ambiguous };

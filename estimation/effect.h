@@ -12,6 +12,8 @@ namespace hookeye {
 
 enum class EffectGroup { material, loads, supports, history, measurement, numerical };
 
+using Ingredients = std::vector<std::shared_ptr<const Ingredient>>;
+
 /// One hypothesis: an ingredient whose null values leave the model unchanged.
 ///
 /// Recipe: write estimation/effects/NAME.cpp with a class derived from Effect and
@@ -27,8 +29,10 @@ class Effect {
   /// The ways in which the effect can be present in this model (which camera, from which example
   /// on, which field). All candidates are scored; the best stands for the effect. Parameters'
   /// `value` are the nulls. Empty: not applicable to this capture (reason in `why_not`).
-  virtual std::vector<std::shared_ptr<const Ingredient>> candidates(const Model& model,
-                                                                    std::string* why_not) const = 0;
+  virtual Ingredients candidates(const Model& model, std::string* why_not) const = 0;
+  /// Whether a model may hold it more than once, each time with parameters of their own names: two
+  /// cameras that were knocked, the loads of two examples.
+  virtual bool several() const { return false; }
   /// Candidate for write/read: by variant(). Null when the variant is not one of this effect's.
   std::shared_ptr<const Ingredient> candidate(const Model& model, const std::string& variant) const;
   /// Builds what candidates() does not list (refit forms) or lists only for the very same mesh;

@@ -61,20 +61,22 @@ Step without_effect(Bench& bench, const Step& current, const std::string& name,
   ModelForm form = current.fitted.form;
   std::vector<double> p;
   int offset = 0;
-  bool found = false, mesh = false;
   form.ingredients.clear();
-  for (const auto& ingredient : current.fitted.form.ingredients) {
+  const auto& all = current.fitted.form.ingredients;
+  // the newest, where it stands more than once
+  const auto newest =
+      std::find_if(all.rbegin(), all.rend(), [&](const auto& one) { return one->name() == name; });
+  if (newest == all.rend()) not_there(name, effects_in(current.fitted.form));
+  const Effect* effect = find_effect(name);
+  const bool mesh = effect && effect->remeshes((*newest)->variant());
+  for (const auto& ingredient : all) {
     const int n = static_cast<int>(ingredient->parameters().size());
-    if (ingredient->name() == name) {
-      found = true;
-      mesh = find_effect(name) && find_effect(name)->remeshes(ingredient->variant());
-    } else {
+    if (ingredient != *newest) {
       form.ingredients.push_back(ingredient);
       for (int i = 0; i < n; ++i) p.push_back(current.fitted.p[offset + i]);
     }
     offset += n;
   }
-  if (!found) not_there(name, effects_in(current.fitted.form));
   if (wanted.doing) wanted.doing("refitting");
   Step step;
   step.name = "without-" + name;
@@ -99,7 +101,8 @@ void check_stands(const Run& run, const AddRequest& request) {
   const auto effects = steps.back().at("effects").get<std::vector<std::string>>();
   const bool there = std::find(effects.begin(), effects.end(), request.effect) != effects.end();
   if (request.take_back && !there) not_there(request.effect, effects);
-  if (!request.take_back && there) there_already(request.effect);
+  const Effect* effect = find_effect(request.effect);
+  if (!request.take_back && there && !(effect && effect->several())) there_already(request.effect);
 }
 
 Step next_step(Bench& bench, const Step& current, const AddRequest& request,

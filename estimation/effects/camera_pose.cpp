@@ -12,6 +12,7 @@ class CameraPose final : public Effect {
   std::string name() const override { return "camera_pose"; }
   EffectGroup group() const override { return EffectGroup::measurement; }
   std::string title() const override { return "a camera that moved"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "One camera was knocked between two examples, or its pose was wrong from the start. "
            "Easily taken for a set-up placed elsewhere (with one camera it is the same), for a "

@@ -12,6 +12,7 @@ class Defocus final : public Effect {
   std::string name() const override { return "defocus"; }
   EffectGroup group() const override { return EffectGroup::measurement; }
   std::string title() const override { return "out of focus"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "Photos of one camera are blurred, from some example on: focus, motion, dirt. It leaves "
            "a residual at every edge of the texture but moves none of them, so it is hardly "

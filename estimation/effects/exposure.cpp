@@ -12,6 +12,7 @@ class Exposure final : public Effect {
   std::string name() const override { return "exposure"; }
   EffectGroup group() const override { return EffectGroup::measurement; }
   std::string title() const override { return "exposure changed"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "Some photos are brighter or darker as a whole: exposure time, aperture, a flickering "
            "lamp. Easily taken for a light that turned; it moves no edge, so it is hardly ever "

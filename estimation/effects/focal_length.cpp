@@ -12,6 +12,7 @@ class FocalLength final : public Effect {
   std::string name() const override { return "focal_length"; }
   EffectGroup group() const override { return EffectGroup::measurement; }
   std::string title() const override { return "wrong focal length"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "A camera's focal length (its scale, where it is orthographic) is not the told one. "
            "For a body that is flat along the optical axis this is the same as a camera wrong in "

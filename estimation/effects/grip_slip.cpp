@@ -68,6 +68,7 @@ class GripSlip final : public Effect {
   std::string name() const override { return "grip_slip"; }
   EffectGroup group() const override { return EffectGroup::supports; }
   std::string title() const override { return "a grip that slips"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "The moved region follows only part of the told motion or rotation: it slips in the "
            "grip, or the machine gives. Easily taken for a softer material where only "

@@ -38,6 +38,7 @@ class LoadDirection final : public Effect {
   std::string name() const override { return "load_direction"; }
   EffectGroup group() const override { return EffectGroup::loads; }
   std::string title() const override { return "misaligned load"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "The force of one example, or of all, points a few degrees away from where it was "
            "told, at its told size. Easily taken for anisotropy, a soft clamp or a set-up placed "

@@ -16,6 +16,7 @@ class Pressure final : public Effect {
   std::string name() const override { return "pressure"; }
   EffectGroup group() const override { return EffectGroup::loads; }
   std::string title() const override { return "pressure"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "A pressure acts on a part of the surface in every example, at rest too: a fluid, a "
            "vacuum, a membrane. Easily taken for swelling (a pressure all around shrinks a "

@@ -122,6 +122,7 @@ class SoftClamp final : public Effect {
   std::string name() const override { return "soft_clamp"; }
   EffectGroup group() const override { return EffectGroup::supports; }
   std::string title() const override { return "a clamp that gives"; }
+  bool several() const override { return true; }
   std::string manual() const override {
     return "A support told as rigid yields under load like a bed of springs: glue, a soft plate, "
            "a loose jaw. Easily taken for a softer material near the support, for anisotropy or "

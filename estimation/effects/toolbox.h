@@ -29,7 +29,6 @@ struct IngredientSpec {
   bool has_null = true;
 };
 std::shared_ptr<const Ingredient> make_ingredient(IngredientSpec spec);
-using Ingredients = std::vector<std::shared_ptr<const Ingredient>>;
 
 /// Bounding box of the body at rest.
 struct BodySize {

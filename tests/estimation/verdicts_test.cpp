@@ -171,6 +171,30 @@ TEST(Discover, WhoTiesInEvidenceIsRefittedHoweverSlow) {
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
 }
 
+/// The same effect twice, each with numbers of its own: two cameras, one of them later.
+TEST(Discover, BothCamerasWereKnocked) {
+  const SmallScene small(
+      {.hidden = "hidden:\n  - {effect: camera_pose, variant: cam0 from side on, values: "
+                 "{camera_pose.cam0.ry: 0.004}}\n  - {effect: camera_pose, variant: cam1 from the "
+                 "start, values: {camera_pose.cam1.tx: 0.4}}\n"});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const auto found = hookeye::discover(workspace, form, form.initial(), {});
+  const Discovery& discovery = std::get<Discovery>(found);
+  EXPECT_THAT(discovery.missing, ElementsAre("camera_pose"));
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+  EXPECT_EQ(discovery.steps.size(), 3u);
+  const Fitted& last = discovery.steps.back().fitted;
+  const auto parameters = last.form.parameters();
+  const auto value = [&](const std::string& name) {
+    for (size_t i = 0; i < parameters.size(); ++i)
+      if (parameters[i].name == name) return last.p[static_cast<Eigen::Index>(i)];
+    return 0.0;
+  };
+  EXPECT_NEAR(value("camera_pose.cam0.ry"), 0.004, 4e-4);
+  EXPECT_NEAR(value("camera_pose.cam1.tx"), 0.4, 0.05);
+}
+
 /// Without its name in the catalogue, and without those that are easily taken for it, no other may
 /// stand for it.
 TEST(Discover, WhatTheCatalogueDoesNotHaveEndsUnexplained) {
