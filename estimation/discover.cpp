@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "estimation/contest.h"
+#include "estimation/swaps.h"
 
 namespace hookeye {
 
@@ -175,71 +176,6 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
 
 namespace {
 
-/// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
-/// with which no effect is idle.
-bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own) {
-  for (size_t k = 0; k < own.size(); ++k) {
-    const auto i = offset + static_cast<Eigen::Index>(k);
-    const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * kNormal95);
-    if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
-  }
-  return false;
-}
-
-/// `fitted` without its ingredient `i`, fitted again from where it stands.
-std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
-                                  const FitOptions& options) {
-  Eigen::Index offset = 0;
-  for (size_t k = 0; k < i; ++k)
-    offset += static_cast<Eigen::Index>(fitted.form.ingredients[k]->parameters().size());
-  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
-  ModelForm form = fitted.form;
-  form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
-  VectorXd p(fitted.p.size() - n);
-  p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
-  FitOptions warm = options;
-  warm.coarse_to_fine = false;
-  auto result = fit(workspace, form, p, warm);
-  if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
-  return {};
-}
-
-/// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
-std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
-                              size_t first_effect, const DiscoverOptions& options) {
-  const Yardstick yardstick{&current, &floor, measured_noise2(current)};
-  const double full = refit_score(current, yardstick);
-  int offset = 0;
-  for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
-    const auto own = current.form.ingredients[i]->parameters();
-    const Effect* effect = find_effect(current.form.ingredients[i]->name());
-    const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
-    if (i >= first_effect && !mesh && !stands(current, offset, own))
-      if (auto lighter = fit_without(workspace, current, i, options.fit)) {
-        const double score = refit_score(*lighter, yardstick);
-        if (score > full - kTie)
-          return Refit{current.form.ingredients[i]->name(), std::move(*lighter), score};
-      }
-    offset += static_cast<int>(own.size());
-  }
-  return {};
-}
-
-/// Whether `rival`, which equalled the winner beside the effect `dropped`, equals it still now that
-/// the winner does without: as it is, which costs that effect's parameters, or without it too.
-bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,
-                       const std::string& dropped, const Floor& floor, const FitOptions& options) {
-  const Yardstick yardstick{&winner, &floor, measured_noise2(winner)};
-  const double enough = refit_score(winner, yardstick) - kTie;
-  if (refit_score(rival, yardstick) > enough) return true;
-  for (size_t i = 0; i < rival.form.ingredients.size(); ++i)
-    if (rival.form.ingredients[i]->name() == dropped) {
-      const auto lighter = fit_without(workspace, rival, i, options);
-      return lighter && refit_score(*lighter, yardstick) > enough;
-    }
-  return false;
-}
-
 /// `why` is judge()'s, `refused` why the effect that came farthest was not added.
 std::string say(const Discovery& discovery, std::string why, const std::string& refused) {
   const std::vector<std::string>& missing = discovery.missing;
@@ -279,14 +215,21 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
   return "";
 }
 
+/// The step in which one effect took another's place.
+Step swapped_step(Swap swap) {
+  Step step;
+  step.name = step.added = std::move(swap.in.effect);
+  step.dropped = {std::move(swap.out)};
+  step.fitted = std::move(swap.in.fitted);
+  return step;
+}
+
 /// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
 /// found beside it, the later steps have decided.
-void settle_tie(Discovery& discovery) {
+void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& missing) {
   const auto has = [&](const std::string& name) {
-    return std::find(discovery.missing.begin(), discovery.missing.end(), name) !=
-           discovery.missing.end();
+    return std::find(missing.begin(), missing.end(), name) != missing.end();
   };
-  auto& tie = discovery.tie;
   if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
     tie.clear();
 }
@@ -316,11 +259,26 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
       continue;
     }
     if (added >= options.max_effects || only_numerical_left(step.fitted, step.diagnosis)) break;
+    if (auto better =
+            swap_for_better(workspace, step.fitted, out.floor, base_ingredients, options, events)) {
+      out.steps.push_back(swapped_step(std::move(*better)));
+      continue;
+    }
     auto contest = refit_leaders(workspace, step, options, events);
     if (auto* failure = std::get_if<NumericalFailure>(&contest)) return *failure;
     auto& [raced, ranked, before, reference, noise2] = std::get<Contest>(contest);
     if (ranked.empty()) break;
     Refit& winner = ranked.front();
+    if (auto found =
+            swap_behind_refit(workspace, ranked, out.floor, base_ingredients, options, events)) {
+      Step leading;
+      leading.name = leading.added = found->first->effect;
+      leading.raced = std::move(raced);
+      leading.fitted = found->first->fitted;
+      together = swapped_step(std::move(found->second));
+      out.steps.push_back(std::move(leading));
+      continue;
+    }
     refused = why_refused(step, before, winner);
     if (!refused.empty()) {
       if (at_floor(step.fitted, step.diagnosis.floor) &&
@@ -362,6 +320,13 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
                                     out.floor, options.fit);
         });
       }
+    settle_tie(out.tie, effects_in(next.fitted.form));
+    if (out.tie.size() > 1) {
+      auto asked = ask_tie_again(workspace, next.fitted, out.tie, out.floor, base_ingredients,
+                                 options, events);
+      out.tie = std::move(asked.tie);
+      if (asked.better) together = swapped_step(std::move(*asked.better));
+    }
     if (!equals.empty() && out.tie.empty()) out.tie.push_back(next.added);
     for (const Refit* rival : equals) out.tie.push_back(rival->effect);
     out.steps.push_back(std::move(next));
@@ -369,7 +334,7 @@ std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, St
   std::string why;
   const Step& last = out.steps.back();
   out.missing = effects_in(last.fitted.form);
-  settle_tie(out);
+  settle_tie(out.tie, out.missing);
   out.verdict = judge(last.fitted, last.diagnosis, out.tie, &why);
   out.sentence = say(out, why, refused);
   return out;

@@ -1,0 +1,194 @@
+#include "estimation/swaps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hookeye {
+
+namespace {
+
+/// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
+/// with which no effect is idle.
+bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own) {
+  for (size_t k = 0; k < own.size(); ++k) {
+    const auto i = offset + static_cast<Eigen::Index>(k);
+    const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * kNormal95);
+    if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
+  }
+  return false;
+}
+
+/// `fitted` without its ingredient `i`, fitted again from where it stands.
+std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
+                                  const FitOptions& options) {
+  Eigen::Index offset = 0;
+  for (size_t k = 0; k < i; ++k)
+    offset += static_cast<Eigen::Index>(fitted.form.ingredients[k]->parameters().size());
+  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
+  ModelForm form = fitted.form;
+  form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
+  VectorXd p(fitted.p.size() - n);
+  p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  FitOptions warm = options;
+  warm.coarse_to_fine = false;
+  auto result = fit(workspace, form, p, warm);
+  if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
+  return {};
+}
+
+}  // namespace
+
+std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
+                              size_t first_effect, const DiscoverOptions& options) {
+  const Yardstick yardstick{&current, &floor, measured_noise2(current)};
+  const double full = refit_score(current, yardstick);
+  int offset = 0;
+  for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
+    const auto own = current.form.ingredients[i]->parameters();
+    const Effect* effect = find_effect(current.form.ingredients[i]->name());
+    const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
+    if (i >= first_effect && !mesh && !stands(current, offset, own))
+      if (auto lighter = fit_without(workspace, current, i, options.fit)) {
+        const double score = refit_score(*lighter, yardstick);
+        if (score > full - kTie)
+          return Refit{current.form.ingredients[i]->name(), std::move(*lighter), score};
+      }
+    offset += static_cast<int>(own.size());
+  }
+  return {};
+}
+
+bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,
+                       const std::string& dropped, const Floor& floor, const FitOptions& options) {
+  const Yardstick yardstick{&winner, &floor, measured_noise2(winner)};
+  const double enough = refit_score(winner, yardstick) - kTie;
+  if (refit_score(rival, yardstick) > enough) return true;
+  for (size_t i = 0; i < rival.form.ingredients.size(); ++i)
+    if (rival.form.ingredients[i]->name() == dropped) {
+      const auto lighter = fit_without(workspace, rival, i, options);
+      return lighter && refit_score(*lighter, yardstick) > enough;
+    }
+  return false;
+}
+
+namespace {
+
+/// The effects explain the fitted photos and not the held-out ones.
+bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) > kAtFloor * floor.chi;
+}
+
+/// What ties with the leader where `dropped` is not in the model, but for itself.
+std::vector<const EffectScore*> doubles_of(const Ingredient& dropped, const Diagnosis& diagnosis) {
+  std::vector<const EffectScore*> out;
+  for (const EffectScore& score : diagnosis.effects)
+    if (nameable(score, diagnosis) && !numerical(score.effect) &&
+        score.evidence > diagnosis.effects.front().evidence - kTie &&
+        (score.effect != dropped.name() || score.best->variant() != dropped.variant() ||
+         score.other_form))
+      out.push_back(&score);
+  return out;
+}
+
+/// A model without one of its effects, and what the catalogue says of it then.
+struct Without {
+  const Ingredient& dropped;
+  Fitted fitted;
+  Diagnosis diagnosis;
+};
+
+std::optional<Without> without(Workspace& workspace, const Fitted& fitted, size_t i,
+                               const DiscoverOptions& options) {
+  const Ingredient& dropped = *fitted.form.ingredients[i];
+  const Effect* effect = find_effect(dropped.name());
+  if (!effect || effect->remeshes(dropped.variant())) return {};
+  auto lighter = fit_without(workspace, fitted, i, options.fit);
+  if (!lighter) return {};
+  auto diagnosis = diagnose(workspace, *lighter, options.diagnosis);
+  if (!std::holds_alternative<Diagnosis>(diagnosis)) return {};
+  return Without{dropped, std::move(*lighter), std::get<Diagnosis>(std::move(diagnosis))};
+}
+
+std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
+                                  const EffectScore& score, const DiscoverOptions& options,
+                                  const DiscoverEvents& events) {
+  const std::string old = without.dropped.name();
+  const std::string words = score.effect + (score.effect == old ? " anew" : " in place of " + old);
+  if (events.refitting) events.refitting(words);
+  auto result = add_effect(workspace, without.fitted, score, options.fit);
+  auto* refitted = std::get_if<Fitted>(&result);
+  if (!refitted) return {};
+  if (events.refitted) events.refitted(words, *refitted);
+  return Refit{score.effect, std::move(*refitted), 0.0};
+}
+
+}  // namespace
+
+std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, const Floor& floor,
+                                    size_t first_effect, const DiscoverOptions& options,
+                                    const DiscoverEvents& events) {
+  std::optional<Swap> best;
+  if (fitted.form.ingredients.size() < first_effect + 2 || at_floor(fitted, floor)) return best;
+  const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
+  double enough = refit_score(fitted, yardstick) + kNameable;
+  for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
+    if (best && at_floor(best->in.fitted, floor)) break;
+    const auto lighter = without(workspace, fitted, i, options);
+    if (!lighter) continue;
+    for (const EffectScore* score : doubles_of(lighter->dropped, lighter->diagnosis)) {
+      auto refit = in_its_place(workspace, *lighter, *score, options, events);
+      if (!refit) continue;
+      refit->score = refit_score(refit->fitted, yardstick);
+      if (refit->score < enough) continue;
+      enough = refit->score;
+      best = Swap{lighter->dropped.name(), std::move(*refit)};
+    }
+  }
+  return best;
+}
+
+TieAsked ask_tie_again(Workspace& workspace, const Fitted& last,
+                       const std::vector<std::string>& tie, const Floor& floor, size_t first_effect,
+                       const DiscoverOptions& options, const DiscoverEvents& events) {
+  const auto& all = last.form.ingredients;
+  size_t i = first_effect;
+  while (i < all.size() && all[i]->name() != tie.front()) ++i;
+  const auto lighter =
+      i < all.size() ? without(workspace, last, i, options) : std::optional<Without>();
+  if (!lighter) return {tie, {}};
+  const Yardstick yardstick{&last, &floor, measured_noise2(last)};
+  const double now = refit_score(last, yardstick);
+  TieAsked out;
+  for (const EffectScore& score : lighter->diagnosis.effects) {
+    if (!score.best || std::find(tie.begin() + 1, tie.end(), score.effect) == tie.end()) continue;
+    auto refit = in_its_place(workspace, *lighter, score, options, events);
+    if (!refit) continue;
+    refit->score = refit_score(refit->fitted, yardstick);
+    if (refit->score > now - kTie) out.tie.push_back(score.effect);
+    if (refit->score > now + kTie && (!out.better || refit->score > out.better->in.score))
+      out.better = Swap{tie.front(), std::move(*refit)};
+  }
+  if (out.better)
+    out.tie.clear();
+  else if (!out.tie.empty())
+    out.tie.insert(out.tie.begin(), tie.front());
+  return out;
+}
+
+std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
+    Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
+    const DiscoverOptions& options, const DiscoverEvents& events) {
+  if (std::any_of(refits.begin(), refits.end(),
+                  [&](const Refit& refit) { return at_floor(refit.fitted, floor); }))
+    return {};
+  const auto found = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
+    return !numerical(refit.effect) && spoils_held_out(refit.fitted, floor);
+  });
+  if (found == refits.end()) return {};
+  auto swap = swap_for_better(workspace, found->fitted, floor, first_effect, options, events);
+  if (!swap || !at_floor(swap->in.fitted, floor)) return {};
+  return std::pair{&*found, std::move(*swap)};
+}
+
+}  // namespace hookeye
