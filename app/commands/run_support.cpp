@@ -157,7 +157,8 @@ void say_pictures(const std::filesystem::path& step, const Session& session) {
   if (std::filesystem::is_empty(step / "compare")) return;  // forces and positions alone
   session.say("pictures: {}\n", (step / "compare").string());
   if (std::filesystem::exists(step / "removed"))
-    session.say("          {} (what effects would remove)\n", (step / "removed").string());
+    session.say("          what effects would remove:\n          {}\n",
+                (step / "removed").string());
 }
 
 }  // namespace hookeye
