@@ -88,7 +88,8 @@ const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
 /// The first `most` of a race and the effect of the largest evidence: who is slow in two steps may
 /// still be right. So may a sensor's error, which moves no photo and so cannot win by them. A
 /// numerical error that comes near the first is refitted too, whatever its rank: nothing is named
-/// before the mesh is settled. Where nobody is ahead of it by more than a tie it goes first.
+/// before the mesh is settled. Where nobody is ahead of it by more than a tie it goes first,
+/// however far it got.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
@@ -99,17 +100,19 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
   };
   const Racer winner = racers.front();
   std::vector<Racer> kept;
+  const EffectScore* mesh = mesh_ahead(diagnosis, kTie);
   int places = most;
   for (size_t i = 0; i < racers.size() && static_cast<int>(i) < most; ++i)
     places -= racers[i].effect == first;
   for (Racer& racer : racers) {
-    const bool held = racer.effect == first || sensors_alone(*racer.form.ingredients.back());
+    const bool held = racer.effect == first || (mesh && racer.effect == mesh->effect) ||
+                      sensors_alone(*racer.form.ingredients.back());
     if (!held && !ties(racer.effect) && out_of_reach(racer, winner)) continue;
     if (held || places-- > 0 || (numerical(racer.effect) && may_tie(racer, winner)))
       kept.push_back(std::move(racer));
   }
   racers = std::move(kept);
-  if (const EffectScore* mesh = mesh_ahead(diagnosis, kTie))
+  if (mesh)
     std::stable_partition(racers.begin(), racers.end(),
                           [&](const Racer& racer) { return racer.effect == mesh->effect; });
 }
