@@ -38,11 +38,11 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
   for (const Effect* effect : tested) {
     if (std::count(options.without.begin(), options.without.end(), effect->name())) continue;
     std::string why_not;
-    Ingredients candidates = effect->candidates(model, &why_not);
-    if (already_in(fitted.form, effect->name())) {
-      candidates = effect->several() ? not_yet_in(fitted.form, candidates) : Ingredients{};
-      if (candidates.empty()) why_not = "already in the model";
-    }
+    const bool again = already_in(fitted.form, effect->name());
+    Ingredients candidates;
+    if (!again || effect->several()) candidates = effect->candidates(model, &why_not);
+    if (again) candidates = not_yet_in(fitted.form, candidates);
+    if (again && candidates.empty()) why_not = "already in the model";
     if (candidates.empty()) {
       EffectScore score;
       score.effect = effect->name();
