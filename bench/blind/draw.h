@@ -9,10 +9,15 @@ namespace hookeye::blind {
 /// Names in "gravity+creep", several effects at once; empty for "none".
 std::vector<std::string> effects_of(const std::string& hidden);
 
-/// A recipe that hides the effects of `hidden` in a body, a rig, a light and loads of its own. Each
-/// moves the surface by 1.5 to 3.5 px (rms) times `size`. `step_back` puts the cameras farther
-/// away, as one would whose body leaves the picture.
-std::string draw_recipe(const std::string& hidden, unsigned seed, double size = 1.0,
-                        int step_back = 0);
+struct Drawing {
+  double size = 1.0;  ///< times 1.5 to 3.5 px (rms): how far each hidden effect moves the surface
+  /// Photos of 200 x 260 px, a coarser mesh and two examples less: a search takes seconds, not
+  /// minutes, so that hundreds of captures can be looked at.
+  bool small = false;
+  int step_back = 0;  ///< puts the cameras farther away, as one would whose body leaves the picture
+};
+
+/// A recipe that hides the effects of `hidden` in a body, a rig, a light and loads of its own.
+std::string draw_recipe(const std::string& hidden, unsigned seed, const Drawing& drawing);
 
 }  // namespace hookeye::blind

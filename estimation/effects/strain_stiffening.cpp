@@ -71,24 +71,28 @@ class StrainStiffening final : public Effect {
       // the inner control point: the outer one may lie beyond what any photo shows
       const double change = values[0] / mu;
       return fmt::format(
-          "the material {} with strain: at an amount of shear of {} its modulus "
-          "is {} % {} than at rest",
+          "the material {} with strain: at an amount of shear of {} its modulus is {}",
           change >= 0 ? "stiffens" : "softens", figure(ramp_in(ingredient.variant()).front()),
-          figure(100.0 * std::abs(change)), change >= 0 ? "higher" : "lower");
+          against_rest(change));
     }
     // Uniaxial stretch 1.5: I1bar - 3 = 1.5^2 + 2/1.5 - 3; modulus 2 dW/dI1bar against its start.
     const double i = 1.5 * 1.5 + 2.0 / 1.5 - 3.0;
     const double change = 2.0 * (2.0 * values[0] * i + 3.0 * values[1] * i * i) / mu;
     return fmt::format(
-        "the material {} with strain: at 50 % stretch its modulus is {} % {} than "
-        "at rest (c2 {} {}, c3 {})",
-        change >= 0 ? "stiffens" : "softens", figure(100.0 * std::abs(change)),
-        change >= 0 ? "higher" : "lower", figure(values[0]), model.scene->capture.units.stress(),
-        figure(values[1]));
+        "the material {} with strain: at 50 % stretch its modulus is {} (c2 {} {}, c3 {})",
+        change >= 0 ? "stiffens" : "softens", against_rest(change), figure(values[0]),
+        model.scene->capture.units.stress(), figure(values[1]));
   }
 
  private:
   static constexpr const char* kAdditive = "additive at";
+
+  /// A modulus that is 1 + change times that at rest, in words.
+  static std::string against_rest(double change) {
+    if (change > 1.0) return fmt::format("{} times that at rest", figure(1.0 + change));
+    return fmt::format("{} % {} than at rest", figure(100.0 * std::abs(change)),
+                       change >= 0 ? "higher" : "lower");
+  }
 
   std::shared_ptr<const Ingredient> of_additive(const Model& model,
                                                 const std::vector<double>& at) const {

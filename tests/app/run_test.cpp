@@ -258,7 +258,7 @@ TEST_F(FittedRun, DiagnoseFitsAHundredColumnsAndNamesItsPictures) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(too_long(result.out), IsEmpty());
   EXPECT_THAT(result.out, HasSubstr("steps/00-base/compare\n"));
-  EXPECT_THAT(result.out, HasSubstr("steps/00-base/removed ("));
+  EXPECT_THAT(result.out, HasSubstr("steps/00-base/removed\n"));
   // What is on disk is not diagnosed again.
   const Result added = hookeye("add run gravity");
   ASSERT_EQ(added.status, 0) << added.err;

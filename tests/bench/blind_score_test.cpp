@@ -3,6 +3,7 @@
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
+#include "estimation/recipe.h"
 
 namespace hookeye::blind {
 namespace {
@@ -125,10 +126,25 @@ TEST(BlindScore, FailedRunsAreCountedApart) {
 }
 
 TEST(BlindDraw, IsGivenByTheSeed) {
-  EXPECT_EQ(draw_recipe("gravity", 7, 1.0, 0), draw_recipe("gravity", 7, 1.0, 0));
-  EXPECT_NE(draw_recipe("gravity", 7, 1.0, 0), draw_recipe("gravity", 8, 1.0, 0));
-  EXPECT_THAT(draw_recipe("gravity+creep", 7, 0.1, 0), HasSubstr("effect: creep, rms_px: 0."));
+  EXPECT_EQ(draw_recipe("gravity", 7, {}), draw_recipe("gravity", 7, {}));
+  EXPECT_NE(draw_recipe("gravity", 7, {}), draw_recipe("gravity", 8, {}));
+  Drawing tenth;
+  tenth.size = 0.1;
+  EXPECT_THAT(draw_recipe("gravity+creep", 7, tenth), HasSubstr("effect: creep, rms_px: 0."));
   EXPECT_THAT(effects_of("none"), testing::IsEmpty());
+}
+
+/// Small captures are of the same bodies, rigs and loads.
+TEST(BlindDraw, SmallOrNotTheDiceFallAlike) {
+  Drawing drawing;
+  const Recipe large = parse_recipe(draw_recipe("pressure+creep", 7, drawing), "large");
+  drawing.small = true;
+  const Recipe small = parse_recipe(draw_recipe("pressure+creep", 7, drawing), "small");
+  EXPECT_EQ(small.shape.size, large.shape.size);
+  EXPECT_EQ(small.cameras.azimuth, large.cameras.azimuth);
+  EXPECT_LT(small.examples.size(), large.examples.size());
+  ASSERT_EQ(small.hidden.size(), 2u);
+  EXPECT_EQ(small.hidden[1].rms_px, large.hidden[1].rms_px);
 }
 
 }  // namespace
