@@ -1,7 +1,7 @@
 // Do the statistics hold? Captures that hide nothing, over and over with other textures and noise:
 // p-values must be uniform (or larger), false alarms at most 5 %, intervals must cover, and a
 // placebo is no better off than the rest. With --hidden, captures that hide gravity: the placebo
-// must never come first. With --power, gravity of falling size: how often does it lead?
+// must never come first. With --power, effects of falling size: how often do they lead?
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -57,12 +57,13 @@ Counts count(const Options& options) {
   return out;
 }
 
-/// Share of captures in which self-weight leads the ranking of what stands out, over its size;
-/// before the race and the refits of discover.
-int power(Options options) {
-  fmt::print("  rms px  over noise  first  placebo\n");
+/// Share of captures in which `effect` leads the ranking of what stands out, over its size; before
+/// the race and the refits of discover. What moves nothing (light, exposure) falls from a third of
+/// a typical change.
+void power(Options options, const std::string& effect) {
   for (const double px : {0.3, 0.1, 0.05, 0.02, 0.01, 0.005}) {
-    options.hidden = fmt::format("hidden:\n  - {{effect: gravity, rms_px: {:g}}}\n", px);
+    options.hidden =
+        fmt::format("hidden:\n  - {{effect: {}, rms_px: {:g}, times: {:g}}}\n", effect, px, px);
     int named = 0, placebo = 0;
     double fall = 0.0;
     for (int i = 0; i < options.repeats; ++i) {
@@ -70,17 +71,27 @@ int power(Options options) {
       const test::Placebo rival(seed);
       DiagnosisOptions diagnosis;
       diagnosis.also = {&rival};
-      const test::Repeat one = test::repeat(capture_of(options, seed), diagnosis);
-      named += one.named.rfind("gravity", 0) == 0;
+      test::Repeat one = test::repeat(capture_of(options, seed), diagnosis);
+      named += one.named.rfind(effect + " ", 0) == 0;
       placebo += one.named.rfind("placebo", 0) == 0;
-      fall += one.gravity_fall / options.repeats;
+      fall += one.fall[effect] / options.repeats;
     }
     // sqrt of the fall: what the effect changes in a pixel, over its noise (rms)
-    fmt::print("  {:<6g}  {:<10.2f}  {:.2f}   {:.2f}\n", px, std::sqrt(fall),
+    fmt::print("  {:<30}{:<6g}  {:<10.2f}  {:.2f}   {:.2f}\n", effect, px, std::sqrt(fall),
                static_cast<double>(named) / options.repeats,
                static_cast<double>(placebo) / options.repeats);
     std::fflush(stdout);
   }
+}
+
+int powers(const Options& options, std::vector<std::string> effects) {
+  if (effects == std::vector<std::string>{"all"}) {
+    effects.clear();
+    for (const Effect* effect : catalogue())
+      if (effect->group() != EffectGroup::numerical) effects.push_back(effect->name());
+  }
+  fmt::print("  {:<30}rms px  over noise  first  placebo\n", "hidden");
+  for (const std::string& effect : effects) power(options, effect);
   return 0;
 }
 
@@ -109,7 +120,8 @@ int searches(const Options& options) {
 
 int main_of(int argc, char** argv) {
   Options options;
-  bool gravity = false, sizes = false, whole = false;
+  bool gravity = false, whole = false;
+  std::vector<std::string> sizes;
   CLI::App app("Statistics of captures that hide nothing");
   app.add_option("-n,--repeats", options.repeats, "Captures");
   app.add_option("--first-seed", options.first, "Seed of the first");
@@ -118,10 +130,12 @@ int main_of(int argc, char** argv) {
   app.add_flag("--other-mesh", options.other_mesh,
                "The truth is solved on a finer mesh; the intervals reach for it");
   app.add_flag("--hidden", gravity, "Self-weight is hidden; how often does a placebo come first?");
-  app.add_flag("--power", sizes, "Self-weight of falling size is hidden; how often does it lead?");
+  app.add_option("--power", sizes,
+                 "Effects (or `all`), each hidden in falling size: how often does it lead?")
+      ->delimiter(',');
   app.add_flag("--discover", whole, "The whole search in each, the mesh and refits included");
   CLI11_PARSE(app, argc, argv);
-  if (sizes) return power(options);
+  if (!sizes.empty()) return powers(options, sizes);
   if (whole) return searches(options);
   const int n = options.repeats, most = test::count_95(n);
   if (gravity) options.hidden = "hidden:\n  - {effect: gravity, rms_px: 1.5}\n";
@@ -146,4 +160,11 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace hookeye
 
-int main(int argc, char** argv) { return hookeye::main_of(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return hookeye::main_of(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return 1;
+  }
+}

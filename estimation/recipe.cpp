@@ -193,7 +193,8 @@ ExampleRecipe read_example(const YamlNode::Entry& entry) {
 }
 
 HiddenRecipe read_hidden(const YamlNode& node) {
-  const YamlSection section(node, "a hidden effect", {"effect", "variant", "values", "rms_px"});
+  const YamlSection section(node, "a hidden effect",
+                            {"effect", "variant", "values", "rms_px", "times"});
   HiddenRecipe hidden;
   const YamlNode& effect = section.need("effect", "effect: gravity");
   hidden.effect = read_string(effect, "effect");
@@ -216,6 +217,7 @@ HiddenRecipe read_hidden(const YamlNode& node) {
       hidden.values[entry.key] = {read_number(entry.value, entry.key), entry.place};
   }
   if (const YamlNode* size = section.find("rms_px")) hidden.rms_px = read_positive(*size, "rms_px");
+  if (const YamlNode* times = section.find("times")) hidden.times = read_positive(*times, "times");
   return hidden;
 }
 

@@ -69,6 +69,9 @@ struct HiddenRecipe {
   std::map<std::string, Value> values;  ///< what is not named stays at its null
   /// Values are scaled in common until they move the pictures by this much; empty: as they are.
   std::optional<double> rms_px;
+  /// On the values' distance from their nulls: the size of what moves nothing (light, exposure),
+  /// and where the scaling by `rms_px` starts.
+  double times = 1.0;
   Place place, variant_place, values_place;
 };
 

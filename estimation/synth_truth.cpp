@@ -211,7 +211,7 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
   VectorXd null(parameters.size());
   for (size_t i = 0; i < parameters.size(); ++i) null[i] = parameters[i].value;
   double largest = hidden.drawn ? largest_factor(parameters, null, told) : 1e300;
-  double factor = std::min(1.0, largest);
+  double factor = std::min(hidden.times, largest);
   const Touches touches = ingredient->touches();
   const int most = hidden.rms_px ? 8 : 1;
   for (int i = 0; i < most; ++i) {

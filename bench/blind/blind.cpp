@@ -141,7 +141,7 @@ int main_of(int argc, char** argv) {
   app.add_flag("--small", options.drawing.small,
                "Photos of 200 x 260 px and fewer loads: seconds a search, not minutes");
   app.add_option("--size", options.drawing.size,
-                 "Times 1.5 to 3.5 px (rms): the size of what is hidden");
+                 "Of what is hidden, times 1.5 to 3.5 px (rms) or one to two typical changes");
   app.add_flag("--left-out", options.left_out,
                "Leave what is hidden out of the catalogue: no other name may explain it");
   app.add_option("-e,--effects", options.effects,

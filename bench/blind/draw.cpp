@@ -85,8 +85,8 @@ std::string draw_recipe(const std::string& hidden, unsigned seed, const Drawing&
   const auto effects = effects_of(hidden);
   if (!effects.empty()) out += "hidden:\n";
   for (const std::string& effect : effects)
-    out +=
-        fmt::format("  - {{effect: {}, rms_px: {:.3f}}}\n", effect, drawing.size * dice(1.5, 3.5));
+    out += fmt::format("  - {{effect: {}, rms_px: {:.3f}, times: {:g}}}\n", effect,
+                       drawing.size * dice(1.5, 3.5), drawing.size);
   return out;
 }
 

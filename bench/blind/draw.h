@@ -10,7 +10,9 @@ namespace hookeye::blind {
 std::vector<std::string> effects_of(const std::string& hidden);
 
 struct Drawing {
-  double size = 1.0;  ///< times 1.5 to 3.5 px (rms): how far each hidden effect moves the surface
+  /// Times 1.5 to 3.5 px (rms), by which each hidden effect moves the surface; what moves nothing
+  /// has one to two typical changes times this.
+  double size = 1.0;
   /// Photos of 200 x 260 px, a coarser mesh and two examples less: a search takes seconds, not
   /// minutes, so that hundreds of captures can be looked at.
   bool small = false;

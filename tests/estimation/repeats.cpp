@@ -32,7 +32,7 @@ Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
   out.first = diagnosis.effects.front().effect;
   for (const auto& effect : diagnosis.effects) {
     out.p_value = std::min(out.p_value, effect.p_value);
-    if (effect.effect == "gravity") out.gravity_fall = effect.fall;
+    out.fall[effect.effect] = effect.fall;
     const bool is_there = other_mesh && effect.effect == "mesh_resolution";
     if (out.named.empty() && !is_there && nameable(effect, diagnosis))
       out.named = fmt::format("{} (as {:.4f} px would)", effect.effect,

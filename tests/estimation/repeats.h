@@ -1,6 +1,7 @@
 // Captures made over and over with other textures and noise: do the statistics hold?
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct Repeat {
   /// First effect that would be refitted, with the motion in px that would fall by as much; the
   /// mesh where it is not the truth's is none.
   std::string named;
-  double gravity_fall = 0.0;  ///< of sum (residual / noise)^2, as self-weight is scored
+  /// By effect: what it would take off sum (residual / noise)^2, as it is scored.
+  std::map<std::string, double> fall;
   /// The true mu lies in the interval: that for noise, or, where the truth has another mesh, that
   /// which reaches for the mesh.
   bool covered = false;

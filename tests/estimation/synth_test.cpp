@@ -162,6 +162,19 @@ TEST_F(SynthTest, ScalesAnEffectToTheAskedSize) {
   EXPECT_NEAR(made.hidden.at(0).rms_px, 0.5, 0.02);
 }
 
+TEST_F(SynthTest, TakesAShareOfToldAndDrawnValues) {
+  const auto hides = [&](const std::string& hidden) {
+    const Synthesis made = make(recipe_text("hidden:\n  - {" + hidden + "}\n", kFast),
+                                "share" + std::to_string(std::hash<std::string>{}(hidden)));
+    return nlohmann::json::parse(bytes(made.truth)).at("hidden").at(0).at("values");
+  };
+  EXPECT_NEAR(hides("effect: gravity, values: {gravity.z: -9810}, times: 0.5").at("gravity.z"),
+              -4905, 1e-6);
+  const auto whole = hides("effect: defocus"), tenth = hides("effect: defocus, times: 0.1");
+  for (const auto& [name, value] : whole.items())  // the null of a blur is 0
+    EXPECT_NEAR(tenth.at(name).get<double>(), 0.1 * value.get<double>(), 1e-9) << name;
+}
+
 TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
   for (const std::string shape : {"block", "cylinder", "blob"}) {
     const Recipe recipe =
