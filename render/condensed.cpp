@@ -3,6 +3,8 @@
 #include "render/condensed.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "render/vertex_sums.h"
@@ -27,27 +29,17 @@ struct NodeNormalEquations::Impl {
   double r2 = 0;
   size_t count = 0;
 
-  std::vector<int> number_vertices(const SurfaceMesh& surface, const ImageDerivative& dI);
+  int number(int vertex);
   size_t block_of(int i, int j);
   void take_photo_sums();
 };
 
-/// Numbers the vertices of all segments. Returns: vertex -> position in `seen`.
-std::vector<int> NodeNormalEquations::Impl::number_vertices(const SurfaceMesh& surface,
-                                                            const ImageDerivative& dI) {
-  std::vector<char> touched(surface.triangles.size(), 0);
-  for (const ImageDerivative::Part& part : dI.parts)
-    for (const DerivativeSegment& s : part.segments) touched[s.triangle] = 1;
-  std::vector<int> slot(surface.X.cols(), -1);
-  for (size_t t = 0; t < touched.size(); ++t)
-    if (touched[t])
-      for (int v : surface.triangles[t]) slot[v] = 0;
-  for (size_t v = 0; v < slot.size(); ++v)
-    if (slot[v] == 0) slot[v] = static_cast<int>(seen.size()), seen.push_back(static_cast<int>(v));
-  row.resize(seen.size());
-  sums.vertex.resize(seen.size());
-  sums.block.reserve(4 * seen.size());
-  return slot;
+/// Position in `seen` of a vertex that was not there.
+int NodeNormalEquations::Impl::number(int vertex) {
+  seen.push_back(vertex);
+  row.emplace_back().reserve(8);  // itself, and of some six neighbours those not before it
+  sums.vertex.emplace_back();
+  return static_cast<int>(seen.size()) - 1;
 }
 
 size_t NodeNormalEquations::Impl::block_of(int i, int j) {
@@ -73,25 +65,27 @@ using Part = ImageDerivative::Part;
 /// Gathers pixels that see the same triangles, as neighbours mostly do, and adds them together.
 class RunOfPixels {
  public:
-  RunOfPixels(const SurfaceMesh& surface, const std::vector<int>& slot,
-              NodeNormalEquations::Impl* sums)
-      : surface_(surface), slot_(slot), sums_(*sums), blocks_of_(surface.triangles.size()) {
+  RunOfPixels(const SurfaceMesh& surface, NodeNormalEquations::Impl* sums)
+      : surface_(surface),
+        slot_(surface.X.cols(), -1),
+        sums_(*sums),
+        singles_(surface.triangles.size()) {
     run_.numbers = sums->numbers();
     run_.with_photo = sums->columns.photo;
   }
 
   void add(const Part& part, size_t pixel, float w, float Bt_r) {
     if (w == 0 && Bt_r == 0) return flush();
-    const int first = part.first[pixel], last = part.first[pixel + 1];
-    const bool same = is(part, first, last);
+    const DerivativeSegment* segments = part.segments.data() + part.first[pixel];
+    const int count = part.first[pixel + 1] - part.first[pixel];
+    const bool same = is(segments, count);
     if (!same || run_.count == PixelRun::kPixels) flush();
-    if (!same) set(part, first, last);
+    if (!same) set(segments, count);
     if (run_.count == 0 && run_.with_photo) run_.photo = &part.photo[pixel];
-    float* g = run_.vertices.data() + run_.at(run_.count, 0);
-    if (triangles_.size() == 1)
-      set_corners(part.segments[first], g);
-    else
-      add_corners(part.segments.data() + first, g);
+    if (count != 1)
+      add_corners(segments, sum_.data() + run_.count * run_.step);
+    else if (run_.count == 0)
+      run_.vertices = segments->d.data();  // the next pixel's segment is the next
     run_.ww[run_.count] = w * w;
     run_.Bt_r[run_.count++] = Bt_r;
   }
@@ -107,67 +101,93 @@ class RunOfPixels {
   }
 
  private:
-  void set_corners(const DerivativeSegment& segment, float* g) const {
-    for (int k = 0; k < 3; ++k) {
-      float* to = g + local_[k] * kVertexFloats;  // maps: std::copy calls memmove for three floats
-      Eigen::Map<Eigen::Vector3f>(to + 0) = segment.d_position.col(k);
-      Eigen::Map<Eigen::Vector3f>(to + 3) = segment.d_second.col(k);
-    }
-  }
   void add_corners(const DerivativeSegment* segments, float* g) const {
-    std::fill(g, g + kVertexFloats * run_.slots.size(), 0.0f);
+    std::fill(g, g + run_.step, 0.0f);
     for (size_t s = 0; s < triangles_.size(); ++s)
       for (int k = 0; k < 3; ++k) {
         float* to = g + local_[3 * s + k] * kVertexFloats;
-        for (int c = 0; c < 3; ++c) to[c] += segments[s].d_position(c, k);
-        for (int c = 0; c < 3; ++c) to[3 + c] += segments[s].d_second(c, k);
+        for (int c = 0; c < 6; ++c) to[c] += segments[s].d(c, k);
       }
   }
-  bool is(const Part& part, int first, int last) const {
-    if (triangles_.size() != static_cast<size_t>(last - first)) return false;
-    for (int s = first; s < last; ++s)
-      if (triangles_[s - first] != part.segments[s].triangle) return false;
+  bool is(const DerivativeSegment* segments, int count) const {
+    if (triangles_.size() != static_cast<size_t>(count)) return false;
+    for (int s = 0; s < count; ++s)
+      if (triangles_[s] != segments[s].triangle) return false;
     return true;
   }
-  void set(const Part& part, int first, int last) {
-    std::vector<int>& slots = run_.slots;
-    triangles_.clear(), slots.clear();
-    for (int s = first; s < last; ++s) {
-      triangles_.push_back(part.segments[s].triangle);
-      for (int v : surface_.triangles[triangles_.back()]) slots.push_back(slot_[v]);
-    }
-    local_ = slots;
-    std::sort(slots.begin(), slots.end());
-    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    for (int& at : local_)
-      at = static_cast<int>(std::lower_bound(slots.begin(), slots.end(), at) - slots.begin());
-    if (triangles_.size() == 1) {
-      auto& known = blocks_of_[triangles_[0]];
-      if (known.empty()) known = blocks();
-      run_.block = known;
-    } else {
-      run_.block = blocks();
-    }
-    const size_t size = run_.at(PixelRun::kPixels, 0);
-    if (run_.vertices.size() < size) run_.vertices.resize(size);
+  void set(const DerivativeSegment* segments, int count) {
+    triangles_.clear();
+    for (int s = 0; s < count; ++s) triangles_.push_back(segments[s].triangle);
+    if (count == 1)
+      set_triangle(triangles_[0]);
+    else
+      set_triangles();
   }
 
-  std::vector<size_t> blocks() const {
-    const std::vector<int>& slots = run_.slots;
-    std::vector<size_t> out;
-    for (size_t a = 0; a < slots.size(); ++a)
-      for (size_t b = a; b < slots.size(); ++b) out.push_back(sums_.block_of(slots[a], slots[b]));
+  void set_triangle(int triangle) {
+    Single& one = singles_[triangle];
+    if (one.slots[0] < 0) {
+      const std::array<int, 3> slots = slots_of(triangle);
+      one.slots = slots;
+      std::sort(one.slots.begin(), one.slots.end());
+      for (int k = 0; k < 3; ++k) one.of_slot[place(one.slots, slots[k])] = 6 * k;
+      add_blocks(one.slots, one.block.data());
+    }
+    run_.slots = one.slots, run_.of_slot = one.of_slot, run_.block = one.block;
+    run_.step = sizeof(DerivativeSegment) / sizeof(float);
+  }
+
+  void set_triangles() {
+    slots_.clear(), local_.clear(), of_slot_.clear();
+    for (const int triangle : triangles_)
+      for (const int slot : slots_of(triangle)) local_.push_back(slot);
+    slots_ = local_;
+    std::sort(slots_.begin(), slots_.end());
+    slots_.erase(std::unique(slots_.begin(), slots_.end()), slots_.end());
+    for (int& at : local_) at = static_cast<int>(place(slots_, at));
+    for (size_t i = 0; i < slots_.size(); ++i) of_slot_.push_back(i * kVertexFloats);
+    block_.resize(slots_.size() * (slots_.size() + 1) / 2);
+    add_blocks(slots_, block_.data());
+    run_.slots = slots_, run_.of_slot = of_slot_, run_.block = block_;
+    run_.step = slots_.size() * kVertexFloats;
+    if (sum_.size() < PixelRun::kPixels * run_.step) sum_.resize(PixelRun::kPixels * run_.step);
+    run_.vertices = sum_.data();
+  }
+
+  std::array<int, 3> slots_of(int triangle) {
+    std::array<int, 3> out;
+    for (int k = 0; k < 3; ++k) {
+      int& slot = slot_[surface_.triangles[triangle][k]];
+      if (slot < 0) slot = sums_.number(surface_.triangles[triangle][k]);
+      out[k] = slot;
+    }
     return out;
   }
+  static size_t place(std::span<const int> sorted, int slot) {
+    return std::lower_bound(sorted.begin(), sorted.end(), slot) - sorted.begin();
+  }
+  void add_blocks(std::span<const int> slots, size_t* block) {
+    for (size_t a = 0; a < slots.size(); ++a)
+      for (size_t b = a; b < slots.size(); ++b) *block++ = sums_.block_of(slots[a], slots[b]);
+  }
 
+  /// What a run of pixels that see one triangle alone says of it; found once.
+  struct Single {
+    std::array<int, 3> slots = {-1, -1, -1};
+    std::array<size_t, 3> of_slot;
+    std::array<size_t, 6> block;
+  };
   const SurfaceMesh& surface_;
-  const std::vector<int>& slot_;
+  std::vector<int> slot_;  ///< vertex -> position in `seen`
   NodeNormalEquations::Impl& sums_;
-  std::vector<std::vector<size_t>> blocks_of_;  ///< of pixels that see this triangle alone
+  std::vector<Single> singles_;  ///< by triangle
   PixelRun run_;
-  std::vector<int> triangles_;
-  std::vector<int> local_;  ///< of corner k of segment s at 3s + k: position in slots
-  int added_ = 0;           ///< pixels since the photo's sums were taken
+  std::vector<int> triangles_;  ///< of run_
+  // of pixels with several segments
+  std::vector<float> sum_;
+  std::vector<int> slots_, local_;  ///< corner k of segment s has slot slots_[local_[3 s + k]]
+  std::vector<size_t> of_slot_, block_;
+  int added_ = 0;  ///< pixels since the photo's sums were taken
 };
 
 }  // namespace
@@ -182,8 +202,7 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   m.r2 = r.squaredNorm();
   m.count = static_cast<size_t>((w.array() != 0).count());
   m.photo.setZero(), m.b_photo.setZero();
-  const std::vector<int> slot = m.number_vertices(surface, dI);
-  RunOfPixels run(surface, slot, &m);
+  RunOfPixels run(surface, &m);
   Eigen::Index at = 0;
   for (const Part& part : dI.parts) {
     for (size_t i = 0; i < part.pixel.size(); ++i, ++at)

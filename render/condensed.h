@@ -13,8 +13,8 @@ namespace hookeye {
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Sensitivity of the vertices of one example's surface by the parameters: d(position) and, as
-/// DerivativeSegment::d_second, d(normal) or d(reference), each 3nv x m (the second may be empty),
-/// and d(photo numbers): kPhotoColumns x m.
+/// DerivativeSegment::d_second(), d(normal) or d(reference), each 3nv x m (the second may be
+/// empty), and d(photo numbers): kPhotoColumns x m.
 struct VertexSensitivity {
   RowMatrix position, second;
   Eigen::MatrixXd photo;

@@ -53,11 +53,11 @@ inline Vector3d interpolate(const Matrix3Xd& at, const std::array<int, 3>& t, co
 /// Follows up to 16 neighbouring rays; shadows and the reference camera's view included.
 void trace(const Frame& frame, const Vector2d* h, int count, Samples* out);
 
-/// What a ray says of its pixel at the fixed ray, by the first index of each group. 3 x 3 numbers
-/// have corner k of the triangle in column k: the derivative by the corner's number.
-constexpr int kByPosition = 0;  ///< 3 x 3: by deformed positions, unit vertex normals held
-constexpr int kBySecond = 9;    ///< 3 x 3: by unit vertex normals; by reference positions
-constexpr int kByPhoto = 18;    ///< by PhotoColumn, those before kBlur
+/// What a ray says of its pixel at the fixed ray, by the first index of each group. Those of the
+/// triangle's corners are a DerivativeSegment::ByVertex.
+constexpr int by_position(int corner) { return 6 * corner; }    ///< unit vertex normals held
+constexpr int by_second(int corner) { return 6 * corner + 3; }  ///< unit normal; reference position
+constexpr int kByPhoto = 18;  ///< by PhotoColumn, those before kBlur
 constexpr int kRayFloats = 32;
 static_assert(kByPhoto + kBlur <= kRayFloats);
 constexpr int kFloatsWithoutPhoto =

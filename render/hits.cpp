@@ -83,6 +83,7 @@ void shadow_ray_lanes(const Frame& f, Samples* s, RayPacket* rays) {
     const hn::RebindToSigned<Tag> ints;
     const Mask hit = hn::RebindMask(Tag(), hn::Load(ints, s->triangle + at) > hn::Set(ints, -1));
     store_mask(hn::And(hit, dot(normal, sun) > set(0)), s->lit + at);
+    if (!f.options.cast_shadows) continue;  // the sun lights what faces it
     const V3 origin = shadow_origin(f, *s, b, normal, sun, at);
     store(origin.x, rays->org_x + at);
     store(origin.y, rays->org_y + at);

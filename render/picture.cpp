@@ -101,9 +101,8 @@ const EdgeSegment* close_pixel(int pixel, size_t begin, const EdgeSegment* edge,
     if (!part->photo.empty()) part->photo.back().head<7>() += edge->d_camera.cast<float>();
     size_t s = begin;
     while (s < part->segments.size() && part->segments[s].triangle != edge->triangle) ++s;
-    if (s == part->segments.size())
-      part->segments.push_back({edge->triangle, Eigen::Matrix3f::Zero(), Eigen::Matrix3f::Zero()});
-    part->segments[s].d_position += edge->d_position.cast<float>();
+    if (s == part->segments.size()) part->segments.emplace_back().triangle = edge->triangle;
+    part->segments[s].d_position() += edge->d_position.cast<float>();
   }
   part->pixel.push_back(pixel);
   part->first.push_back(static_cast<int>(part->segments.size()));
@@ -181,8 +180,8 @@ class PixelSum {
     if (task_.frame.options.photo_derivative)
       part_->photo.back().head<kBlur>() +=
           Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
-    part_->segments.push_back({triangle, Eigen::Map<const Eigen::Matrix3f>(at + kByPosition),
-                               Eigen::Map<const Eigen::Matrix3f>(at + kBySecond)});
+    part_->segments.push_back(
+        {Eigen::Map<const DerivativeSegment::ByVertex>(at), {0, 0}, triangle});
   }
 
   const BandTask& task_;

@@ -31,12 +31,18 @@ struct RenderOptions {
 
 /// Derivative of one pixel by the vertices of one triangle. A pixel's derivative is the sum of its
 /// segments (rays or silhouette edges on several triangles give several).
-/// For vertex k of the triangle: d_position.col(k) by its deformed position, d_second.col(k) by its
-/// unit vertex normal or, with Texture::Source::photo (which has no light), by its reference
+/// For vertex k of the triangle: d_position().col(k) by its deformed position, d_second().col(k) by
+/// its unit vertex normal or, with Texture::Source::photo (which has no light), by its reference
 /// position.
 struct DerivativeSegment {
-  int triangle;
-  Eigen::Matrix3f d_position, d_second;
+  using ByVertex = Eigen::Matrix<float, 6, 3>;
+  ByVertex d = ByVertex::Zero();
+  float zero[2] = {0, 0};  ///< eight numbers can be read from any column on
+  int triangle = -1;
+  auto d_position() { return d.topRows<3>(); }
+  auto d_position() const { return d.topRows<3>(); }
+  auto d_second() { return d.bottomRows<3>(); }
+  auto d_second() const { return d.bottomRows<3>(); }
 };
 
 /// Derivative of one pixel by the photo's numbers: kPhotoColumns and zeros.

@@ -90,18 +90,14 @@ Light light(const Frame& f, const Samples& s, const V* b, V3 n, bool derivatives
 
 using Values = Lanes[kRayFloats];
 
-void store_products(V3 v, const V* b, int first, Values& out, size_t at) {
-  for (int k = 0; k < 3; ++k) {
-    store(v.x * b[k], out[first + 3 * k] + at);
-    store(v.y * b[k], out[first + 3 * k + 1] + at);
-    store(v.z * b[k], out[first + 3 * k + 2] + at);
-  }
-}
-
 void store3(V3 v, int first, Values& out, size_t at) {
   store(v.x, out[first] + at);
   store(v.y, out[first + 1] + at);
   store(v.z, out[first + 2] + at);
+}
+
+void store_second(V3 v, const V* b, Values& out, size_t at) {
+  for (int k = 0; k < 3; ++k) store3(b[k] * v, by_second(k), out, at);
 }
 
 /// Derivatives by light and, through vertex normals, by position; adds to by_bary. Returns that by
@@ -131,7 +127,7 @@ V3 differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const 
   by_n = normal.inverse * (by_n - dot(n, by_n) * n);
   for (int k = 0; k < 3; ++k)
     by_bary[k] = by_bary[k] + dot(by_n, load3(s.of_triangle + kNormals + 3 * k, at));
-  store_products(by_n, b, kBySecond, out, at);
+  store_second(by_n, b, out, at);
   return by_share * n;
 }
 
@@ -153,9 +149,9 @@ void add_facet_normal(const Samples& s, V3 by_n, ByCorners* by, size_t at) {
 }
 
 void store_corners(const ByCorners& by, const V* b, Values& out, size_t at) {
-  store3(b[0] * by.point - by.one - by.two, kByPosition, out, at);
-  store3(b[1] * by.point + by.one, kByPosition + 3, out, at);
-  store3(b[2] * by.point + by.two, kByPosition + 6, out, at);
+  store3(b[0] * by.point - by.one - by.two, by_position(0), out, at);
+  store3(b[1] * by.point + by.one, by_position(1), out, at);
+  store3(b[2] * by.point + by.two, by_position(2), out, at);
 }
 
 /// Under the fixed ray h, db = -(1 - b 1^T) Q dP b with P the corners in camera axes and Q its
@@ -217,16 +213,17 @@ void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivat
     I = gain * I;
     store(I, out->I + at);
     if (!derivatives) continue;
-    const int floats = wanted_floats(f.options);
-    for (int k = kBySecond; k < floats; ++k) store(set(0), value[k] + at);
+    const V3 none = {set(0), set(0), set(0)};
+    for (int k = 0; k < 3; ++k) store3(none, by_second(k), value, at);
+    for (int k = kByPhoto; k < wanted_floats(f.options); ++k) store(set(0), value[k] + at);
     if (f.options.photo_derivative) store(I, value[kByPhoto + kLogGain] + at);
     V by_bary[3];
     for (int k = 0; k < 3; ++k) by_bary[k] = gain * l.diffuse * load(a.by_bary[k] + at);
-    V3 by_facet = {set(0), set(0), set(0)};
+    V3 by_facet = none;
     if (f.photo.shaded)
       by_facet = differentiate_light(f, s, a, b, normal, l, by_bary, value, at);
     else if (f.spline)
-      store_products((gain * l.diffuse) * load3(a.by_reference, at), b, kBySecond, value, at);
+      store_second((gain * l.diffuse) * load3(a.by_reference, at), b, value, at);
     differentiate_motion(f, s, b, by_bary, by_facet, l, value, at);
   }
   if (!derivatives) return;

@@ -41,7 +41,7 @@ constexpr float kOne[1] = {1};
 template <int kNumbers>
 HWY_INLINE void add_vertices(const PixelRun& p, VertexSums* sums) {
   const size_t* block = p.block.data();
-  const auto slot = [&](size_t i) { return Rows{p.vertices.data() + p.at(0, i), p.at(1, 0)}; };
+  const auto slot = [&](size_t i) { return Rows{p.vertices + p.of_slot[i], p.step}; };
   const Rows photo = {p.with_photo ? p.photo->data() : nullptr, kPhotoFloats}, one = {kOne, 0};
   for (size_t i = 0; i < p.slots.size(); ++i) {
     VertexRow& row = sums->vertex[p.slots[i]];

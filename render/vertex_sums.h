@@ -2,13 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "render/renderer.h"
 
 namespace hookeye {
 
-constexpr int kVertexFloats = 8;  ///< position 0-2, normal or reference position 3-5, two zeros
+constexpr int kVertexFloats = 8;  ///< position 0-2, normal or reference position 3-5, and two
 
 /// Floats: each sums the few hundred pixels about a vertex.
 struct alignas(64) VertexBlock {
@@ -31,18 +32,18 @@ struct VertexSums {
 /// Derivatives g of neighbouring pixels by the same vertices and by the photo's numbers.
 struct PixelRun {
   static constexpr int kPixels = 16;
-  std::vector<int> slots;                  ///< of VertexSums::vertex
-  std::vector<size_t> block;               ///< of slots (i, j), i <= j, row by row
-  int numbers = 6;                         ///< of a vertex: 6, or 3 where the last three are zero
-  bool with_photo = true;                  ///< false: nothing is summed with the photo's numbers
-  int count = 0;                           ///< pixels
-  std::vector<float> vertices;             ///< kVertexFloats by slot and pixel
+  std::span<const int> slots;     ///< of VertexSums::vertex
+  std::span<const size_t> block;  ///< of slots (i, j), i <= j, row by row
+  int numbers = 6;                ///< of a vertex: 6, or 3 where the last three are zero
+  bool with_photo = true;         ///< false: nothing is summed with the photo's numbers
+  int count = 0;                  ///< pixels
+  /// By vertex, kVertexFloats from the first pixel's on; what stands in the last two does not
+  /// count. The next pixel's are `step` floats later, those of slot i `of_slot[i]`.
+  const float* vertices = nullptr;
+  size_t step = 0;
+  std::span<const size_t> of_slot;
   const PhotoDerivative* photo = nullptr;  ///< of the first; the others follow
   float ww[kPixels], Bt_r[kPixels];
-  /// Of a pixel's slot.
-  size_t at(int pixel, size_t slot) const {
-    return (static_cast<size_t>(pixel) * slots.size() + slot) * kVertexFloats;
-  }
 };
 
 /// M += ww g g^T, b += Bt_r g.

@@ -39,8 +39,9 @@ TEST(condensed, equals_explicit_rows) {
         for (int k = 0; k < 3; ++k) {
           const DerivativeSegment& g = dI.segments[s];
           const int v = 3 * surface.triangles[g.triangle][k];
-          J.row(i) += g.d_position.col(k).cast<double>().transpose() * S.position.middleRows(v, 3);
-          J.row(i) += g.d_second.col(k).cast<double>().transpose() * S.second.middleRows(v, 3);
+          J.row(i) +=
+              g.d_position().col(k).cast<double>().transpose() * S.position.middleRows(v, 3);
+          J.row(i) += g.d_second().col(k).cast<double>().transpose() * S.second.middleRows(v, 3);
         }
     J = (w.asDiagonal() * J).eval();
     const auto sums = NodeNormalEquations::accumulate(surface, out.dI, r, w, Bt_r, {});
@@ -66,7 +67,7 @@ void expect_same(const ImageDerivative& first, const ImageDerivative& second) {
   EXPECT_TRUE(a.d_photo == b.d_photo);
   ASSERT_EQ(a.segments.size(), b.segments.size());
   for (size_t i = 0; i < a.segments.size(); ++i)
-    ASSERT_TRUE(a.segments[i].d_position == b.segments[i].d_position);
+    ASSERT_TRUE(a.segments[i].d_position() == b.segments[i].d_position());
 }
 
 TEST(condensed, without_parameters_and_without_a_body) {
@@ -125,8 +126,8 @@ TEST(renderer, without_the_photos_numbers_motions_stay_the_same) {
       ASSERT_EQ(a.segments.size(), b.segments.size());
       for (size_t s = 0; s < a.segments.size(); ++s) {
         EXPECT_EQ(a.segments[s].triangle, b.segments[s].triangle);
-        EXPECT_EQ(a.segments[s].d_position, b.segments[s].d_position);
-        EXPECT_EQ(a.segments[s].d_second, b.segments[s].d_second);
+        EXPECT_EQ(a.segments[s].d_position(), b.segments[s].d_position());
+        EXPECT_EQ(a.segments[s].d_second(), b.segments[s].d_second());
       }
     }
     const Eigen::Index m = 3, nv = 3 * surface.X.cols();
@@ -184,8 +185,8 @@ TEST(renderer, instruction_sets_agree) {
     for (size_t i = 0; i < best.I.values.size(); ++i)
       ASSERT_NEAR(other.I.values[i], best.I.values[i], 1e-6f);
     for (size_t i = 0; i < b.segments.size(); ++i)
-      ASSERT_LT((a.segments[i].d_position - b.segments[i].d_position).norm(),
-                1e-4f + 1e-4f * b.segments[i].d_position.norm());
+      ASSERT_LT((a.segments[i].d_position() - b.segments[i].d_position()).norm(),
+                1e-4f + 1e-4f * b.segments[i].d_position().norm());
   }
   hwy::SetSupportedTargetsForTest(0);
 }

@@ -157,9 +157,9 @@ inline VectorXd directional(const Renderer& renderer, const Rendering& r, const 
       const DerivativeSegment& g = dI.segments[s];
       for (int k = 0; k < 3; ++k) {
         const int v = renderer.surface().triangles[g.triangle][k];
-        if (dx) d += g.d_position.col(k).cast<double>().dot(dx->col(v));
+        if (dx) d += g.d_position().col(k).cast<double>().dot(dx->col(v));
         const Matrix3Xd* second = dx_reference ? dx_reference : dx ? &dn : nullptr;
-        if (second) d += g.d_second.col(k).cast<double>().dot(second->col(v));
+        if (second) d += g.d_second().col(k).cast<double>().dot(second->col(v));
       }
     }
     out[dI.pixel[i]] = d;
