@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "estimation/contest.h"
@@ -45,85 +46,6 @@ const char* to_string(Verdict verdict) {
     default:
       return "unexplained";
   }
-}
-
-namespace {
-
-struct EffectiveMisfit {
-  double r2 = 0.0, count = 0.0;
-  EffectiveMisfit operator+(const EffectiveMisfit& other) const {
-    return {r2 + other.r2, count + other.count};
-  }
-  /// Variance, `least` at least.
-  double noise(double least) const { return count > 0.0 ? std::max(least, r2 / count) : least; }
-  double log_likelihood(double least) const {
-    return -0.5 * count * std::log(noise(least)) - 0.5 * r2 / noise(least);
-  }
-};
-
-/// |z|^2 of the photos of `fitted` with the weights that the correlation in `reference` gives; of
-/// all examples or of those held out.
-EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool held_out_alone) {
-  EffectiveMisfit out;
-  for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
-    const auto& example = fitted.evaluation.examples[e];
-    if (held_out_alone && !example.held_out) continue;
-    for (size_t k = 0; k < example.photos.size(); ++k) {
-      const FlowStatistics own = flow_statistics(example.photos[k].flow);
-      const FlowStatistics weight =
-          flow_statistics(reference.evaluation.examples[e].photos[k].flow);
-      if (own.count == 0.0 || weight.count == 0.0) continue;
-      const double w = weight.effective / weight.count;
-      out.r2 += w * own.variance * weight.count;
-      out.count += w * weight.count;
-    }
-  }
-  return out;
-}
-
-/// The same of forces, moments and positions.
-EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
-  EffectiveMisfit out;
-  for (const auto& example : fitted.evaluation.examples)
-    for (const auto& measured : example.measured)
-      if (!held_out_alone || example.held_out)
-        out = out + EffectiveMisfit{measured.r.squaredNorm(), 3.0};
-  return out;
-}
-
-int parameters_of_sensors(const ModelForm& form) {
-  int count = 0;
-  for (const auto& ingredient : form.ingredients)
-    if (sensors_alone(*ingredient)) count += static_cast<int>(ingredient->parameters().size());
-  return count;
-}
-
-}  // namespace
-
-double measured_noise2(const Fitted& fitted) { return measured_misfit(fitted, false).noise(1.0); }
-
-double refit_score(const Fitted& fitted, const Yardstick& yardstick) {
-  const EffectiveMisfit photos = photo_misfit(fitted, *yardstick.reference, false);
-  const EffectiveMisfit measured = measured_misfit(fitted, false);
-  const int of_sensors = parameters_of_sensors(fitted.form);
-  const auto price = [](int parameters, double count) {
-    return 0.5 * parameters * std::log(std::max(count, 2.0));
-  };
-  return photos.log_likelihood(yardstick.floor->cell_variance) -
-         0.5 * measured.r2 / yardstick.measured_noise2 -
-         price(fitted.form.size() - of_sensors, photos.count + measured.count) -
-         price(of_sensors, measured.count);
-}
-
-bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor, double least) {
-  const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(true), 2); };
-  const EffectiveMisfit before = measured_misfit(without, true),
-                        after = measured_misfit(with, true);
-  double loss = 0.5 * (after.r2 - before.r2) / std::min(before.noise(1.0), after.noise(1.0));
-  if (r2(with) > r2(without) + least)
-    loss += photo_misfit(without, with, true).log_likelihood(floor.cell_variance) -
-            photo_misfit(with, with, true).log_likelihood(floor.cell_variance);
-  return loss < kTie;
 }
 
 namespace {
@@ -234,110 +156,204 @@ void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& m
     tie.clear();
 }
 
-}  // namespace
+/// Of those that lost the contest of `then` by less of chi^2 than what later steps took away, the
+/// nearest; null where there is none.
+const Rival* narrow_loser(const Step& then, const Fitted& last) {
+  const double won = std::pow(then.fitted.evaluation.chi(false), 2);
+  const Rival* nearest = nullptr;
+  double least = won - std::pow(last.evaluation.chi(false), 2);
+  for (const Rival& rival : then.rivals) {
+    const double lag = std::pow(rival.chi_fit, 2) - won;
+    if (rival.effect == then.added || numerical(rival.effect) || lag >= least) continue;
+    nearest = &rival, least = lag;
+  }
+  return nearest;
+}
 
-std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
-                                                        const DiscoverOptions& options,
-                                                        const DiscoverEvents& events) {
-  Discovery out;
-  out.tie = options.tie;
-  const size_t base_ingredients =
-      base_form(workspace.scene().shared_from_this()).ingredients.size();
-  out.steps.push_back(std::move(first));
-  std::string refused;           // why the best of the last contest was not added
-  std::optional<Step> together;  // second of a pair, once the first is written
-  for (int added = 0;; ++added) {
-    Step& step = out.steps.back();
-    auto diagnosis = diagnose(workspace, step.fitted, options.diagnosis);
+/// The loop: one step after the other, until nothing is left to add or to swap.
+class Search {
+ public:
+  Search(Workspace& workspace, const DiscoverOptions& options, const DiscoverEvents& events)
+      : workspace_(workspace),
+        options_(options),
+        events_(events),
+        base_(base_form(workspace.scene().shared_from_this()).ingredients.size()) {}
+
+  std::variant<Discovery, NumericalFailure> run(Step first) {
+    out_.tie = options_.tie;
+    const auto start = std::ssize(first.fitted.form.ingredients);
+    out_.steps.push_back(std::move(first));
+    // Swaps add nothing, and each betters the score; were they to go in circles, this ends it.
+    const size_t most_steps = 1 + 3 * static_cast<size_t>(std::max(options_.max_effects, 0));
+    while (true) {
+      if (auto failure = diagnose_newest()) return *failure;
+      if (together_) {
+        out_.steps.push_back(*std::exchange(together_, std::nullopt));
+        continue;
+      }
+      if (out_.steps.size() >= most_steps) break;
+      const auto added = std::ssize(newest().fitted.form.ingredients) - start;
+      auto went_on = next_step(options_.max_effects - static_cast<int>(added));
+      if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
+      if (!std::get<bool>(went_on) && !reopened()) break;
+    }
+    return finish();
+  }
+
+ private:
+  /// Whether there is a step more.
+  using WentOn = std::variant<bool, NumericalFailure>;
+
+  Step& newest() { return out_.steps.back(); }
+
+  std::optional<NumericalFailure> diagnose_newest() {
+    Step& step = newest();
+    auto diagnosis = diagnose(workspace_, step.fitted, options_.diagnosis);
     if (auto* failure = std::get_if<NumericalFailure>(&diagnosis)) return *failure;
     step.diagnosis = std::get<Diagnosis>(std::move(diagnosis));
     reach_for_mesh(step.fitted, step.diagnosis);
-    out.floor = step.diagnosis.floor;
-    if (events.step) events.step(step);
-    if (together) {
-      out.steps.push_back(*std::exchange(together, std::nullopt));
-      continue;
-    }
-    if (added >= options.max_effects || only_numerical_left(step.fitted, step.diagnosis)) break;
+    out_.floor = step.diagnosis.floor;
+    if (events_.step) events_.step(step);
+    return {};
+  }
+
+  /// `room`: for how many effects more.
+  WentOn next_step(int room) {
+    Step& step = newest();
+    if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis)) return false;
     if (auto better =
-            swap_for_better(workspace, step.fitted, out.floor, base_ingredients, options, events)) {
-      out.steps.push_back(swapped_step(std::move(*better)));
-      continue;
+            swap_for_better(workspace_, step.fitted, out_.floor, base_, options_, events_)) {
+      out_.steps.push_back(swapped_step(std::move(*better)));
+      return true;
     }
-    auto contest = refit_leaders(workspace, step, options, events);
-    if (auto* failure = std::get_if<NumericalFailure>(&contest)) return *failure;
-    auto& [raced, ranked, before, reference, noise2] = std::get<Contest>(contest);
-    if (ranked.empty()) break;
-    Refit& winner = ranked.front();
+    auto refitted = refit_leaders(workspace_, step, options_, events_);
+    if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
+    Contest& contest = std::get<Contest>(refitted);
+    if (contest.refits.empty()) return false;
     if (auto found =
-            swap_behind_refit(workspace, ranked, out.floor, base_ingredients, options, events)) {
-      Step leading;
-      leading.name = leading.added = found->first->effect;
-      leading.raced = std::move(raced);
-      leading.fitted = found->first->fitted;
-      together = swapped_step(std::move(found->second));
-      out.steps.push_back(std::move(leading));
-      continue;
+            swap_behind_refit(workspace_, contest.refits, out_.floor, base_, options_, events_)) {
+      add_two(*found->first, std::move(contest.raced), swapped_step(std::move(found->second)));
+      return true;
     }
-    refused = why_refused(step, before, winner);
-    if (!refused.empty()) {
-      if (at_floor(step.fitted, step.diagnosis.floor) &&
-          measured_explained(step.fitted, step.diagnosis))
-        break;
-      auto tried = refit_pairs(workspace, step, std::get<Contest>(contest), options, events);
-      if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
-      auto& pair = std::get<std::optional<Pair>>(tried);
-      if (!pair || added + 2 > options.max_effects ||
-          !why_refused(step, before, pair->second).empty())
-        break;
-      refused.clear();
-      Step leading;
-      leading.name = leading.added = pair->first.effect;
-      leading.raced = std::move(raced);
-      leading.fitted = std::move(pair->first.fitted);
-      together.emplace();
-      together->name = together->added = pair->second.effect;
-      together->fitted = std::move(pair->second.fitted);
-      out.steps.push_back(std::move(leading));
-      continue;
-    }
+    refused_ = why_refused(step, contest.before, contest.refits.front());
+    if (!refused_.empty()) return add_pair(contest, room);
+    add_winner(contest);
+    return true;
+  }
+
+  void add_two(const Refit& first, std::vector<Raced> raced, Step second) {
+    Step leading;
+    leading.name = leading.added = first.effect;
+    leading.raced = std::move(raced);
+    leading.fitted = first.fitted;
+    together_ = std::move(second);
+    out_.steps.push_back(std::move(leading));
+  }
+
+  /// Where the best alone does not stand.
+  WentOn add_pair(Contest& contest, int room) {
+    const Step& step = newest();
+    if (at_floor(step.fitted, step.diagnosis.floor) &&
+        measured_explained(step.fitted, step.diagnosis))
+      return false;
+    auto tried = refit_pairs(workspace_, step, contest, options_, events_);
+    if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
+    auto& pair = std::get<std::optional<Pair>>(tried);
+    if (!pair || room < 2 || !why_refused(step, contest.before, pair->second).empty()) return false;
+    refused_.clear();
+    Step second;
+    second.name = second.added = pair->second.effect;
+    second.fitted = std::move(pair->second.fitted);
+    add_two(pair->first, std::move(contest.raced), std::move(second));
+    return true;
+  }
+
+  void add_winner(Contest& contest) {
+    Refit& winner = contest.refits.front();
     Step next;
     next.name = next.added = winner.effect;
-    next.raced = std::move(raced);
+    next.raced = std::move(contest.raced);
     std::vector<const Refit*> equals;
-    for (const auto& rival : ranked) {
+    for (const auto& rival : contest.refits) {
       const Evaluation& left = rival.fitted.evaluation;
       next.rivals.push_back(
           {rival.effect, rival.score - winner.score, left.chi(false), left.chi(true)});
       if (&rival != &winner && rival.score > winner.score - kTie) equals.push_back(&rival);
     }
     next.fitted = std::move(winner.fitted);
-    if (next.fitted.form.ingredients.size() > base_ingredients + 1)
-      if (auto lighter = backward(workspace, next.fitted, out.floor, base_ingredients, options)) {
+    if (next.fitted.form.ingredients.size() > base_ + 1)
+      if (auto lighter = backward(workspace_, next.fitted, out_.floor, base_, options_)) {
         next.dropped = {lighter->effect}, next.fitted = std::move(lighter->fitted);
         std::erase_if(equals, [&](const Refit* rival) {
-          return !equals_after_swap(workspace, rival->fitted, next.fitted, lighter->effect,
-                                    out.floor, options.fit);
+          return !equals_after_swap(workspace_, rival->fitted, next.fitted, lighter->effect,
+                                    out_.floor, options_.fit);
         });
       }
-    settle_tie(out.tie, effects_in(next.fitted.form));
-    if (out.tie.size() > 1) {
-      auto asked = ask_tie_again(workspace, next.fitted, out.tie, out.floor, base_ingredients,
-                                 options, events);
-      out.tie = std::move(asked.tie);
-      if (asked.better) together = swapped_step(std::move(*asked.better));
+    settle_tie(out_.tie, effects_in(next.fitted.form));
+    if (out_.tie.size() > 1) {
+      auto asked =
+          ask_tie_again(workspace_, next.fitted, out_.tie, out_.floor, base_, options_, events_);
+      out_.tie = std::move(asked.tie);
+      if (asked.better) together_ = swapped_step(std::move(*asked.better));
     }
-    if (!equals.empty() && out.tie.empty()) out.tie.push_back(next.added);
-    for (const Refit* rival : equals) out.tie.push_back(rival->effect);
-    out.steps.push_back(std::move(next));
+    if (!equals.empty() && out_.tie.empty()) out_.tie.push_back(next.added);
+    for (const Refit* rival : equals) out_.tie.push_back(rival->effect);
+    out_.steps.push_back(std::move(next));
   }
-  std::string why;
-  const Step& last = out.steps.back();
-  out.missing = effects_in(last.fitted.form);
-  settle_tie(out.tie, out.missing);
-  out.verdict = judge(last.fitted, last.diagnosis, out.tie, &why);
-  out.sentence = say(out, why, refused);
-  return out;
+
+  /// Contests that were won by less than what was missing then are held again: a coarse mesh may
+  /// have let swelling pass for a suction. The nearest loser takes the winner's place in the last
+  /// model.
+  bool reopened() {
+    const Fitted& last = newest().fitted;
+    const auto standing = effects_in(last.form);
+    const auto stands = [&](const std::string& effect) {
+      return std::find(standing.begin(), standing.end(), effect) != standing.end();
+    };
+    for (size_t k = 0; k + 1 < out_.steps.size(); ++k) {
+      const Step& then = out_.steps[k];
+      if (numerical(then.added) || !stands(then.added)) continue;
+      const Rival* rival = narrow_loser(then, last);
+      if (!rival || stands(rival->effect) || !asked_.insert({then.added, rival->effect}).second)
+        continue;
+      auto asked = ask_tie_again(workspace_, last, {then.added, rival->effect}, out_.floor, base_,
+                                 options_, events_);
+      if (asked.better) {
+        out_.steps.push_back(swapped_step(std::move(*asked.better)));
+        settle_tie(out_.tie, effects_in(newest().fitted.form));
+        return true;
+      }
+      if (out_.tie.empty()) out_.tie = std::move(asked.tie);
+    }
+    return false;
+  }
+
+  Discovery finish() {
+    std::string why;
+    const Step& last = newest();
+    out_.missing = effects_in(last.fitted.form);
+    settle_tie(out_.tie, out_.missing);
+    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why);
+    out_.sentence = say(out_, why, refused_);
+    return std::move(out_);
+  }
+
+  Workspace& workspace_;
+  const DiscoverOptions& options_;
+  const DiscoverEvents& events_;
+  const size_t base_;  ///< ingredients of the capture's own model
+  Discovery out_;
+  std::string refused_;           ///< why the best of the last contest was not added
+  std::optional<Step> together_;  ///< second of a pair, once the first is written
+  std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
+};
+
+}  // namespace
+
+std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
+                                                        const DiscoverOptions& options,
+                                                        const DiscoverEvents& events) {
+  return Search(workspace, options, events).run(std::move(first));
 }
 
 std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const ModelForm& form,

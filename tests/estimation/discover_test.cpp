@@ -14,15 +14,9 @@
 namespace hookeye {
 namespace {
 
+using test::discover;
 using test::SmallCapture;
 using test::SmallScene;
-
-Discovery discover(const SmallScene& small, const DiscoverOptions& options = {}) {
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  auto found = discover(workspace, form, form.initial(), options);
-  return std::get<Discovery>(std::move(found));
-}
 
 const Parameter& parameter(const Fitted& fitted, const std::string& name, double* value) {
   static std::vector<Parameter> all;

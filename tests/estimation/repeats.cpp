@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <stdexcept>
 
 #include "estimation/effects/toolbox.h"
 
@@ -42,13 +41,7 @@ Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
 }
 
 Searched search(const SmallCapture& capture) {
-  const SmallScene small(capture);
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  auto result = discover(workspace, form, form.initial(), DiscoverOptions{});
-  if (const auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(failure->example + ": " + failure->reason);
-  const auto found = std::get<Discovery>(std::move(result));
+  const Discovery found = discover(SmallScene(capture));
   const Fitted& last = found.steps.back().fitted;
   Searched out;
   for (const std::string& name : found.missing)

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <stdexcept>
 
 #include "estimation/synth.h"
 
@@ -54,5 +55,14 @@ SmallScene::SmallScene(const SmallCapture& capture) {
 }
 
 SmallScene::~SmallScene() { fs::remove_all(folder_); }
+
+Discovery discover(const SmallScene& small, const DiscoverOptions& options) {
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  auto found = hookeye::discover(workspace, form, form.initial(), options);
+  if (const auto* failure = std::get_if<NumericalFailure>(&found))
+    throw std::runtime_error(failure->example + ": " + failure->reason);
+  return std::get<Discovery>(std::move(found));
+}
 
 }  // namespace hookeye::test

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "estimation/model.h"
+#include "estimation/discover.h"
 
 namespace hookeye::test {
 
@@ -30,5 +30,8 @@ class SmallScene {
  private:
   std::filesystem::path folder_;
 };
+
+/// The whole search in it; throws where it fails.
+Discovery discover(const SmallScene& small, const DiscoverOptions& options = {});
 
 }  // namespace hookeye::test

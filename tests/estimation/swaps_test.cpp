@@ -11,22 +11,15 @@ namespace {
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-Discovery found_in(const test::SmallCapture& capture) {
-  const test::SmallScene small(capture);
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  return std::get<Discovery>(hookeye::discover(workspace, form, form.initial(), {}));
-}
-
 /// Of two loads, creep and softening are one: the third tells, which is held out.
 TEST(Swaps, ADoubleThatHeldOutPhotosRefuseGivesItsPlace) {
-  const Discovery discovery = found_in(
+  const Discovery discovery = test::discover(test::SmallScene(
       {.hidden =
            "hidden:\n  - {effect: camera_pose, variant: cam0 from twist on, values: "
            "{camera_pose.cam0.rx: -0.00264, camera_pose.cam0.ry: 0.00162, camera_pose.cam0.tx: "
            "-0.43, camera_pose.cam0.ty: 0.36, camera_pose.cam0.tz: -0.464}}\n"
            "  - {effect: creep, variant: steadily with the order, values: {creep.c: 0.812}}\n",
-       .seed = 3});
+       .seed = 3}));
   EXPECT_THAT(discovery.missing, UnorderedElementsAre("camera_pose", "creep"));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
 }
@@ -34,11 +27,11 @@ TEST(Swaps, ADoubleThatHeldOutPhotosRefuseGivesItsPlace) {
 /// Creep was added first for softening, and kept the wall from winning: with it the fitted photos
 /// are explained and the held-out ones are worse than ever.
 TEST(Swaps, ARightRefitIsNotRefusedForAWrongPartner) {
-  const Discovery discovery = found_in(
+  const Discovery discovery = test::discover(test::SmallScene(
       {.hidden = "hidden:\n  - {effect: softening, variant: from side on, values: {softening.d: "
                  "0.4212}}\n  - {effect: floor_contact, variant: \"plane at +x side, position "
                  "10.343\", values: {floor_contact.k: 1.3996e-4}}\n",
-       .seed = 7});
+       .seed = 7}));
   EXPECT_THAT(discovery.missing, UnorderedElementsAre("softening", "floor_contact"));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
 }
@@ -46,13 +39,26 @@ TEST(Swaps, ARightRefitIsNotRefusedForAWrongPartner) {
 /// While the misplaced set-up is not in the model, stiffening and a wall do as well as softening or
 /// better: neither the choice nor the tie of then may stand.
 TEST(Swaps, WhatWasChosenBesideALargerMisfitIsAskedAgain) {
-  const Discovery discovery = found_in(
+  const Discovery discovery = test::discover(test::SmallScene(
       {.hidden = "hidden:\n  - {effect: placement, values: {placement.rx: 0.00569, placement.ry: "
                  "-0.00311, placement.rz: 0.00417, placement.tx: 0.2294, placement.ty: -0.1954, "
                  "placement.tz: -0.2024}}\n"
                  "  - {effect: softening, variant: from side on, values: {softening.d: 0.417}}\n",
-       .seed = 3});
+       .seed = 3}));
   EXPECT_THAT(discovery.missing, UnorderedElementsAre("placement", "softening"));
+  EXPECT_THAT(discovery.tie, IsEmpty());
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+}
+
+/// On a mesh that is too coarse swelling passes for a suction, by less than the mesh errs.
+TEST(Swaps, AContestWonByLessThanTheMeshErredIsHeldAgain) {
+  const Discovery discovery = test::discover(test::SmallScene(
+      {.hidden = "hidden:\n  - {effect: pressure, variant: on the whole surface, values: "
+                 "{pressure.surface: -0.02}}\n",
+       .truth_mesh = "0.6"}));
+  EXPECT_EQ(discovery.steps.at(1).added, "swelling");
+  EXPECT_THAT(discovery.missing, UnorderedElementsAre("mesh_resolution", "pressure"));
+  EXPECT_THAT(discovery.steps.back().dropped, testing::ElementsAre("swelling"));
   EXPECT_THAT(discovery.tie, IsEmpty());
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
 }

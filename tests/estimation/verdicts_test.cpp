@@ -124,10 +124,7 @@ TEST(Discover, HeldOutPhotosTellTheFormsOfAnEffectApart) {
              fmt::format("hidden:\n  - {{effect: creep, variant: {}, values: {{creep.c: {}}}}}\n",
                          hidden.variant, hidden.c),
          .seed = hidden.seed});
-    Workspace workspace(small.scene);
-    const ModelForm form = base_form(small.scene);
-    const auto found = hookeye::discover(workspace, form, form.initial(), {});
-    const Discovery& discovery = std::get<Discovery>(found);
+    const Discovery discovery = test::discover(small);
     EXPECT_THAT(discovery.missing, ElementsAre("creep"));
     EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
     const Fitted& last = discovery.steps.back().fitted;
@@ -143,10 +140,7 @@ TEST(Discover, WhatTheModulusHadMadeUpForIsFound) {
       {.hidden = "hidden:\n  - {effect: floor_contact, variant: \"plane at +z side, position "
                  "34.215\", values: {floor_contact.k: 4.94e-4}}\n",
        .seed = 11});
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  const auto found = hookeye::discover(workspace, form, form.initial(), {});
-  const Discovery& discovery = std::get<Discovery>(found);
+  const Discovery discovery = test::discover(small);
   EXPECT_GT(discovery.steps.front().fitted.p[0], 0.025);
   EXPECT_THAT(discovery.missing, ElementsAre("floor_contact"));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
@@ -163,10 +157,7 @@ TEST(Discover, WhoTiesInEvidenceIsRefittedHoweverSlow) {
       {.hidden = "hidden:\n  - {effect: softening, variant: from side on, values: {softening.d: "
                  "0.412937}}\n",
        .seed = 11});
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  const auto found = hookeye::discover(workspace, form, form.initial(), {});
-  const Discovery& discovery = std::get<Discovery>(found);
+  const Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, ElementsAre("softening"));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
 }
@@ -177,10 +168,7 @@ TEST(Discover, BothCamerasWereKnocked) {
       {.hidden = "hidden:\n  - {effect: camera_pose, variant: cam0 from side on, values: "
                  "{camera_pose.cam0.ry: 0.004}}\n  - {effect: camera_pose, variant: cam1 from the "
                  "start, values: {camera_pose.cam1.tx: 0.4}}\n"});
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  const auto found = hookeye::discover(workspace, form, form.initial(), {});
-  const Discovery& discovery = std::get<Discovery>(found);
+  const Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, ElementsAre("camera_pose"));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
   EXPECT_EQ(discovery.steps.size(), 3u);
@@ -199,13 +187,10 @@ TEST(Discover, BothCamerasWereKnocked) {
 /// stand for it.
 TEST(Discover, WhatTheCatalogueDoesNotHaveEndsUnexplained) {
   const SmallScene small({.hidden = kWeight});
-  Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
   DiscoverOptions options;
   options.diagnosis.without = {"gravity", "placement", "swelling", "pressure", "stiffness_field"};
   options.max_effects = 1;
-  const auto found = hookeye::discover(workspace, form, form.initial(), options);
-  const Discovery& discovery = std::get<Discovery>(found);
+  const Discovery discovery = test::discover(small, options);
   EXPECT_EQ(discovery.verdict, Verdict::unexplained) << discovery.sentence;
   for (const std::string& name : options.diagnosis.without)
     EXPECT_THAT(discovery.missing, testing::Not(testing::Contains(name)));
