@@ -195,6 +195,27 @@ std::variant<Addition, NumericalFailure> add_to(const Truth& truth, TruthSolver&
   return out;
 }
 
+/// Finds the factor on an effect's values that moves the pictures by as much as wanted.
+class Scaling {
+ public:
+  /// `factor` moves by `rms_px`; the one to try next. In proportion, or, between one that moves
+  /// less and one that moves more, by the power law through both: a body that softens gives by 1/(1
+  /// - d), and in proportion one would go to and fro about the right d.
+  double next(double factor, double rms_px, double wanted) {
+    (rms_px < wanted ? below_ : above_) = {factor, rms_px};
+    if (!(below_.factor > 0.0 && above_.factor > below_.factor)) return factor * wanted / rms_px;
+    const double power =
+        std::log(above_.rms_px / below_.rms_px) / std::log(above_.factor / below_.factor);
+    return below_.factor * std::pow(wanted / below_.rms_px, 1.0 / power);
+  }
+
+ private:
+  struct Tried {
+    double factor = 0.0, rms_px = 0.0;
+  };
+  Tried below_, above_;
+};
+
 /// Nothing moves below this.
 constexpr double kStill = 1e-9;  // px
 
@@ -212,6 +233,7 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
   for (size_t i = 0; i < parameters.size(); ++i) null[i] = parameters[i].value;
   double largest = hidden.drawn ? largest_factor(parameters, null, told) : 1e300;
   double factor = std::min(hidden.times, largest);
+  Scaling scaling;
   const Touches touches = ingredient->touches();
   const int most = hidden.rms_px ? 8 : 1;
   for (int i = 0; i < most; ++i) {
@@ -244,7 +266,7 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
       return true;
     }
     if (still) return false;
-    factor = std::min(factor * wanted / addition.rms_px, largest);
+    factor = std::min(scaling.next(factor, addition.rms_px, wanted), largest);
   }
   return false;
 }

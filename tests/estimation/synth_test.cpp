@@ -162,6 +162,15 @@ TEST_F(SynthTest, ScalesAnEffectToTheAskedSize) {
   EXPECT_NEAR(made.hidden.at(0).rms_px, 0.5, 0.02);
 }
 
+/// A body that softens gives by 1/(1 - d): scaled in proportion d goes to and fro.
+TEST_F(SynthTest, ScalesWhatDoesNotGrowInProportion) {
+  const std::string text = replaced(
+      recipe_text("hidden:\n  - {effect: softening, values: {softening.d: 0.85}, rms_px: 1.0}\n",
+                  kFast),
+      "twist: {rotate: 15}", "side: {force: [0.01, 0, 0]}");
+  EXPECT_NEAR(make(text, "softening").hidden.at(0).rms_px, 1.0, 0.04);
+}
+
 TEST_F(SynthTest, TakesAShareOfToldAndDrawnValues) {
   const auto hides = [&](const std::string& hidden) {
     const Synthesis made = make(recipe_text("hidden:\n  - {" + hidden + "}\n", kFast),
