@@ -114,6 +114,7 @@ std::vector<Score> all(const Options& options) {
                s.status, s.first, s.held_before, s.held_after, s.floor);
     std::fflush(stdout);
     write_text(fs::path(options.out) / "results.csv", csv(scores));
+    write_text(fs::path(options.out) / "table.md", table(scores));
     write_text(fs::path(options.out) / "confusion.svg", confusion_svg(scores));
   };
   // one queue that every job takes the next from: captures take minutes, and not the same
@@ -124,6 +125,19 @@ std::vector<Score> all(const Options& options) {
     });
   });
   return scores;
+}
+
+/// What can be hidden: nothing, and each effect of the catalogue but the mesh's; or, with `pairs`,
+/// each with the one so many places after it.
+std::vector<std::string> drawn_effects(int pairs) {
+  std::vector<std::string> names, out;
+  for (const Effect* effect : catalogue())
+    if (effect->group() != EffectGroup::numerical) names.push_back(effect->name());
+  for (size_t i = 0; i < names.size() && pairs > 0; ++i)
+    out.push_back(names[i] + "+" + names[(i + static_cast<size_t>(pairs)) % names.size()]);
+  if (pairs > 0) return out;
+  names.insert(names.begin(), "none");
+  return names;
 }
 
 int main_of(int argc, char** argv) {
@@ -148,12 +162,12 @@ int main_of(int argc, char** argv) {
                  "Names, or several at once as gravity+creep; `none` hides nothing (default: none "
                  "and the catalogue but mesh_resolution, which every truth has: its mesh is finer)")
       ->delimiter(',');
+  int pairs = 0;
+  app.add_option("--pairs", pairs, "Two at once: each with the one that many places after it")
+      ->check(CLI::PositiveNumber)
+      ->excludes("--effects");
   CLI11_PARSE(app, argc, argv);
-  if (options.effects.empty()) {
-    options.effects = {"none"};
-    for (const Effect* effect : catalogue())
-      if (effect->group() != EffectGroup::numerical) options.effects.push_back(effect->name());
-  }
+  if (options.effects.empty()) options.effects = drawn_effects(pairs);
   const std::vector<Score> scores = all(options);
   fmt::print("\n{}", summary(scores));
   return 0;

@@ -145,7 +145,8 @@ std::string csv(const std::vector<Score>& scores) {
 
 std::string summary(const std::vector<Score>& scores) {
   int guilty = 0, right = 0, tie = 0, exact = 0, finer = 0, innocent = 0, alarms = 0, failed = 0;
-  int values = 0, inside = 0;
+  int values = 0, inside = 0, good = 0;
+  constexpr double kGoal = 1.15;
   std::vector<double> share, material, effect;
   for (const Score& s : scores) {
     finer += std::any_of(s.added.begin(), s.added.end(), numerical);
@@ -164,6 +165,7 @@ std::string summary(const std::vector<Score>& scores) {
       right += s.right_first();
       tie += s.right_or_tie();
       exact += s.exact_set();
+      good += s.exact_set() && s.held_after <= kGoal * s.floor;
       share.push_back(left(s.held_before, s.held_after, s.floor));
     }
   }
@@ -173,6 +175,9 @@ std::string summary(const std::vector<Score>& scores) {
       "false alarms          {} of {} captures that hide nothing\n"
       "finer mesh asked for  {} of {}\nfailed                {}\n",
       right, guilty, tie, guilty, exact, guilty, alarms, innocent, finer, scores.size(), failed);
+  out +=
+      fmt::format("held-out chi within {:g} times the floor: {} of {} where exactly the hidden\n",
+                  kGoal, good, exact);
   if (const auto stays = median(share))
     out += fmt::format("held-out error over the floor that stays: {:.0f} % in the median\n",
                        100.0 * *stays);
@@ -184,6 +189,32 @@ std::string summary(const std::vector<Score>& scores) {
     out += fmt::format("error of the effect's values: {:.2g} % in the median\n", 100.0 * *error);
   if (values > 0)
     out += fmt::format("true values inside their 95 % intervals: {} of {}\n", inside, values);
+  return out;
+}
+
+std::string table(const std::vector<Score>& scores) {
+  struct Row {
+    int captures = 0, right = 0, exact = 0;
+    std::vector<double> px, before, after;
+  };
+  std::map<std::string, Row> rows;
+  for (const Score& s : scores) {
+    if (s.status != "ok") continue;
+    Row& row = rows[s.hidden];
+    ++row.captures, row.right += s.right_first(), row.exact += s.exact_set();
+    if (s.hidden_px > 0.0) row.px.push_back(s.hidden_px);
+    row.before.push_back(s.held_before / s.floor), row.after.push_back(s.held_after / s.floor);
+  }
+  std::string out =
+      "| hidden | moves by (rms) | right first | just it | held-out chi over the floor: before | "
+      "after |\n|---|---|---|---|---|---|\n";
+  for (const auto& [hidden, row] : rows) {
+    const auto [least, most] = std::minmax_element(row.px.begin(), row.px.end());
+    out += fmt::format("| {} | {} | {} of {} | {} of {} | {:.1f} | {:.2f} |\n", hidden,
+                       row.px.empty() ? "–" : fmt::format("{:.2g} .. {:.2g} px", *least, *most),
+                       row.right, row.captures, row.exact, row.captures, *median(row.before),
+                       *median(row.after));
+  }
   return out;
 }
 

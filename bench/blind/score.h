@@ -44,6 +44,8 @@ Score score(const nlohmann::json& run, const nlohmann::json& truth);
 std::string csv(const std::vector<Score>& scores);
 /// Counts over everything that ran, as lines for people.
 std::string summary(const std::vector<Score>& scores);
+/// A row for each effect (or several at once), in Markdown; medians over its captures.
+std::string table(const std::vector<Score>& scores);
 /// Rows: what was hidden; columns: what was named, first or later, or declared a tie.
 std::string confusion_svg(const std::vector<Score>& scores);
 

@@ -57,6 +57,17 @@ TEST(BlindScore, RightNameAndTheErrorsOfItsValues) {
   EXPECT_THAT(summary({s}), HasSubstr("inside their 95 % intervals: 3 of 4"));
 }
 
+TEST(BlindScore, TheTableHasARowForEachEffect) {
+  const Score right = score(run_of({"gravity"}, kFound), truth_of("gravity", kGravity));
+  const Score wrong = score(run_of({"swelling"}, kFound), truth_of("gravity", kGravity));
+  const Score none = score(run_of({}, kFound), truth_of("none", {}));
+  const std::string rows = table({right, wrong, none});
+  EXPECT_THAT(rows, HasSubstr("| gravity | 2 .. 2 px | 1 of 2 | 1 of 2 | 21.0 | 1.20 |\n"));
+  EXPECT_THAT(rows, HasSubstr("| none | – | 1 of 1 | 1 of 1 | 21.0 | 1.20 |\n"));
+  EXPECT_THAT(summary({right, wrong}),
+              HasSubstr("held-out chi within 1.15 times the floor: 0 of 1"));
+}
+
 TEST(BlindScore, OtherVariantsHaveNoErrors) {
   json found = kFound;
   found.erase(3);
