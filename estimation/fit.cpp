@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "capture_io/input_error.h"
@@ -164,10 +165,69 @@ std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
   return std::get<StageResult>(settled).p;
 }
 
-std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
-                                           const VectorXd& start, const FitOptions& options) {
-  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
-  if (has_additive(form)) return fit_convex_to_end(workspace, form, start, options);
+namespace {
+
+/// What coarse pictures of p and measured values leave, a sum of squares over noise; infinite where
+/// p has no equilibrium.
+double coarse_misfit(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                     const FitOptions& options) {
+  const int level = stages(workspace.scene(), true).front().level;
+  const auto result = workspace.evaluate(form, p, only_pictures(level, options));
+  if (std::holds_alternative<NumericalFailure>(result))
+    return std::numeric_limits<double>::infinity();
+  double sum = 0.0;
+  for (const auto& example : std::get<Evaluation>(result).examples) {
+    for (const auto& photo : example.photos) sum += photo.r2;
+    for (const auto& measured : example.measured) sum += measured.r.squaredNorm();
+  }
+  return sum;
+}
+
+/// All moduli times two, or over two, for as long as coarse pictures come nearer: a body that hangs
+/// far from where the photos show it has no slope towards them. Empty: they do not.
+std::optional<VectorXd> rescaled(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                                 const FitOptions& options) {
+  constexpr int kMost = 7;  // two orders of magnitude
+  const auto parameters = form.parameters();
+  const auto at = [&](double factor) {
+    VectorXd q = p;
+    for (int i = 0; i < q.size(); ++i)
+      if (is_modulus(parameters[i]))
+        q[i] = std::clamp(factor * q[i], parameters[i].low, parameters[i].high);
+    return q;
+  };
+  double least = coarse_misfit(workspace, form, p, options);
+  const bool stands = std::isfinite(least);
+  for (const double step : {2.0, 0.5}) {
+    if (!stands && step < 1.0) break;  // what has no equilibrium finds none softer
+    double best = 1.0, factor = 1.0;
+    for (int i = 0; i < kMost; ++i) {
+      const double misfit = coarse_misfit(workspace, form, at(factor *= step), options);
+      if (misfit < least)
+        least = misfit, best = factor;
+      else if (std::isfinite(least))
+        break;
+    }
+    if (best != 1.0) return at(best);
+  }
+  return {};
+}
+
+/// Half the period of the finest pattern (kLinearPx): pictures farther apart than this are not led
+/// home by what they show.
+constexpr double kLostPx = 3.0;
+
+bool lost(const Fitted& fitted) {
+  const auto parameters = fitted.form.parameters();
+  return fitted.evaluation.rms_px(false) > kLostPx &&
+         std::any_of(parameters.begin(), parameters.end(), is_modulus);
+}
+
+bool is_cancelled(const FitOptions& options) { return options.cancel && options.cancel->load(); }
+
+/// From `start` to the end: the fitted examples, the held-out ones' own numbers, intervals.
+std::variant<Fitted, NumericalFailure> fit_from(Workspace& workspace, const ModelForm& form,
+                                                const VectorXd& start, const FitOptions& options) {
   StageResult result{start, true};
   if (form.size() > 0) {
     const Scope scope{false, std::vector<bool>(form.size(), true)};
@@ -184,6 +244,25 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
     out->smallest_eigenvalue = result.smallest_eigenvalue;
   }
   return fitted;
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
+                                           const VectorXd& start, const FitOptions& options) {
+  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+  if (has_additive(form)) return fit_convex_to_end(workspace, form, start, options);
+  auto fitted = fit_from(workspace, form, start, options);
+  const auto* first = std::get_if<Fitted>(&fitted);
+  if (!options.coarse_to_fine || is_cancelled(options) || (first && !lost(*first))) return fitted;
+  const auto nearer = rescaled(workspace, form, first ? first->p : start, options);
+  if (!nearer) return fitted;
+  auto again = fit_from(workspace, form, *nearer, options);
+  const auto* second = std::get_if<Fitted>(&again);
+  if (is_cancelled(options)) return again;
+  const bool better =
+      second && (!first || second->evaluation.chi(false) < first->evaluation.chi(false));
+  return better ? again : fitted;
 }
 
 }  // namespace hookeye

@@ -65,7 +65,9 @@ struct Fitted {
 };
 
 /// Least squares over photos, forces, moments and positions of the fitted examples, from `start`.
-/// Throws std::logic_error for a wrong size of start. The start must have an equilibrium.
+/// Where that ends pictures apart by more than their patterns span, or the start has no
+/// equilibrium, moduli that were told wrong by up to two orders of magnitude are looked for and it
+/// starts there. Throws std::logic_error for a wrong size of start.
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options = {});
 

@@ -57,16 +57,15 @@ CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
   return out;
 }
 
+bool is_modulus(const Parameter& one) {
+  return one.positive && (one.unit.ends_with("Pa") || one.unit.ends_with("^2"));
+}
+
 namespace {
 
 /// Whether the direction moves parameter i by a tenth of what it moves most.
 bool moves(const VectorXd& direction, Eigen::Index i) {
   return std::abs(direction[i]) >= 0.1 * direction.cwiseAbs().maxCoeff();
-}
-
-/// A positive number in units of stress ("MPa", "N/cm^2"); lengths and factors are positive too.
-bool is_modulus(const Parameter& one) {
-  return one.positive && (one.unit.ends_with("Pa") || one.unit.ends_with("^2"));
 }
 
 /// "mu", or "mu together with kappa": what a direction without information moves.

@@ -50,6 +50,19 @@ TEST(Fit, ReachesTheTruthFromPixelsAway) {
   EXPECT_LT(fitted.iterations, 20);
 }
 
+/// Of the first of these the told load has no equilibrium; of the others the pictures have nothing
+/// in common with the photos but the base.
+TEST(Fit, ComesHomeFromAModulusThatIsAGuess) {
+  for (const char* told : {"0.0003", "0.004", "0.3"}) {
+    const SmallScene small({.told = told, .same_renderer = true});
+    Workspace workspace(small.scene);
+    const ModelForm form = base_form(small.scene);
+    const auto result = fit(workspace, form, form.initial());
+    ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << told;
+    EXPECT_NEAR(std::get<Fitted>(result).p[0], 0.02, 0.02 * 2e-3) << told;
+  }
+}
+
 /// The truth is solved on a finer mesh, and the fitted modulus makes up for it.
 TEST(Intervals, ReachForTheFinerMesh) {
   const SmallScene small({.told = "0.021", .truth_mesh = "0.5", .same_renderer = true});
