@@ -44,7 +44,9 @@ export function JobLine() {
 
 function Steps() {
   const {steps} = run.value.timeline;
-  const added = new Set(steps[steps.length - 1]?.effects);
+  const stands = new Set(steps[steps.length - 1]?.effects);
+  // of an effect that was added twice the newest is taken back
+  const newest = new Map(run.value.steps.map((entry) => [timelineOf(entry)?.added, entry.folder]));
   return (
     <Wide label="Steps of the run" class="steps">
       <thead><tr><th>step</th><th>χ fitted<Ask word="chi" /></th><th>χ held out<Ask word="heldOut" /></th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
@@ -59,7 +61,7 @@ function Steps() {
                 onChange={() => showStep(i)} /></td>
               <td><input type="radio" name="against" aria-label={`compare with ${entry.folder}`} checked={i === otherStep.value}
                 onClick={() => (otherStep.value = otherStep.value === i ? -1 : i)} onChange={() => undefined} /></td>
-              <td>{run.value.live && t?.added && added.has(t.added) && (
+              <td>{run.value.live && t?.added && stands.has(t.added) && newest.get(t.added) === entry.folder && (
                 <button disabled={job.value?.state === 'running'} onClick={() => void add(t.added!, true)}>Take back</button>
               )}</td>
             </tr>
