@@ -195,7 +195,7 @@ class Search {
       const auto added = std::ssize(newest().fitted.form.ingredients) - start;
       auto went_on = next_step(options_.max_effects - static_cast<int>(added));
       if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
-      if (!std::get<bool>(went_on) && !reopened()) break;
+      if (!std::get<bool>(went_on) && !dropped_unsupported() && !reopened()) break;
     }
     return finish();
   }
@@ -301,6 +301,19 @@ class Search {
     out_.steps.push_back(std::move(next));
   }
 
+  /// An effect that the last model can do without leaves it; what was added last of the others
+  /// stands anew.
+  bool dropped_unsupported() {
+    auto lighter = drop_unsupported(workspace_, newest().fitted, out_.floor, base_, options_);
+    if (!lighter || !unsupported_.insert(lighter->effect).second) return false;
+    Step next;
+    next.name = next.added = lighter->fitted.form.ingredients.back()->name();
+    next.dropped = {next.added, lighter->effect};
+    next.fitted = std::move(lighter->fitted);
+    out_.steps.push_back(std::move(next));
+    return true;
+  }
+
   /// Contests that were won by less than what was missing then are held again: a coarse mesh may
   /// have let swelling pass for a suction. The nearest loser takes the winner's place in the last
   /// model.
@@ -343,8 +356,9 @@ class Search {
   const DiscoverEvents& events_;
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;
-  std::string refused_;           ///< why the best of the last contest was not added
-  std::optional<Step> together_;  ///< second of a pair, once the first is written
+  std::string refused_;                ///< why the best of the last contest was not added
+  std::optional<Step> together_;       ///< second of a pair, once the first is written
+  std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
 };
 

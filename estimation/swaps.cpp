@@ -7,9 +7,21 @@ namespace hookeye {
 
 namespace {
 
+Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
+  Eigen::Index offset = 0;
+  for (size_t k = 0; k < ingredient; ++k)
+    offset += static_cast<Eigen::Index>(form.ingredients[k]->parameters().size());
+  return offset;
+}
+
+bool remeshes(const Ingredient& ingredient) {
+  const Effect* effect = find_effect(ingredient.name());
+  return effect && effect->remeshes(ingredient.variant());
+}
+
 /// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
 /// with which no effect is idle.
-bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own) {
+bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Parameter>& own) {
   for (size_t k = 0; k < own.size(); ++k) {
     const auto i = offset + static_cast<Eigen::Index>(k);
     const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * kNormal95);
@@ -21,9 +33,7 @@ bool stands(const Fitted& fitted, int offset, const std::vector<Parameter>& own)
 /// `fitted` without its ingredient `i`, fitted again from where it stands.
 std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
                                   const FitOptions& options) {
-  Eigen::Index offset = 0;
-  for (size_t k = 0; k < i; ++k)
-    offset += static_cast<Eigen::Index>(fitted.form.ingredients[k]->parameters().size());
+  const Eigen::Index offset = offset_of(fitted.form, i);
   const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
   ModelForm form = fitted.form;
   form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
@@ -42,18 +52,34 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
                               size_t first_effect, const DiscoverOptions& options) {
   const Yardstick yardstick{&current, &floor, measured_noise2(current)};
   const double full = refit_score(current, yardstick);
-  int offset = 0;
-  for (size_t i = 0; i + 1 < current.form.ingredients.size(); ++i) {
-    const auto own = current.form.ingredients[i]->parameters();
-    const Effect* effect = find_effect(current.form.ingredients[i]->name());
-    const bool mesh = effect && effect->remeshes(current.form.ingredients[i]->variant());
-    if (i >= first_effect && !mesh && !stands(current, offset, own))
-      if (auto lighter = fit_without(workspace, current, i, options.fit)) {
-        const double score = refit_score(*lighter, yardstick);
-        if (score > full - kTie)
-          return Refit{current.form.ingredients[i]->name(), std::move(*lighter), score};
-      }
-    offset += static_cast<int>(own.size());
+  for (size_t i = first_effect; i + 1 < current.form.ingredients.size(); ++i) {
+    const Ingredient& one = *current.form.ingredients[i];
+    if (remeshes(one) || stands(current, offset_of(current.form, i), one.parameters())) continue;
+    auto lighter = fit_without(workspace, current, i, options.fit);
+    if (!lighter) continue;
+    const double score = refit_score(*lighter, yardstick);
+    if (score > full - kTie) return Refit{one.name(), std::move(*lighter), score};
+  }
+  return {};
+}
+
+std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted,
+                                      const Floor& floor, size_t first_effect,
+                                      const DiscoverOptions& options) {
+  const auto& all = fitted.form.ingredients;
+  if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
+  for (size_t i = first_effect; i < all.size(); ++i) {
+    const auto own = all[i]->parameters();
+    const Eigen::Index offset = offset_of(fitted.form, i);
+    bool null = !remeshes(*all[i]);
+    for (size_t k = 0; k < own.size(); ++k) {
+      const auto at = offset + static_cast<Eigen::Index>(k);
+      null = null && fitted.low[at] <= own[k].value && own[k].value <= fitted.high[at];
+    }
+    if (!null) continue;
+    auto lighter = fit_without(workspace, fitted, i, options.fit);
+    if (lighter && at_floor(*lighter, floor))
+      return Refit{all[i]->name(), std::move(*lighter), 0.0};
   }
   return {};
 }
@@ -101,8 +127,7 @@ struct Without {
 std::optional<Without> without(Workspace& workspace, const Fitted& fitted, size_t i,
                                const DiscoverOptions& options) {
   const Ingredient& dropped = *fitted.form.ingredients[i];
-  const Effect* effect = find_effect(dropped.name());
-  if (!effect || effect->remeshes(dropped.variant())) return {};
+  if (!find_effect(dropped.name()) || remeshes(dropped)) return {};
   auto lighter = fit_without(workspace, fitted, i, options.fit);
   if (!lighter) return {};
   auto diagnosis = diagnose(workspace, *lighter, options.diagnosis);

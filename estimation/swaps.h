@@ -15,6 +15,13 @@ namespace hookeye {
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
                               size_t first_effect, const DiscoverOptions& options);
 
+/// An effect among several that is not supported: each of its intervals, which reach for a finer
+/// mesh, holds its null, and without it the photos stay at the floor. It led the others out of a
+/// place from which their own steps saw no way, or took up some of what the mesh errs by.
+std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted,
+                                      const Floor& floor, size_t first_effect,
+                                      const DiscoverOptions& options);
+
 /// Whether `rival`, which equalled the winner beside the effect `dropped`, equals it still now that
 /// the winner does without: as it is, which costs that effect's parameters, or without it too.
 bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,

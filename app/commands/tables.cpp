@@ -69,11 +69,17 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
 
 std::string chi_text(double chi) { return chi > 0.0 ? fmt::format("{:.3f}", chi) : "-"; }
 
-std::string name_of(const Step& step) {
-  return step.dropped.empty()
-             ? step.name
-             : fmt::format("{}, without {}", step.name, fmt::join(step.dropped, ", "));
+namespace {
+
+/// "creep", "creep anew" where it took its own place, "creep, without softening".
+std::string with_dropped(std::string name, std::vector<std::string> dropped) {
+  if (std::erase(dropped, name)) name += " anew";
+  return dropped.empty() ? name : fmt::format("{}, without {}", name, fmt::join(dropped, ", "));
 }
+
+}  // namespace
+
+std::string name_of(const Step& step) { return with_dropped(step.name, step.dropped); }
 
 std::string steps_table(const nlohmann::json& timeline) {
   std::vector<std::vector<std::string>> rows = {
@@ -83,12 +89,11 @@ std::string steps_table(const nlohmann::json& timeline) {
   const double top = steps.front().at("chi_fit").get<double>() / floor;
   for (const auto& step : steps) {
     const double chi = step.at("chi_fit"), over = chi / floor;
-    std::string name = step.at("name");
-    const auto dropped = step.value("dropped", std::vector<std::string>());
-    if (!dropped.empty()) name += fmt::format(", without {}", fmt::join(dropped, ", "));
-    rows.push_back({name, chi_text(chi), chi_text(number_in(step, "chi_validate")),
-                    fmt::format("{:.3f}", number_in(step, "rms_px_fit")),
-                    fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
+    rows.push_back(
+        {with_dropped(step.at("name"), step.value("dropped", std::vector<std::string>())),
+         chi_text(chi), chi_text(number_in(step, "chi_validate")),
+         fmt::format("{:.3f}", number_in(step, "rms_px_fit")),
+         fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
   }
   return table(rows);
 }

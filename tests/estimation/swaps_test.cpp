@@ -50,6 +50,36 @@ TEST(Swaps, WhatWasChosenBesideALargerMisfitIsAskedAgain) {
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
 }
 
+/// Swelling beside the weight that is all there is: its interval holds its null, and the photos do
+/// without it.
+TEST(Swaps, WhatIsNotSupportedLeaves) {
+  const test::SmallScene small(
+      {.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9000}}\n"});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Step step;
+  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  for (const char* effect : {"gravity", "swelling"}) {
+    step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+    const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
+                                    [&](const EffectScore& one) { return one.effect == effect; });
+    ASSERT_NE(score, step.diagnosis.effects.end()) << effect;
+    step.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *score, {}));
+  }
+  ASSERT_THAT(effects_in(step.fitted.form), testing::ElementsAre("gravity", "swelling"));
+  const size_t first = form.ingredients.size();
+  const Floor floor = step.diagnosis.floor;
+  const auto lighter = drop_unsupported(workspace, step.fitted, floor, first, {});
+  ASSERT_TRUE(lighter.has_value());
+  EXPECT_EQ(lighter->effect, "swelling");
+  EXPECT_THAT(effects_in(lighter->fitted.form), testing::ElementsAre("gravity"));
+  // nothing leaves that is alone, nor what the photos need
+  EXPECT_FALSE(drop_unsupported(workspace, lighter->fitted, floor, first, {}).has_value());
+  Fitted wide = step.fitted;
+  wide.low.setConstant(-1e9), wide.high.setConstant(1e9);
+  EXPECT_EQ(drop_unsupported(workspace, wide, floor, first, {})->effect, "swelling");
+}
+
 /// On a mesh that is too coarse swelling passes for a suction, by less than the mesh errs.
 TEST(Swaps, AContestWonByLessThanTheMeshErredIsHeldAgain) {
   const Discovery discovery = test::discover(test::SmallScene(

@@ -53,9 +53,10 @@ function Steps() {
       <tbody>
         {run.value.steps.map((entry, i) => {
           const t = timelineOf(entry);
+          const others = t?.dropped?.filter((name) => name !== t.added) ?? [];
           return (
             <tr key={entry.folder} aria-selected={i === stepIndex.value}>
-              <td>{entry.folder}{t?.dropped?.length ? `, without ${listed(t.dropped)}` : ''}</td>
+              <td>{entry.folder}{others.length > 0 && `, without ${listed(others)}`}</td>
               <td>{figure(t?.chi_fit, 4)}</td><td>{figure(t?.chi_validate, 4)}</td><td>{figure(t?.rms_px_fit)}</td>
               <td><input type="radio" name="show" aria-label={`show ${entry.folder}`} checked={i === stepIndex.value}
                 onChange={() => showStep(i)} /></td>
