@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 
 #include "tests/estimation/repeats.h"
@@ -77,8 +78,8 @@ void power(Options options, const std::string& effect) {
       fall += one.fall[effect] / options.repeats;
     }
     // sqrt of the fall: what the effect changes in a pixel, over its noise (rms)
-    fmt::print("  {:<30}{:<6g}  {:<10.2f}  {:.2f}   {:.2f}\n", effect, px, std::sqrt(fall),
-               static_cast<double>(named) / options.repeats,
+    fmt::print("  {:<30}{:<6g}  {:<10.2f}  {:.2f}   {:.2f}\n", effect, px,
+               std::sqrt(std::max(0.0, fall)), static_cast<double>(named) / options.repeats,
                static_cast<double>(placebo) / options.repeats);
     std::fflush(stdout);
   }
