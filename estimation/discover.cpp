@@ -253,13 +253,14 @@ class Search {
   /// Where the best alone does not stand.
   WentOn add_pair(Contest& contest, int room) {
     const Step& step = newest();
+    if (room < 2) return false;
     if (at_floor(step.fitted, step.diagnosis.floor) &&
         measured_explained(step.fitted, step.diagnosis))
       return false;
     auto tried = refit_pairs(workspace_, step, contest, options_, events_);
     if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
     auto& pair = std::get<std::optional<Pair>>(tried);
-    if (!pair || room < 2 || !why_refused(step, contest.before, pair->second).empty()) return false;
+    if (!pair || !why_refused(step, contest.before, pair->second).empty()) return false;
     refused_.clear();
     Step second;
     second.name = second.added = pair->second.effect;
@@ -291,10 +292,11 @@ class Search {
       }
     settle_tie(out_.tie, effects_in(next.fitted.form));
     if (out_.tie.size() > 1) {
-      auto asked =
-          ask_tie_again(workspace_, next.fitted, out_.tie, out_.floor, base_, options_, events_);
-      out_.tie = std::move(asked.tie);
-      if (asked.better) together_ = swapped_step(std::move(*asked.better));
+      if (auto asked = ask_tie_again(workspace_, next.fitted, out_.tie, out_.floor, base_, options_,
+                                     events_)) {
+        out_.tie = std::move(asked->tie);
+        if (asked->better) together_ = swapped_step(std::move(*asked->better));
+      }
     }
     if (!equals.empty() && out_.tie.empty()) out_.tie.push_back(next.added);
     for (const Refit* rival : equals) out_.tie.push_back(rival->effect);
@@ -331,12 +333,13 @@ class Search {
         continue;
       auto asked = ask_tie_again(workspace_, last, {then.added, rival->effect}, out_.floor, base_,
                                  options_, events_);
-      if (asked.better) {
-        out_.steps.push_back(swapped_step(std::move(*asked.better)));
+      if (!asked) continue;
+      if (asked->better) {
+        out_.steps.push_back(swapped_step(std::move(*asked->better)));
         settle_tie(out_.tie, effects_in(newest().fitted.form));
         return true;
       }
-      if (out_.tie.empty()) out_.tie = std::move(asked.tie);
+      if (out_.tie.empty()) out_.tie = std::move(asked->tie);
     }
     return false;
   }

@@ -173,15 +173,16 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
   return best;
 }
 
-TieAsked ask_tie_again(Workspace& workspace, const Fitted& last,
-                       const std::vector<std::string>& tie, const Floor& floor, size_t first_effect,
-                       const DiscoverOptions& options, const DiscoverEvents& events) {
+std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
+                                      const std::vector<std::string>& tie, const Floor& floor,
+                                      size_t first_effect, const DiscoverOptions& options,
+                                      const DiscoverEvents& events) {
   const auto& all = last.form.ingredients;
   size_t i = first_effect;
   while (i < all.size() && all[i]->name() != tie.front()) ++i;
   const auto lighter =
       i < all.size() ? without(workspace, last, i, options) : std::optional<Without>();
-  if (!lighter) return {tie, {}};
+  if (!lighter) return {};
   const Yardstick yardstick{&last, &floor, measured_noise2(last)};
   const double now = refit_score(last, yardstick);
   TieAsked out;

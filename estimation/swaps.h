@@ -53,9 +53,11 @@ struct TieAsked {
 };
 
 /// What a tie comes to in the last model, where a later effect stands beside it: who was equal
-/// while that was missing need not be.
-TieAsked ask_tie_again(Workspace& workspace, const Fitted& last,
-                       const std::vector<std::string>& tie, const Floor& floor, size_t first_effect,
-                       const DiscoverOptions& options, const DiscoverEvents& events);
+/// while that was missing need not be. Empty: it could not be asked, as the model without the first
+/// of the tie has no fit.
+std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
+                                      const std::vector<std::string>& tie, const Floor& floor,
+                                      size_t first_effect, const DiscoverOptions& options,
+                                      const DiscoverEvents& events);
 
 }  // namespace hookeye
