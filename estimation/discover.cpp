@@ -1,8 +1,5 @@
 #include "estimation/discover.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -14,20 +11,6 @@
 
 namespace hookeye {
 
-namespace {
-
-/// The photos are explained but for what a finer mesh would change. That is told beside the
-/// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
-/// times all that was fitted before, and name nothing.
-bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis) {
-  return at_floor(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis) &&
-         std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
-           return numerical(effect.effect) || !nameable(effect, diagnosis);
-         });
-}
-
-}  // namespace
-
 std::vector<std::string> effects_in(const ModelForm& form) {
   std::vector<std::string> names;
   for (size_t i = base_form(form.scene).ingredients.size(); i < form.ingredients.size(); ++i)
@@ -37,89 +20,7 @@ std::vector<std::string> effects_in(const ModelForm& form) {
   return names;
 }
 
-const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::explained:
-      return "explained";
-    case Verdict::ambiguous:
-      return "ambiguous";
-    default:
-      return "unexplained";
-  }
-}
-
 namespace {
-
-/// ", and ... stands out by less than a finer mesh would change": the largest evidence that is kept
-/// from being named by the mesh's error alone. "" where there is none.
-std::string hidden_by_mesh(const Diagnosis& diagnosis) {
-  if (diagnosis.mesh_fall < least_fall(diagnosis)) return "";
-  for (const EffectScore& effect : diagnosis.effects)
-    if (effect.testable && !numerical(effect.effect) &&
-        effect.evidence >= std::max(kNameable, diagnosis.gate))
-      return fmt::format(
-          ", and {} stands out by less than a mesh finer still would change: give the body one "
-          "(mesh: {{edge: ...}}) and run again",
-          effect.effect);
-  return "";
-}
-
-bool seen(const Fitted& fitted) {
-  return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
-                     [](const auto& example) { return !example.photos.empty(); });
-}
-
-}  // namespace
-
-Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
-              std::string* why) {
-  const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
-  const auto standing =
-      only_numerical_left(fitted, diagnosis) ? std::vector<std::string>() : leaders(diagnosis);
-  std::string sensors;
-  const bool photos = at_floor(fitted, diagnosis.floor);
-  const bool measured = measured_explained(fitted, diagnosis, &sensors);
-  if (why) {
-    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
-                       held_out > 0.0
-                           ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
-                                         seen(fitted) ? "photos" : "values")
-                           : "");
-    if (!sensors.empty()) *why += ", but " + sensors;
-    if (!standing.empty())
-      *why += fmt::format(", and {} still stand{} out", fmt::join(standing, " and "),
-                          standing.size() == 1 ? "s" : "");
-    else if (!photos)
-      *why += hidden_by_mesh(diagnosis);
-  }
-  if (!tie.empty()) return Verdict::ambiguous;
-  return photos && measured ? Verdict::explained : Verdict::unexplained;
-}
-
-namespace {
-
-/// `why` is judge()'s, `refused` why the effect that came farthest was not added.
-std::string say(const Discovery& discovery, std::string why, const std::string& refused) {
-  const std::vector<std::string>& missing = discovery.missing;
-  if (!refused.empty()) why += "; " + refused;
-  if (missing.empty() && discovery.verdict == Verdict::explained)
-    return fmt::format("{}: {}",
-                       refused.empty() ? "nothing is missing"
-                                       : "nothing that is missing "
-                                         "pays for itself",
-                       why);
-  if (!discovery.tie.empty())
-    return fmt::format("{}; these could not be told apart: {}", why,
-                       fmt::join(discovery.tie, ", "));
-  if (missing.empty())
-    return fmt::format("{}: {}",
-                       refused.empty() ? "not in the catalogue"
-                                       : "nothing that was tried "
-                                         "explains it",
-                       why);
-  return fmt::format("missing: {}; with {}, {}", fmt::join(missing, " and "),
-                     missing.size() == 1 ? "it" : "them", why);
-}
 
 /// Why a refit does not stand beside the step that it started from; "" where it does.
 std::string why_refused(const Step& step, double before, const Refit& with) {
@@ -135,6 +36,13 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
   if (fell(false) < least && !sensors_alone(*with.fitted.form.ingredients.back()))
     return with.effect + " was refitted, but takes away less than renderers and meshes err by";
   return "";
+}
+
+/// The same, both scored by what the refit leaves.
+std::string refused_by(const Step& step, Refit with) {
+  const Yardstick yardstick{&with.fitted, &step.diagnosis.floor, measured_noise2(with.fitted)};
+  with.score = refit_score(with.fitted, yardstick);
+  return why_refused(step, refit_score(step.fitted, yardstick), with);
 }
 
 /// The step in which one effect took another's place.
@@ -193,9 +101,13 @@ class Search {
       }
       if (out_.steps.size() >= most_steps) break;
       const auto added = std::ssize(newest().fitted.form.ingredients) - start;
-      auto went_on = next_step(options_.max_effects - static_cast<int>(added));
+      const int room = options_.max_effects - static_cast<int>(added);
+      auto went_on = next_step(room);
       if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
-      if (!std::get<bool>(went_on) && !dropped_unsupported() && !reopened()) break;
+      if (std::get<bool>(went_on)) continue;
+      auto settled = settled_mesh(room);
+      if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
+      if (!std::get<bool>(settled) && !dropped_unsupported() && !reopened()) break;
     }
     return finish();
   }
@@ -219,6 +131,7 @@ class Search {
 
   /// `room`: for how many effects more.
   WentOn next_step(int room) {
+    mesh_refitted_ = false;
     Step& step = newest();
     if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis)) return false;
     if (auto better =
@@ -229,9 +142,12 @@ class Search {
     auto refitted = refit_leaders(workspace_, step, options_, events_);
     if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
     Contest& contest = std::get<Contest>(refitted);
+    mesh_refitted_ = std::any_of(contest.refits.begin(), contest.refits.end(),
+                                 [](const Refit& refit) { return numerical(refit.effect); });
     if (contest.refits.empty()) return false;
     if (auto found =
-            swap_behind_refit(workspace_, contest.refits, out_.floor, base_, options_, events_)) {
+            swap_behind_refit(workspace_, contest.refits, out_.floor, base_, options_, events_);
+        found && refused_by(step, found->second.in).empty()) {
       add_two(*found->first, std::move(contest.raced), swapped_step(std::move(found->second)));
       return true;
     }
@@ -303,6 +219,34 @@ class Search {
     out_.steps.push_back(std::move(next));
   }
 
+  /// Before the photos are called unexplained the mesh is refitted, if the likelihood asks for it
+  /// and the last contest did not: where a hard wall meets a coarse body its linear change is no
+  /// guide, and a step with it may have no equilibrium.
+  WentOn settled_mesh(int room) {
+    const Step& step = newest();
+    if (room <= 0 || at_floor(step.fitted, out_.floor)) return false;
+    for (const EffectScore& score : step.diagnosis.effects) {
+      if (!numerical(score.effect) || !score.testable || mesh_refitted_ ||
+          score.evidence < std::max(kNameable, step.diagnosis.gate))
+        continue;
+      if (events_.refitting) events_.refitting(score.effect);
+      auto result = add_effect(workspace_, step.fitted, score, options_.fit);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+        if (failure->reason == "cancelled") return *failure;
+        continue;
+      }
+      Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};
+      if (events_.refitted) events_.refitted(score.effect, refit.fitted);
+      if (!refused_by(step, refit).empty()) continue;
+      Step next;
+      next.name = next.added = score.effect;
+      next.fitted = std::move(refit.fitted);
+      out_.steps.push_back(std::move(next));
+      return true;
+    }
+    return false;
+  }
+
   /// An effect that the last model can do without leaves it; what was added last of the others
   /// stands anew.
   bool dropped_unsupported() {
@@ -350,7 +294,7 @@ class Search {
     out_.missing = effects_in(last.fitted.form);
     settle_tie(out_.tie, out_.missing);
     out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why);
-    out_.sentence = say(out_, why, refused_);
+    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
     return std::move(out_);
   }
 
@@ -360,6 +304,7 @@ class Search {
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;
   std::string refused_;                ///< why the best of the last contest was not added
+  bool mesh_refitted_ = false;         ///< in the last contest
   std::optional<Step> together_;       ///< second of a pair, once the first is written
   std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests

@@ -9,6 +9,7 @@
 #include "estimation/diagnosis.h"
 #include "estimation/fit.h"
 #include "estimation/refit.h"
+#include "estimation/verdict.h"
 
 namespace hookeye {
 
@@ -70,9 +71,6 @@ struct Step {
 /// once (Effect::several).
 std::vector<std::string> effects_in(const ModelForm& form);
 
-enum class Verdict { explained, unexplained, ambiguous };
-const char* to_string(Verdict verdict);
-
 struct Discovery {
   std::vector<Step> steps;
   Verdict verdict = Verdict::unexplained;
@@ -99,9 +97,5 @@ std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const M
 std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
                                                         const DiscoverOptions& options,
                                                         const DiscoverEvents& events = {});
-
-/// What the diagnosis of the newest model says about the run.
-Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
-              std::string* why);
 
 }  // namespace hookeye

@@ -105,14 +105,17 @@ bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
          fitted.evaluation.chi(true) > kAtFloor * floor.chi;
 }
 
+bool same_form(const Ingredient& one, const Ingredient& other) {
+  return one.name() == other.name() && one.variant() == other.variant();
+}
+
 /// What ties with the leader where `dropped` is not in the model, but for itself.
 std::vector<const EffectScore*> doubles_of(const Ingredient& dropped, const Diagnosis& diagnosis) {
   std::vector<const EffectScore*> out;
   for (const EffectScore& score : diagnosis.effects)
     if (nameable(score, diagnosis) && !numerical(score.effect) &&
         score.evidence > diagnosis.effects.front().evidence - kTie &&
-        (score.effect != dropped.name() || score.best->variant() != dropped.variant() ||
-         score.other_form))
+        (!same_form(*score.best, dropped) || score.other_form))
       out.push_back(&score);
   return out;
 }
@@ -163,7 +166,7 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
     if (!lighter) continue;
     for (const EffectScore* score : doubles_of(lighter->dropped, lighter->diagnosis)) {
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
-      if (!refit) continue;
+      if (!refit || same_form(*refit->fitted.form.ingredients.back(), lighter->dropped)) continue;
       refit->score = refit_score(refit->fitted, yardstick);
       if (refit->score < enough) continue;
       enough = refit->score;
@@ -209,11 +212,17 @@ std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
                   [&](const Refit& refit) { return at_floor(refit.fitted, floor); }))
     return {};
   const auto found = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
-    return !numerical(refit.effect) && spoils_held_out(refit.fitted, floor);
+    return spoils_held_out(refit.fitted, floor);
   });
   if (found == refits.end()) return {};
   auto swap = swap_for_better(workspace, found->fitted, floor, first_effect, options, events);
-  if (!swap || !at_floor(swap->in.fitted, floor)) return {};
+  if (!swap) return {};
+  const Yardstick yardstick{&swap->in.fitted, &floor, measured_noise2(swap->in.fitted)};
+  swap->in.score = refit_score(swap->in.fitted, yardstick);
+  if (std::any_of(refits.begin(), refits.end(), [&](const Refit& refit) {
+        return refit_score(refit.fitted, yardstick) > swap->in.score - kNameable;
+      }))
+    return {};
   return std::pair{&*found, std::move(*swap)};
 }
 

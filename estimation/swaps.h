@@ -42,7 +42,8 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
                                     const DiscoverEvents& events);
 
 /// The same for the best of `refits` that explains the fitted photos alone, where none is at the
-/// floor of both and with the swap it is: an effect added before keeps the right one from winning.
+/// floor of both and with the swap it scores higher than all of them by kNameable: an effect added
+/// before, or its form, keeps the right one (or the mesh) from winning.
 std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
     Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
     const DiscoverOptions& options, const DiscoverEvents& events);

@@ -103,6 +103,7 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
   const nlohmann::json none = nlohmann::json::array();
   const auto raced = step.value("raced", none), rivals = step.value("rivals", none);
   if (raced.size() < 2) return "";
+  const std::string added = step.at("added");
   std::vector<std::vector<std::string>> rows = {
       {"effect", "evidence", "tried: chi fitted", "held out", "refitted: chi fitted", "held out"}};
   const auto chi = [](const nlohmann::json& one, const char* key) {
@@ -117,7 +118,8 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
   const auto scores = before.value("diagnosis", none);
   for (const auto& one : raced) {
     const std::string effect = one.at("effect");
-    const nlohmann::json score = of(scores, effect), refit = of(rivals, effect);
+    const nlohmann::json score = of(scores, effect);
+    const nlohmann::json refit = effect == added ? step : of(rivals, effect);
     if (rows.size() > kMost && refit.is_null()) continue;
     rows.push_back({effect,
                     score.is_null() ? "-" : fmt::format("{:.1f}", number_in(score, "evidence")),
@@ -129,7 +131,7 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
          wrapped(
              fmt::format("why {}: what each of the {} effects that stood out leaves (tried: after "
                          "two steps of its refit, half-size photos)",
-                         step.at("added").get<std::string>(), raced.size())) +
+                         added, raced.size())) +
          table(rows);
 }
 

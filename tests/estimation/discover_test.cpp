@@ -305,6 +305,28 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
   EXPECT_THAT(why, testing::EndsWith("the noise floor"));
 }
 
+TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
+  EXPECT_EQ(say(Verdict::explained, {"gravity", "creep"}, {}, "little is left", ""),
+            "missing: gravity and creep; with them, little is left");
+  EXPECT_EQ(say(Verdict::explained, {"gravity", "mesh_resolution"}, {}, "little is left", ""),
+            "missing: gravity; with it on a finer mesh (mesh_resolution), little is left");
+  EXPECT_EQ(say(Verdict::explained, {"mesh_resolution"}, {}, "little is left", ""),
+            "nothing is missing but a finer mesh (mesh_resolution): on it, little is left");
+  EXPECT_EQ(say(Verdict::explained, {}, {}, "little is left", ""),
+            "nothing is missing: little is left");
+  EXPECT_EQ(say(Verdict::explained, {}, {}, "little is left", "creep was refused"),
+            "nothing that is missing pays for itself: little is left; creep was refused");
+  EXPECT_EQ(say(Verdict::unexplained, {}, {}, "much is left", ""),
+            "not in the catalogue: much is left");
+  EXPECT_EQ(say(Verdict::unexplained, {"mesh_resolution"}, {}, "much is left", "creep was refused"),
+            "nothing that was tried explains it: even on a finer mesh (mesh_resolution), much is "
+            "left; creep was refused");
+  EXPECT_EQ(
+      say(Verdict::ambiguous, {"gravity", "creep"}, {"creep", "softening"}, "little is left", ""),
+      "missing: gravity and creep; with them, little is left; these could not be told apart: "
+      "creep, softening");
+}
+
 /// A force 100 deviations off is not explained by photos that are at their floor.
 TEST(Verdict, WantsTheMeasuredValuesExplainedToo) {
   const SmallScene small({.same_renderer = true});

@@ -50,7 +50,9 @@ SmallScene::SmallScene(const SmallCapture& capture) {
   folder_ = fs::temp_directory_path() /
             ("hookeye_small_" + std::to_string(getpid()) + "_" + std::to_string(count++));
   fs::create_directories(folder_);
-  const auto made = synthesize(parse_recipe(recipe(capture), "recipe.yaml"), folder_ / "capture");
+  const auto made = synthesize(
+      parse_recipe(capture.recipe.empty() ? recipe(capture) : capture.recipe, "recipe.yaml"),
+      folder_ / "capture");
   scene = load_scene(read_capture(std::get<Synthesis>(made).capture));
 }
 

@@ -15,6 +15,7 @@ struct SmallCapture {
   std::string truth_mesh = "1";  ///< edge of the truth's mesh over the told one
   bool same_renderer = false;    ///< the truth's rays are those of the fit: noise alone is left
   unsigned seed = 5;             ///< of texture and noise
+  std::string recipe = "";       ///< another body: the whole recipe, instead of all above
 };
 
 /// Two cameras of 200 x 260 px; rest, pull, side, twist; poke held out. The truth is solved on the

@@ -102,5 +102,59 @@ TEST(Swaps, AContestWonByLessThanTheMeshErredIsHeldAgain) {
   EXPECT_THAT(discovery.steps.back().dropped, testing::ElementsAre("swelling"));
 }
 
+/// What the mesh errs by passes for creep that grows with the logarithm of the order. On the finer
+/// mesh the fitted photos are explained and the held-out ones are not, until the form is asked
+/// again.
+TEST(Swaps, AFormThatWasChosenOnACoarseMeshIsAskedAgain) {
+  const Discovery discovery =
+      explained({.hidden = "hidden:\n  - {effect: creep, variant: steadily with the order, values: "
+                           "{creep.c: 0.81}}\n",
+                 .truth_mesh = "0.6",
+                 .seed = 7},
+                {"mesh_resolution", "creep"});
+  EXPECT_NE(discovery.steps.at(1).fitted.form.ingredients.back()->variant(),
+            "steadily with the order");
+  const Fitted& last = discovery.steps.back().fitted;
+  EXPECT_EQ(last.form.ingredients.back()->variant(), "steadily with the order");
+  EXPECT_NEAR(last.p[last.p.size() - 1], 0.81, 0.04);
+}
+
+/// A hard wall, and a corner that a rigid grip turns into it. On the coarse mesh the linear change
+/// of a finer one says nothing of that, and the likelihood alone asks for it.
+TEST(Swaps, TheMeshIsRefittedBeforeThePhotosAreCalledUnexplained) {
+  const Discovery discovery = explained({.recipe = R"(hookeye_recipe: 1
+title: block in a twist against a wall
+seed: 4
+body:
+  shape: block
+  size: [28.90, 27.50, 52.44]
+  taper: 0.913
+  bumps: 0.065
+  mesh: {edge: 11.31}
+  density: 1.07e-9
+  texture: {texel: 0.202, speckle: 2.36, cover: 0.55}
+material:
+  law: neo-hookean
+  true: {mu: 0.07807, kappa_over_mu: 12.76}
+  told: {mu: 0.07722}
+  fit: [mu]
+cameras: {count: 2, size: [200, 260], distance: 6.50, focal: 1071, azimuth: 124.0, spread: 78.9,
+  elevation: 11.6, look_at: 0.52}
+light: {ambient: 0.281, toward: [-0.820, 0.573, 0.656], strength: 0.6}
+examples:
+  rest: {}
+  pull: {force: [0, 0, 0.321]}
+  side: {force: [-0.0066, 0.0096, 0]}
+  twist: {rotate: -27.6}
+  val_oblique: {use: validate, force: [0.0071, 0.0059, 0.199]}
+hidden:
+  - {effect: floor_contact, variant: "plane at -x side, position 14.78",
+     values: {floor_contact.k: 10.657}}
+)"},
+                                        {"floor_contact", "mesh_resolution"});
+  EXPECT_TRUE(discovery.steps.back().raced.empty()) << "no race led there";
+  EXPECT_NEAR(discovery.steps.back().fitted.p[0], 0.07807, 1e-4);
+}
+
 }  // namespace
 }  // namespace hookeye

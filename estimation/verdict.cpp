@@ -1,0 +1,102 @@
+#include "estimation/verdict.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "estimation/contest.h"
+
+namespace hookeye {
+
+bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis) {
+  return at_floor(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis) &&
+         std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
+           return numerical(effect.effect) || !nameable(effect, diagnosis);
+         });
+}
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::explained:
+      return "explained";
+    case Verdict::ambiguous:
+      return "ambiguous";
+    default:
+      return "unexplained";
+  }
+}
+
+namespace {
+
+/// ", and ... stands out by less than a finer mesh would change": the largest evidence that is kept
+/// from being named by the mesh's error alone. "" where there is none.
+std::string hidden_by_mesh(const Diagnosis& diagnosis) {
+  if (diagnosis.mesh_fall < least_fall(diagnosis)) return "";
+  for (const EffectScore& effect : diagnosis.effects)
+    if (effect.testable && !numerical(effect.effect) &&
+        effect.evidence >= std::max(kNameable, diagnosis.gate))
+      return fmt::format(
+          ", and {} stands out by less than a mesh finer still would change: give the body one "
+          "(mesh: {{edge: ...}}) and run again",
+          effect.effect);
+  return "";
+}
+
+bool seen(const Fitted& fitted) {
+  return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
+                     [](const auto& example) { return !example.photos.empty(); });
+}
+
+}  // namespace
+
+Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
+              std::string* why) {
+  const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
+  const auto standing =
+      only_numerical_left(fitted, diagnosis) ? std::vector<std::string>() : leaders(diagnosis);
+  std::string sensors;
+  const bool photos = at_floor(fitted, diagnosis.floor);
+  const bool measured = measured_explained(fitted, diagnosis, &sensors);
+  if (why) {
+    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
+                       held_out > 0.0
+                           ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
+                                         seen(fitted) ? "photos" : "values")
+                           : "");
+    if (!sensors.empty()) *why += ", but " + sensors;
+    if (!standing.empty())
+      *why += fmt::format(", and {} still stand{} out", fmt::join(standing, " and "),
+                          standing.size() == 1 ? "s" : "");
+    else if (!photos)
+      *why += hidden_by_mesh(diagnosis);
+  }
+  if (!tie.empty()) return Verdict::ambiguous;
+  return photos && measured ? Verdict::explained : Verdict::unexplained;
+}
+
+std::string say(Verdict verdict, const std::vector<std::string>& missing,
+                const std::vector<std::string>& tie, std::string why, const std::string& refused) {
+  if (!refused.empty()) why += "; " + refused;
+  if (!tie.empty()) why += fmt::format("; these could not be told apart: {}", fmt::join(tie, ", "));
+  std::vector<std::string> physical = missing, mesh;
+  std::erase_if(physical, numerical);
+  std::copy_if(missing.begin(), missing.end(), std::back_inserter(mesh), numerical);
+  const std::string finer =
+      mesh.empty() ? "" : fmt::format("a finer mesh ({})", fmt::join(mesh, " and "));
+  if (!physical.empty())
+    return fmt::format("missing: {}; with {}{}, {}", fmt::join(physical, " and "),
+                       physical.size() == 1 ? "it" : "them", mesh.empty() ? "" : " on " + finer,
+                       why);
+  if (verdict != Verdict::explained)
+    return fmt::format(
+        "{}: {}{}", refused.empty() ? "not in the catalogue" : "nothing that was tried explains it",
+        mesh.empty() ? "" : "even on " + finer + ", ", why);
+  if (!mesh.empty()) return fmt::format("nothing is missing but {}: on it, {}", finer, why);
+  return fmt::format(
+      "{}: {}", refused.empty() ? "nothing is missing" : "nothing that is missing pays for itself",
+      why);
+}
+
+}  // namespace hookeye

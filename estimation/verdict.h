@@ -1,0 +1,29 @@
+// What a run has come to, in a word and in a sentence.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimation/diagnosis.h"
+#include "estimation/fit.h"
+
+namespace hookeye {
+
+enum class Verdict { explained, unexplained, ambiguous };
+const char* to_string(Verdict verdict);
+
+/// What the diagnosis of the newest model says about the run.
+Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
+              std::string* why);
+
+/// The photos are explained but for what a finer mesh would change. That is told beside the
+/// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
+/// times all that was fitted before, and name nothing.
+bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis);
+
+/// One line: what was missing, how sure, what else. `why` is judge()'s, `refused` why the effect
+/// that came farthest was not added ("": none was refused).
+std::string say(Verdict verdict, const std::vector<std::string>& missing,
+                const std::vector<std::string>& tie, std::string why, const std::string& refused);
+
+}  // namespace hookeye
