@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "meshing/detail.h"
@@ -175,6 +176,21 @@ double mean_boundary_edge(const TetMesh& mesh) {
   return sum / (3.0 * static_cast<double>(mesh.boundary.cols()));
 }
 
+/// Largest angle between two neighbouring triangles [degrees].
+double sharpest_edge(const SurfaceMesh& surface) {
+  std::map<std::pair<int, int>, Vector3d> normal_at;
+  double cosine = 1.0;
+  for (const auto& t : surface.triangles) {
+    const Vector3d a = surface.X.col(t[0]), b = surface.X.col(t[1]), c = surface.X.col(t[2]);
+    const Vector3d normal = (b - a).cross(c - a).stableNormalized();
+    for (size_t k = 0; k < 3; ++k) {
+      const auto [at, fresh] = normal_at.try_emplace(std::minmax(t[k], t[(k + 1) % 3]), normal);
+      if (!fresh) cosine = std::min(cosine, at->second.dot(normal));
+    }
+  }
+  return std::acos(std::max(cosine, -1.0)) * 180.0 / M_PI;
+}
+
 RenderSurface ride(const TetMesh& mesh, const MendedSurface& file, std::vector<std::string>& said) {
   RenderSurface out;
   out.mesh = file.surface;
@@ -252,6 +268,16 @@ Body make(const Capture& capture, double edge_factor, int order, const RenderSur
     body.surface.W = weights_of(body.mesh, body.surface.points);
   } else {
     body.surface = surface ? ride(body.mesh, *surface, body.said) : own_boundary(body.mesh);
+    const bool lit =
+        spec.texture == BodySpec::Texture::image || spec.texture == BodySpec::Texture::uniform;
+    if (surface && lit && !spec.flat_shading && !body.surface.mesh.cut_from.empty()) {
+      constexpr double kSharp = 60.0;  // a hexagonal prism; tubes and scans have far less
+      if (const double sharpest = sharpest_edge(surface->surface); sharpest >= kSharp)
+        body.said.push_back(fmt::format(
+            "the surface has large triangles and edges of {:.0f} degrees, lit as round: if they "
+            "are sharp, `shading: flat`",
+            sharpest));
+    }
   }
   body.regions = RegionSet(capture, body.mesh, surface.get());
   return body;

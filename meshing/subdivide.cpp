@@ -22,10 +22,14 @@ class Round {
         if ((a - b).norm() <= longest) continue;
         mid_of_[edge] = static_cast<int>(X_.cols() + static_cast<Eigen::Index>(mids_.size()));
         mids_.push_back(0.5 * (a + b));
+        ends_.push_back(edge);
       }
     }
   }
   bool idle() const { return mids_.empty(); }
+
+  /// For each new vertex the two between which it lies.
+  const std::vector<std::pair<int, int>>& ends() const { return ends_; }
 
   Subdivided result() {
     for (size_t t = 0; t < from_.mesh.triangles.size(); ++t) {
@@ -101,20 +105,43 @@ class Round {
   const Matrix3Xd& X_;
   std::map<std::pair<int, int>, int> mid_of_;
   std::vector<Vector3d> mids_;
+  std::vector<std::pair<int, int>> ends_;
   Subdivided out_;
 };
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> rows_of(
+    const std::vector<std::map<int, double>>& weights, int columns) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (size_t v = 0; v < weights.size(); ++v)
+    for (const auto& [of, w] : weights[v]) entries.emplace_back(static_cast<int>(v), of, w);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> out(static_cast<Eigen::Index>(weights.size()),
+                                                   columns);
+  out.setFromTriplets(entries.begin(), entries.end());
+  return out;
+}
 
 }  // namespace
 
 Subdivided subdivide(const SurfaceMesh& surface, double longest) {
   Subdivided now;
   now.mesh = surface;
+  const auto given = static_cast<int>(surface.X.cols());
+  std::vector<std::map<int, double>> weights(static_cast<size_t>(given));
+  for (int v = 0; v < given; ++v) weights[static_cast<size_t>(v)] = {{v, 1.0}};
   for (size_t t = 0; t < surface.triangles.size(); ++t) now.parent.push_back(static_cast<int>(t));
   while (longest > 0) {
     Round round(now, longest);
     if (round.idle()) break;
+    for (const auto& [a, b] : round.ends()) {
+      std::map<int, double> mean;
+      for (const int end : {a, b})
+        for (const auto& [v, w] : weights[static_cast<size_t>(end)]) mean[v] += 0.5 * w;
+      weights.push_back(std::move(mean));
+    }
     now = round.result();
   }
+  now.mesh.cut_from = surface.triangles;
+  now.mesh.cut_weights = rows_of(weights, given);
   return now;
 }
 

@@ -14,7 +14,7 @@ struct Subdivided {
 
 /// Bisects edges longer than `longest`, in rounds. Each edge is split or not by its length alone,
 /// so both its triangles agree; a triangle with one, two or three split edges becomes two, three or
-/// four. uv is interpolated per corner, so seams stay.
+/// four. uv is interpolated per corner, so seams stay; cut_from and cut_weights are told.
 Subdivided subdivide(const SurfaceMesh& surface, double longest);
 
 }  // namespace hookeye::detail

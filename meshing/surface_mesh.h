@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <array>
 #include <filesystem>
 #include <vector>
@@ -20,6 +21,11 @@ struct SurfaceMesh {
   std::vector<std::array<int, 3>> triangles;  ///< outward (counter-clockwise seen from outside)
   /// Texture coordinates of each triangle corner (v up, bottom row 0); empty: none.
   std::vector<std::array<Vector2d, 3>> uv;
+  /// Of a subdivided surface: the triangles that it was cut from (their n vertices are its first)
+  /// and each vertex's weights in one of them, nv x n. Smooth normals are interpolated from there:
+  /// cutting a triangle changes no picture. Empty: its own triangles.
+  std::vector<std::array<int, 3>> cut_from;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> cut_weights;
 };
 
 /// obj, ply, stl. Triangles keep the file's order (regions count on it); polygons are refused.

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 
 #include "render/frame.h"
@@ -44,12 +45,18 @@ std::vector<Vector3d> facet_normals(const std::vector<std::array<int, 3>>& trian
 struct Renderer::Impl {
   explicit Impl(SurfaceMesh s)
       : surface(std::move(s)),
-        vertex_normals(surface.triangles, static_cast<int>(surface.X.cols())),
+        vertex_normals(surface),
+        own_normals(surface.cut_from.empty()
+                        ? std::optional<VertexNormals>()
+                        : VertexNormals({surface.X, surface.triangles, {}, {}, {}})),
         edges(surface_edges(surface)),
         scene(surface.triangles, surface.X) {}
 
   SurfaceMesh surface;
   VertexNormals vertex_normals;
+  /// Of a subdivided surface: its own. What they see of the sky hides nothing behind the facet that
+  /// they stand on, as interpolated ones would; empty: vertex_normals are.
+  std::optional<VertexNormals> own_normals;
   std::vector<SurfaceEdge> edges;
   RayScene scene;
   std::unique_ptr<RayScene> reference_scene;
@@ -77,7 +84,7 @@ void Renderer::Impl::set_state(const Matrix3Xd& x, int rays) {
     seen_x = x;
   }
   if (same && rays == seen_rays) return;
-  seen_visibility = sky_visibility(scene, x, seen_normals, rays);
+  seen_visibility = sky_visibility(scene, x, own_normals ? own_normals->at(x) : seen_normals, rays);
   seen_rays = rays;
 }
 

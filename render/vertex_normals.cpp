@@ -17,13 +17,31 @@ Matrix3d cross_matrix(const Vector3d& a) {
   return m;
 }
 
+Matrix3Xd of_unit_length(Matrix3Xd n) {
+  for (Eigen::Index v = 0; v < n.cols(); ++v) {
+    const double length = n.col(v).norm();
+    if (length > 0) n.col(v) /= length;
+  }
+  return n;
+}
+
+/// d(N/|N|)/dN.
+Matrix3d projection(const Vector3d& N) {
+  const double length = N.norm();
+  if (!(length > 0)) return Matrix3d::Zero();
+  return (Matrix3d::Identity() - N * N.transpose() / (length * length)) / length;
+}
+
 }  // namespace
 
-VertexNormals::VertexNormals(const std::vector<std::array<int, 3>>& triangles, int vertices)
-    : triangles_(triangles), vertices_(vertices) {
-  std::vector<std::vector<int>> around(vertices);
-  for (int v = 0; v < vertices; ++v) around[v].push_back(v);
-  for (const auto& t : triangles)
+VertexNormals::VertexNormals(const SurfaceMesh& surface)
+    : triangles_(surface.cut_from.empty() ? surface.triangles : surface.cut_from),
+      vertices_(static_cast<int>(surface.cut_from.empty() ? surface.X.cols()
+                                                          : surface.cut_weights.cols())),
+      weights_(surface.cut_weights) {
+  std::vector<std::vector<int>> around(vertices_);
+  for (int v = 0; v < vertices_; ++v) around[v].push_back(v);
+  for (const auto& t : triangles_)
     for (int i : t)
       for (int j : t)
         if (i != j) around[i].push_back(j);
@@ -34,7 +52,7 @@ VertexNormals::VertexNormals(const std::vector<std::array<int, 3>>& triangles, i
     neighbour_.insert(neighbour_.end(), list.begin(), list.end());
     first_.push_back(static_cast<int>(neighbour_.size()));
   }
-  for (const auto& t : triangles) {
+  for (const auto& t : triangles_) {
     auto& p = position_.emplace_back();
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
@@ -60,16 +78,32 @@ Matrix3Xd VertexNormals::sums(const Matrix3Xd& x) const {
   return n;
 }
 
+Matrix3Xd VertexNormals::own(const Matrix3Xd& x) const { return of_unit_length(sums(x)); }
+
 Matrix3Xd VertexNormals::at(const Matrix3Xd& x) const {
-  Matrix3Xd n = sums(x);
-  for (int v = 0; v < vertices_; ++v) {
-    const double length = n.col(v).norm();
-    if (length > 0) n.col(v) /= length;
-  }
-  return n;
+  if (weights_.size() == 0) return own(x);
+  return of_unit_length((weights_ * own(x).transpose()).transpose());
 }
 
 Eigen::SparseMatrix<double, Eigen::RowMajor> VertexNormals::derivative(const Matrix3Xd& x) const {
+  if (weights_.size() == 0) return own_derivative(x);
+  const Matrix3Xd mean = (weights_ * own(x).transpose()).transpose();
+  std::vector<Eigen::Triplet<double>> entries;  // d(n)/d(n of the cut triangles' vertices)
+  for (int v = 0; v < weights_.outerSize(); ++v) {
+    const Matrix3d project = projection(mean.col(v));
+    for (decltype(weights_)::InnerIterator w(weights_, v); w; ++w)
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          entries.emplace_back(3 * v + r, 3 * static_cast<int>(w.col()) + c,
+                               w.value() * project(r, c));
+  }
+  Eigen::SparseMatrix<double, Eigen::RowMajor> by_cut(3 * weights_.rows(), 3 * weights_.cols());
+  by_cut.setFromTriplets(entries.begin(), entries.end());
+  return by_cut * own_derivative(x);
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> VertexNormals::own_derivative(
+    const Matrix3Xd& x) const {
   // Blocks d(N_v)/d(x_u), then the projection of the normalisation.
   std::vector<Matrix3d> block(neighbour_.size(), Matrix3d::Zero());
   for (size_t f = 0; f < triangles_.size(); ++f) {
@@ -95,16 +129,12 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> VertexNormals::derivative(const Mat
     }
   }
   const Matrix3Xd sum = sums(x);
-  Eigen::SparseMatrix<double, Eigen::RowMajor> out(3 * vertices_, 3 * vertices_);
+  Eigen::SparseMatrix<double, Eigen::RowMajor> out(3 * vertices_, 3 * x.cols());
   out.resizeNonZeros(9 * static_cast<Eigen::Index>(neighbour_.size()));
   for (int v = 0; v < vertices_; ++v) {
-    const double length = sum.col(v).norm();
     const int blocks = first_[v + 1] - first_[v];
     for (int r = 0; r < 3; ++r) out.outerIndexPtr()[3 * v + r] = 9 * first_[v] + 3 * r * blocks;
-    Matrix3d project = Matrix3d::Zero();
-    if (length > 0)
-      project =
-          (Matrix3d::Identity() - sum.col(v) * sum.col(v).transpose() / (length * length)) / length;
+    const Matrix3d project = projection(sum.col(v));
     for (int b = 0; b < blocks; ++b) {
       const Matrix3d d = project * block[first_[v] + b];
       for (int r = 0; r < 3; ++r)

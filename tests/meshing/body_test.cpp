@@ -184,6 +184,9 @@ TEST(Subdivision, WatertightSameAreaShortEdgesSameTexture) {
     const detail::Subdivided fine = detail::subdivide(s, longest);
     expect_watertight(fine.mesh);
     EXPECT_NEAR(area_of(fine.mesh), area_of(s), 1e-9);
+    EXPECT_EQ(fine.mesh.cut_from, s.triangles);
+    const Matrix3Xd between = (fine.mesh.cut_weights * s.X.transpose()).transpose();
+    EXPECT_LT((between - fine.mesh.X).cwiseAbs().maxCoeff(), 1e-9);
     for (size_t t = 0; t < fine.mesh.triangles.size(); ++t) {
       const auto& parent = s.triangles[fine.parent[t]];
       Eigen::Matrix3d P;

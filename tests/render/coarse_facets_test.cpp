@@ -1,5 +1,6 @@
 // Derivatives on facets of many pixels, where the normals of the corners are far from the facet's
 // own and the sky is seen differently from corner to corner: terms that a fine mesh hides.
+#include "meshing/subdivide.h"
 #include "render/renderer.h"
 #include "scene.h"
 #include "support/derivative.h"
@@ -166,6 +167,47 @@ INSTANTIATE_TEST_SUITE_P(all, CoarseFacets,
                                          Setting{Look::gloss_alone, true},
                                          Setting{Look::sky_alone, false}),
                          name_of);
+
+/// A facet that is cut for the body to bend has the light of the whole one: smooth normals are
+/// interpolated from its corners, and what they lean towards hides no sky.
+TEST(CutFacets, AreLitAsTheWholeOnes) {
+  const SurfaceMesh whole = test::sphere(Vector3d::Zero(), 8, 1, 0.05);
+  const SurfaceMesh cut = detail::subdivide(whole, 1.5).mesh;
+  ASSERT_GT(cut.triangles.size(), 10 * whole.triangles.size());
+  PhotoState state = test::state(close_up(false));
+  ASSERT_GT(state.ambient, 0.1);
+  ASSERT_GT(state.sun.norm(), 0.1);
+  Texture texture;
+  texture.albedo = 0.8;
+  RenderOptions options;
+  options.cast_shadows = false;
+  Renderer of_whole(whole), of_cut(cut);
+  SurfaceMesh forgotten = cut;  // that it was cut
+  forgotten.cut_from.clear(), forgotten.cut_weights.resize(0, 0);
+  Renderer of_forgotten(forgotten);
+  const Rendering a = of_whole.render(whole.X, nullptr, texture, state, options, false);
+  const Rendering b = of_cut.render(cut.X, nullptr, texture, state, options, false);
+  const Rendering c = of_forgotten.render(cut.X, nullptr, texture, state, options, false);
+  int seen = 0;
+  double most = 0.0, most_forgotten = 0.0;
+  for (int px = 0; px < a.I.width * a.I.height; ++px) {
+    if (a.triangle[px] < 0 || b.triangle[px] < 0) continue;
+    ++seen;
+    most = std::max<double>(most, std::abs(a.I.values[px] - b.I.values[px]));
+    most_forgotten = std::max<double>(most_forgotten, std::abs(a.I.values[px] - c.I.values[px]));
+  }
+  EXPECT_LT(most, 1e-3);  // between cut corners the normals turn as chords of the whole one's arcs
+  EXPECT_GT(most_forgotten, 0.03);
+  EXPECT_GT(seen, 2000);
+}
+
+TEST(CutFacets, NormalsHaveTheirDerivative) {
+  const SurfaceMesh cut = detail::subdivide(test::sphere(Vector3d::Zero(), 8, 1, 0.2), 2.0).mesh;
+  const Renderer renderer(cut);
+  const Matrix3Xd u = test::field(cut.X, 0.3);
+  expect_derivative([&](double h) { return VectorXd(renderer.normals(cut.X + h * u).reshaped()); },
+                    renderer.normal_derivative(cut.X) * u.reshaped(), 1e-3, 1e-8, "normals");
+}
 
 }  // namespace
 }  // namespace hookeye
