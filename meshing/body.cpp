@@ -176,19 +176,23 @@ double mean_boundary_edge(const TetMesh& mesh) {
   return sum / (3.0 * static_cast<double>(mesh.boundary.cols()));
 }
 
-/// Largest angle between two neighbouring triangles [degrees].
-double sharpest_edge(const SurfaceMesh& surface) {
+/// Edges of a drawn part: a third of them or more lie within a plane face, as of a box of twelve
+/// triangles, and some are sharp, by 60 degrees (a hexagonal bar) or more.
+bool plane_faces_and_sharp_edges(const SurfaceMesh& surface) {
+  constexpr double kPlane = 0.99996, kSharp = 0.5;  // cosines of 0.5 and 60 degrees
   std::map<std::pair<int, int>, Vector3d> normal_at;
-  double cosine = 1.0;
+  size_t plane = 0, sharp = 0;
   for (const auto& t : surface.triangles) {
     const Vector3d a = surface.X.col(t[0]), b = surface.X.col(t[1]), c = surface.X.col(t[2]);
     const Vector3d normal = (b - a).cross(c - a).stableNormalized();
     for (size_t k = 0; k < 3; ++k) {
       const auto [at, fresh] = normal_at.try_emplace(std::minmax(t[k], t[(k + 1) % 3]), normal);
-      if (!fresh) cosine = std::min(cosine, at->second.dot(normal));
+      if (fresh) continue;
+      const double cosine = at->second.dot(normal);
+      plane += cosine > kPlane, sharp += cosine < kSharp + 1e-6;
     }
   }
-  return std::acos(std::max(cosine, -1.0)) * 180.0 / M_PI;
+  return sharp > 0 && 3 * plane >= normal_at.size();
 }
 
 RenderSurface ride(const TetMesh& mesh, const MendedSurface& file, std::vector<std::string>& said) {
@@ -271,12 +275,10 @@ Body make(const Capture& capture, double edge_factor, int order, const RenderSur
     const bool lit =
         spec.texture == BodySpec::Texture::image || spec.texture == BodySpec::Texture::uniform;
     if (surface && lit && !spec.flat_shading && !body.surface.mesh.cut_from.empty()) {
-      constexpr double kSharp = 60.0;  // a hexagonal prism; tubes and scans have far less
-      if (const double sharpest = sharpest_edge(surface->surface); sharpest >= kSharp)
-        body.said.push_back(fmt::format(
-            "the surface has large triangles and edges of {:.0f} degrees, lit as round: if they "
-            "are sharp, `shading: flat`",
-            sharpest));
+      if (plane_faces_and_sharp_edges(surface->surface))
+        body.said.emplace_back(
+            "the surface has plane faces and sharp edges that are lit as if they were round: "
+            "`shading: flat` lights them as they are");
     }
   }
   body.regions = RegionSet(capture, body.mesh, surface.get());

@@ -252,6 +252,28 @@ TEST(RenderSurfaces, ACoarseSurfaceIsDividedSoThatItBends) {
   }
 }
 
+/// A drawn box lit as a pillow: the user hears what would light it as it is.
+TEST(RenderSurfaces, PlaneFacesWithSharpEdgesAreAskedForTheirShading) {
+  BoxBody box;
+  const auto hears = [&] {
+    for (const std::string& one : make_body(box.capture).said)
+      if (one.find("`shading: flat`") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(hears()) << "without a texture nothing is lit";
+  box.capture.body.texture = BodySpec::Texture::uniform;
+  EXPECT_TRUE(hears());
+  box.capture.body.flat_shading = true;
+  EXPECT_FALSE(hears());
+  box.capture.body.flat_shading = false;
+  SurfaceMesh round = box.surface;  // no plane faces, like a scan
+  for (Eigen::Index v = 0; v < round.X.cols(); ++v)
+    round.X.col(v) += 1.5 * (round.X.col(v) - Vector3d(15, 10, 5)).normalized();
+  write_surface_obj(box.capture.body.surface, round);
+  box.capture.regions.clear();
+  EXPECT_FALSE(hears());
+}
+
 /// Smooth normals depend on the vertices: a finer mesh must not change the shading.
 TEST(RenderSurfaces, TheSameOnEveryMeshOfTheBody) {
   const BoxBody box;
