@@ -20,7 +20,7 @@ function Parameters(props: {steps: {folder: string; list: ParameterValue[]}[]}) 
           const known = all.find((p) => p)!;
           return (
             <tr key={name}>
-              <td>{name}{known.long_name && <small>{known.long_name}</small>}</td>
+              <td>{name.split(/(?<=[._])/).map((part) => <>{part}<wbr /></>)}{known.long_name && <small>{known.long_name}</small>}</td>
               {all.map((p, i) => <Value key={i} p={p} drawn={steps.length === 1} />)}
               <td>{known.unit}</td>
             </tr>
