@@ -224,9 +224,9 @@ class Search {
   /// guide, and a step with it may have no equilibrium.
   WentOn settled_mesh(int room) {
     const Step& step = newest();
-    if (room <= 0 || at_floor(step.fitted, out_.floor)) return false;
+    if (room <= 0 || mesh_refitted_ || at_floor(step.fitted, out_.floor)) return false;
     for (const EffectScore& score : step.diagnosis.effects) {
-      if (!numerical(score.effect) || !score.testable || mesh_refitted_ ||
+      if (!numerical(score.effect) || !score.testable ||
           score.evidence < std::max(kNameable, step.diagnosis.gate))
         continue;
       if (events_.refitting) events_.refitting(score.effect);

@@ -274,12 +274,11 @@ Body make(const Capture& capture, double edge_factor, int order, const RenderSur
     body.surface = surface ? ride(body.mesh, *surface, body.said) : own_boundary(body.mesh);
     const bool lit =
         spec.texture == BodySpec::Texture::image || spec.texture == BodySpec::Texture::uniform;
-    if (surface && lit && !spec.flat_shading && !body.surface.mesh.cut_from.empty()) {
-      if (plane_faces_and_sharp_edges(surface->surface))
-        body.said.emplace_back(
-            "the surface has plane faces and sharp edges that are lit as if they were round: "
-            "`shading: flat` lights them as they are");
-    }
+    if (surface && lit && !spec.flat_shading && !body.surface.mesh.cut_from.empty() &&
+        plane_faces_and_sharp_edges(surface->surface))
+      body.said.emplace_back(
+          "the surface has plane faces and sharp edges that are lit as if they were round: "
+          "`shading: flat` lights them as they are");
   }
   body.regions = RegionSet(capture, body.mesh, surface.get());
   return body;
