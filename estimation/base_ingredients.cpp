@@ -188,7 +188,9 @@ class Placement final : public Ingredient {
     }
     return all;
   }
-  Touches touches() const override { return {.loading = true, .photos = true, .measured = true}; }
+  Touches touches() const override {
+    return {.loading = true, .photos = true, .measured = true, .cameras = true};
+  }
   void apply(const Eigen::VectorXd& values, Model& model) const override {
     if (values.isZero(0.0)) return;
     place(model, pose_about(centre_, values.head<3>(), values.tail<3>()));

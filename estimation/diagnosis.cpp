@@ -12,6 +12,7 @@
 #include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 #include "estimation/gram.h"
+#include "estimation/mesh_error.h"
 
 namespace hookeye {
 
@@ -171,95 +172,6 @@ std::shared_ptr<const EffectScore> other_form(const Context& context,
   return out;
 }
 
-/// Those that `mesh_shift` takes beyond their intervals for noise.
-std::string moved_by_mesh(const Fitted& fitted, const VectorXd& mesh_shift) {
-  const auto parameters = fitted.form.parameters();
-  std::vector<std::string> moved;
-  for (int i = 0; i < mesh_shift.size(); ++i) {
-    const double half = 0.5 * (fitted.high[i] - fitted.low[i]);
-    if (std::abs(mesh_shift[i]) > half)
-      moved.push_back(fmt::format("{} by {:+.2g}{}{}", parameters[i].name, mesh_shift[i],
-                                  parameters[i].unit.empty() ? "" : " ", parameters[i].unit));
-  }
-  return fmt::format("{}", fmt::join(moved, ", "));
-}
-
-/// Mean square of what fitted measured values change by the column `at` times `amount`, the first
-/// columns moving by `shift`.
-double change_of_measured(const Evaluation& evaluation, Eigen::Index at, double amount,
-                          const VectorXd& shift) {
-  double sum = 0.0, count = 0.0;
-  for (const auto& example : evaluation.examples)
-    for (const auto& measured : example.measured) {
-      if (example.held_out) continue;
-      sum +=
-          (measured.J.leftCols(shift.size()) * shift + amount * measured.J.col(at)).squaredNorm();
-      count += 3.0;
-    }
-  return count > 0.0 ? sum / count : 0.0;
-}
-
-/// mesh_shift, mesh_note and mesh_in_measured: what the fitted parameters do once the change `mesh`
-/// is there in full, and what an ever finer mesh adds to it.
-void tell_of_mesh(const Context& context, const Candidate& mesh, int base, Diagnosis& out) {
-  const bool linear = context.scene.body->mesh.order == 1;
-  const double to_the_limit = 1.0 / (1.0 - (linear ? 0.1 : kFinerEdge * kFinerEdge));
-  VectorXd next = VectorXd::Zero(base);
-  if (base > 0) next = -project(context.sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
-  out.mesh_shift = to_the_limit * next;
-  out.mesh_in_measured =
-      change_of_measured(context.evaluation, mesh.hypothesis.first, to_the_limit, out.mesh_shift);
-  const std::string moved = moved_by_mesh(context.fitted, next);
-  if (!moved.empty())
-    out.mesh_note = fmt::format(
-        "{} would move {}; the intervals reach there, and adding mesh_resolution fits on it",
-        linear ? std::string("quadratic tetrahedra")
-               : fmt::format("a mesh of {} times the edge", kFinerEdge),
-        moved);
-}
-
-/// mesh_fall, mesh_shift, mesh_note and mesh_in_measured of a model whose mesh has been refined. It
-/// has one parameter, a share of what the refinement changed; typical of it is what the next
-/// refinement would change. The photos fit the share, and what they fit is no bound of the mesh's
-/// error in a modulus, which falls at a rate of its own: the intervals reach for what the rule
-/// leaves.
-void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
-                          const DiagnosisSums& sums, Diagnosis& out) {
-  Eigen::Index at = 0;
-  for (const auto& ingredient : fitted.form.ingredients) {
-    const auto parameters = ingredient->parameters();
-    const Effect* effect = find_effect(ingredient->name());
-    if (effect && parameters.size() == 1 && effect->remeshes(ingredient->variant())) {
-      // last of the base columns, so that the others are what it is projected against
-      const Eigen::Index last = fitted.form.size() - 1;
-      Eigen::MatrixXd H = sums.fitted.JtJ.topLeftCorner(last + 1, last + 1);
-      H.row(at).swap(H.row(last));
-      H.col(at).swap(H.col(last));
-      Hypothesis change;
-      change.first = static_cast<int>(last), change.count = 1;
-      change.typical = VectorXd::Ones(1);
-      const ProjectedHypothesis share = project(H, static_cast<int>(last), change);
-      const double next = parameters[0].typical;
-      out.mesh_fall = std::pow(next, 2) * share.M(0, 0) / std::max(sums.photo_count, 1.0);
-      VectorXd by_share = VectorXd::Zero(last + 1);
-      by_share.head(last) = -share.to_base.col(0);
-      std::swap(by_share[at], by_share[last]);
-      const double left = next / (1.0 - next) - fitted.p[at];
-      out.mesh_shift = left * by_share;
-      VectorXd others = out.mesh_shift;
-      others[at] = 0.0;
-      out.mesh_in_measured = change_of_measured(evaluation, at, left, others);
-      const std::string moved = moved_by_mesh(fitted, (1.0 - next) * out.mesh_shift);
-      if (!moved.empty())
-        out.mesh_note = fmt::format(
-            "a still finer mesh would move {}, by what the refinement changed; the intervals reach "
-            "there",
-            moved);
-    }
-    at += static_cast<Eigen::Index>(parameters.size());
-  }
-}
-
 /// Scores again, without them, the hypotheses that would step below their bounds.
 void keep_within_bounds(const DiagnosisSums& sums, int base, double r2,
                         std::vector<Candidate>& candidates,
@@ -274,17 +186,6 @@ void keep_within_bounds(const DiagnosisSums& sums, int base, double r2,
   }
 }
 
-/// What a finer mesh would do, where one is offered.
-const Candidate* mesh_candidate(const std::vector<Candidate>& candidates,
-                                const VectorXd& evidence) {
-  const Candidate* out = nullptr;
-  double most = -1.0;
-  for (size_t i = 0; i < candidates.size(); ++i)
-    if (candidates[i].effect->group() == EffectGroup::numerical && evidence[i] > most)
-      out = &candidates[i], most = evidence[i];
-  return out;
-}
-
 void weigh(std::vector<EffectScore>& scores) {
   double largest = 0.0, sum = 0.0;
   for (const auto& score : scores)
@@ -297,11 +198,14 @@ void weigh(std::vector<EffectScore>& scores) {
 
 }  // namespace
 
-double least_fall(const Diagnosis& diagnosis) {
+double least_fall(const Diagnosis& diagnosis, const std::string& effect) {
   constexpr double kTrustedPx = 0.01;
   const Floor& floor = diagnosis.floor;
+  const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                  [&](const auto& one) { return one.effect == effect; });
   return std::max({0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
-                   kTrustedPx * kTrustedPx * floor.per_px2, diagnosis.mesh_fall});
+                   kTrustedPx * kTrustedPx * floor.per_px2,
+                   score == diagnosis.effects.end() ? diagnosis.mesh_fall : score->mesh_fall});
 }
 
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
@@ -317,6 +221,11 @@ void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
 bool sensors_alone(const Ingredient& ingredient) {
   const Touches touches = ingredient.touches();
   return touches.measured && !touches.energy && !touches.loading && !touches.photos;
+}
+
+bool brightness_alone(const Ingredient& ingredient) {
+  const Touches touches = ingredient.touches();
+  return touches.photos && !touches.energy && !touches.loading && !touches.cameras;
 }
 
 std::vector<std::string> leaders(const Diagnosis& diagnosis) {
@@ -349,7 +258,8 @@ std::string conclusion(const Diagnosis& diagnosis) {
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
-         ((score.best && sensors_alone(*score.best)) || score.fall >= least_fall(diagnosis));
+         ((score.best && sensors_alone(*score.best)) ||
+          score.fall >= least_fall(diagnosis, score.effect));
 }
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
@@ -388,7 +298,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
   keep_within_bounds(sums, base, r2, candidates, projected, evidence);
   if (const Candidate* mesh = mesh_candidate(candidates, evidence))
-    tell_of_mesh(context, *mesh, base, out);
+    tell_of_mesh(fitted, evaluation, sums, *mesh, out);
   // The null is at the floor, where one noise holds for all; a misfit of the photos is none of the
   // sensors', and what a finer mesh would change in their values no error of theirs.
   for (size_t i = 0; i < candidates.size(); ++i)
@@ -405,6 +315,9 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   for (const auto& [name, value] : by_effect(candidates, evidence)) {
     EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
     score.evidence = value;
+    score.mesh_fall = brightness_alone(*score.best)
+                          ? imitated_by_mesh(fitted, sums, candidates[best[name]].hypothesis)
+                          : out.mesh_fall;
     score.bic =
         sensors_alone(*score.best) ? value : information_of(sums, projected[best[name]], r2);
     if (value >= kNameable)

@@ -30,10 +30,13 @@ struct EffectScore {
   double explains = 0.0;           ///< predicted share of (chi^2 - floor^2) removed, fitted photos
   double explains_held_out = 0.0;  ///< the same step on the held-out photos
   double fall = 0.0;               ///< predicted fall of chi^2 on the fitted photos
-  double evidence = 0.0;           ///< log marginal likelihood over the current model
-  double bic = 0.0;                ///< of the best candidate: gain less 1/2 dof log N
-  double p_value = 1.0;  ///< of the largest evidence in the catalogue under the simulated null
-  double weight = 0.0;   ///< evidence among the tested effects, summing to one
+  /// As much of it could be the mesh's own error: Diagnosis::mesh_fall, or, of an effect on
+  /// brightness alone, what it could imitate of that.
+  double mesh_fall = 0.0;
+  double evidence = 0.0;  ///< log marginal likelihood over the current model
+  double bic = 0.0;       ///< of the best candidate: gain less 1/2 dof log N
+  double p_value = 1.0;   ///< of the largest evidence in the catalogue under the simulated null
+  double weight = 0.0;    ///< evidence among the tested effects, summing to one
   std::vector<Confusion> confused_with;
   /// Where the linear step takes the examples (3n each): of the leading effects and of all with
   /// evidence enough to be named.
@@ -97,9 +100,11 @@ constexpr int kPictured = 5;
 /// what 0.01 px of motion all over the surface would bring. Below that two renderers of one scene
 /// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
 /// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error.
-double least_fall(const Diagnosis& diagnosis);
+double least_fall(const Diagnosis& diagnosis, const std::string& effect);
 /// It changes what sensors show and nothing in the photos.
 bool sensors_alone(const Ingredient& ingredient);
+/// It changes how bright or sharp photos are, and nothing of where they show the body.
+bool brightness_alone(const Ingredient& ingredient);
 /// Testable, above the simulated gate, and, where it is seen in photos, above the renderer's and
 /// the mesh's own errors. (The mesh's own effect is not held to the latter: it is not offered
 /// then.)

@@ -24,7 +24,7 @@ namespace {
 
 /// Why a refit does not stand beside the step that it started from; "" where it does.
 std::string why_refused(const Step& step, double before, const Refit& with) {
-  const double least = least_fall(step.diagnosis);
+  const double least = least_fall(step.diagnosis, with.effect);
   const auto fell = [&](bool held_out) {
     return std::pow(step.fitted.evaluation.chi(held_out), 2) -
            std::pow(with.fitted.evaluation.chi(held_out), 2);

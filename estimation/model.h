@@ -57,6 +57,7 @@ struct Model {
 /// What an ingredient can change; lets the derivative skip what it does not touch.
 struct Touches {
   bool energy = false, loading = false, photos = false, measured = false;
+  bool cameras = false;  ///< with photos: where they show a point, not only how bright and sharp
 };
 
 /// Derivative of one example by one parameter at fixed q, where an ingredient knows it better than

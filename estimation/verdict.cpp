@@ -33,10 +33,10 @@ namespace {
 /// ", and ... stands out by less than a finer mesh would change": the largest evidence that is kept
 /// from being named by the mesh's error alone. "" where there is none.
 std::string hidden_by_mesh(const Diagnosis& diagnosis) {
-  if (diagnosis.mesh_fall < least_fall(diagnosis)) return "";
   for (const EffectScore& effect : diagnosis.effects)
     if (effect.testable && !numerical(effect.effect) &&
-        effect.evidence >= std::max(kNameable, diagnosis.gate))
+        effect.evidence >= std::max(kNameable, diagnosis.gate) && effect.fall < effect.mesh_fall &&
+        effect.mesh_fall >= least_fall(diagnosis, effect.effect))
       return fmt::format(
           ", and {} stands out by less than a mesh finer still would change: give the body one "
           "(mesh: {{edge: ...}}) and run again",

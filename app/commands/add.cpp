@@ -40,8 +40,8 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, bool
   session.say("{}",
               wrapped(fmt::format("outcome:   {}{}", outcome(before, after, floor, false),
                                   held_out ? ", " + outcome(before, after, floor, true) : "")));
-  if (!taken_back &&
-      !held_out_allows(after.fitted, before.fitted, floor, least_fall(before.diagnosis)))
+  if (!taken_back && !held_out_allows(after.fitted, before.fitted, floor,
+                                      least_fall(before.diagnosis, after.added)))
     session.warn(after.name +
                  " does not pay on the held-out photos; take it back with --take-back");
 }

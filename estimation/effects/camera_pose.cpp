@@ -50,7 +50,7 @@ class CameraPose final : public Effect {
            0.0, turn ? -1.0 : -10.0 * size, turn ? 1.0 : 10.0 * size, turn ? 0.002 : 0.01 * size,
            false});
     }
-    spec.touches = {.photos = true};
+    spec.touches = {.photos = true, .cameras = true};
     const std::string camera_name = camera.name;
     const int k = first.index;
     spec.apply = [camera_name, k](const VectorXd& values, Model& m) {

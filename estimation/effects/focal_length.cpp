@@ -48,7 +48,7 @@ class FocalLength final : public Effect {
     spec.variant = camera.empty() ? "all cameras" : camera;
     spec.parameters = {{"focal_length." + (camera.empty() ? std::string("all") : camera), "",
                         "log of the factor on the focal length", 0.0, -2.0, 2.0, 0.01, false}};
-    spec.touches = {.photos = true};
+    spec.touches = {.photos = true, .cameras = true};
     spec.apply = [camera](const VectorXd& values, Model& m) {
       for (auto& example : m.examples)
         for (auto& photo : example.photos)

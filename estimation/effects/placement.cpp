@@ -43,7 +43,7 @@ class PlacementEffect final : public Effect {
            0.0, turn ? -3.2 : -10.0 * body.size, turn ? 3.2 : 10.0 * body.size,
            turn ? 0.01 : 0.01 * body.size, false});
     }
-    spec.touches = {.loading = true, .photos = true, .measured = true};
+    spec.touches = {.loading = true, .photos = true, .measured = true, .cameras = true};
     spec.apply = [centre](const VectorXd& values, Model& m) {
       place(m, pose_about(centre, values.head<3>(), values.tail<3>()));
     };

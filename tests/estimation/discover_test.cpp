@@ -293,7 +293,7 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
   diagnosis.effects.resize(1);
   EffectScore& weight = diagnosis.effects[0];
   weight.effect = "gravity", weight.evidence = 50.0, weight.fall = 0.2;
-  diagnosis.mesh_fall = 0.4;
+  weight.mesh_fall = diagnosis.mesh_fall = 0.4;
   std::string why;
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
   EXPECT_THAT(why, testing::HasSubstr("gravity stands out by less than a mesh finer still"));

@@ -5,7 +5,9 @@
 #include <regex>
 #include <set>
 
+#include "estimation/diagnosis.h"
 #include "estimation/effects_scene.h"
+#include "estimation/evaluation.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye::test {
@@ -130,6 +132,33 @@ TEST(Catalogue, OneSidedEffectsSaySo) {
     for (const Parameter& p : c.ingredient->parameters())
       if (p.low == p.value || p.high == p.value) one_sided.insert(c.effect->name());
   EXPECT_EQ(one_sided, expected);
+}
+
+/// By it the derivative skips what does not change, and the mesh's error, which moves the body, is
+/// not laid to what changes brightness alone.
+TEST(Catalogue, TouchesSayWhatChangesInPhotos) {
+  std::set<std::string> brightness;
+  for (const Case& c : all_cases(true)) {
+    const ModelForm form = extended(base(), c.ingredient);
+    VectorXd p = form.initial();
+    p.tail(static_cast<Eigen::Index>(c.ingredient->parameters().size())) =
+        some_values(*c.ingredient);
+    const Model model = form.realise(p);
+    bool moves = !model.placement.isApprox(base_model().placement, 1e-15), shades = false;
+    for (size_t e = 0; e < model.examples.size(); ++e)
+      for (size_t k = 0; k < model.examples[e].photos.size(); ++k) {
+        const VectorXd d =
+            photo_difference(base_model().examples[e].photos[k], model.examples[e].photos[k]);
+        moves = moves || !d.head(kLogGain).isZero(0.0);
+        shades = shades || !d.tail(kPhotoColumns - kLogGain).isZero(0.0);
+      }
+    const Touches touches = c.ingredient->touches();
+    EXPECT_EQ(touches.cameras, moves) << c.label();
+    EXPECT_EQ(touches.photos, moves || shades) << c.label();
+    if (brightness_alone(*c.ingredient)) brightness.insert(c.effect->name());
+  }
+  EXPECT_EQ(brightness,
+            (std::set<std::string>{"defocus", "exposure", "light_direction", "specular"}));
 }
 
 TEST(Catalogue, NullLeavesTheModelBitEqual) {

@@ -66,7 +66,7 @@ TEST(Leaders, WhatRenderersErrByIsNotNamed) {
   Diagnosis found = of({scored("gravity", 50.0)});
   found.effects[0].fall = 0.9;
   found.floor.chi = std::sqrt(10.0 + 1.0);  // a tenth of what the rest photos keep over their noise
-  EXPECT_NEAR(least_fall(found), 1.0, 1e-12);
+  EXPECT_NEAR(least_fall(found, "gravity"), 1.0, 1e-12);
   EXPECT_THAT(leaders(found), IsEmpty());
   found.effects[0].fall = 1.1;
   EXPECT_THAT(leaders(found), ElementsAre("gravity"));
