@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "capture_io/run.h"
+#include "render/vertex_normals.h"
 
 namespace hookeye::detail {
 
@@ -51,12 +52,14 @@ void write_stage(const Truth& truth, const fs::path& albedo, const fs::path& sta
   const Scene& scene = *truth.model.scene;
   const RenderSurface& surface = scene.body->surface;
   Json out = {{"hookeye_stage", 1}, {"albedo", fs::absolute(albedo).string()}};
+  // Of the told surface, as we shade it: those of its cut triangles are others.
+  const VertexNormals normals(surface.mesh);
   fs::create_directories(stage);
   for (size_t e = 0; e < truth.states.size(); ++e) {
     const ExampleSpec& example = scene.capture.examples[e];
     SurfaceMesh deformed = surface.mesh;
     deformed.X = surface.deformed(scene.body->mesh, truth.states[e].q);
-    write_surface_obj(stage / (example.name + ".obj"), deformed);
+    write_surface_obj(stage / (example.name + ".obj"), deformed, normals.at(deformed.X));
     for (size_t k = 0; k < example.photos.size(); ++k) {
       const PhotoState& state = truth.model.examples[e].photos[k];
       if (state.specular != 0.0)

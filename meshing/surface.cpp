@@ -213,7 +213,8 @@ SurfaceMesh read_surface(const std::filesystem::path& file) {
   return welded(soup, file);
 }
 
-void write_surface_obj(const std::filesystem::path& file, const SurfaceMesh& surface) {
+void write_surface_obj(const std::filesystem::path& file, const SurfaceMesh& surface,
+                       const Eigen::Matrix3Xd& normals) {
   std::string text;
   auto out = std::back_inserter(text);
   for (Eigen::Index i = 0; i < surface.X.cols(); ++i) {
@@ -222,11 +223,16 @@ void write_surface_obj(const std::filesystem::path& file, const SurfaceMesh& sur
   for (const auto& triangle : surface.uv) {
     for (const Vector2d& uv : triangle) fmt::format_to(out, "vt {} {}\n", uv.x(), uv.y());
   }
+  for (const auto& n : normals.colwise()) {
+    fmt::format_to(out, "vn {} {} {}\n", n.x(), n.y(), n.z());
+  }
   for (size_t t = 0; t < surface.triangles.size(); ++t) {
     fmt::format_to(out, "f");
     for (int k = 0; k < 3; ++k) {
-      fmt::format_to(out, " {}", surface.triangles[t][k] + 1);
+      const int vertex = surface.triangles[t][k] + 1;
+      fmt::format_to(out, " {}", vertex);
       if (!surface.uv.empty()) fmt::format_to(out, "/{}", 3 * t + k + 1);
+      if (normals.cols() > 0) fmt::format_to(out, "{}/{}", surface.uv.empty() ? "/" : "", vertex);
     }
     fmt::format_to(out, "\n");
   }

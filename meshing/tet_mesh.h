@@ -77,7 +77,9 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh,
 /// Named point or cell array of a vtu (c x n); throws InputError when absent.
 Eigen::MatrixXd read_vtu_array(const std::filesystem::path& file, const std::string& name,
                                bool on_points = true);
-void write_surface_obj(const std::filesystem::path& file, const SurfaceMesh& surface);
+/// `normals`: of the vertices, 3 x n; none: left to the reader.
+void write_surface_obj(const std::filesystem::path& file, const SurfaceMesh& surface,
+                       const Eigen::Matrix3Xd& normals = {});
 
 /// Shape functions at barycentric coordinates (4): values (4 or 10).
 VectorXd shape_functions(int order, const Eigen::Vector4d& barycentric);

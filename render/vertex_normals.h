@@ -1,4 +1,4 @@
-// Vertex normals and their linearisation. Internal to render.
+// Vertex normals and their linearisation.
 #pragma once
 
 #include <Eigen/Core>

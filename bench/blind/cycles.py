@@ -1,7 +1,7 @@
 """Blender Cycles photographs what FOLDER/scene.json tells (docs/synth.md, "Another photographer").
 
 Light as hookeye tells it: albedo (ambient sky visibility + max(0, n.sun) visible), no light that
-has bounced, smooth normals. Cycles' Blackman-Harris window of 1.5 px is 3 px wide in all.
+has bounced, the normals that the surface tells. Cycles' Blackman-Harris window of 1.5 px is 3 px wide in all.
 """
 
 import json
@@ -14,7 +14,7 @@ from mathutils import Matrix, Vector
 
 
 def read_obj(path):
-    vertices, uvs, faces = [], [], []
+    vertices, uvs, normals, faces = [], [], [], []
     with open(path) as file:
         for line in file:
             word, *rest = line.split() or [""]
@@ -22,13 +22,15 @@ def read_obj(path):
                 vertices.append([float(x) for x in rest])
             elif word == "vt":
                 uvs.append([float(x) for x in rest])
+            elif word == "vn":
+                normals.append([float(x) for x in rest])
             elif word == "f":
                 faces.append([[int(i) - 1 for i in corner.split("/")[:2]] for corner in rest])
-    return vertices, uvs, faces
+    return vertices, uvs, normals, faces
 
 
 def body(path, material):
-    vertices, uvs, faces = read_obj(path)
+    vertices, uvs, normals, faces = read_obj(path)
     mesh = bpy.data.meshes.new("body")
     mesh.from_pydata(vertices, [], [[corner[0] for corner in face] for face in faces])
     layer = mesh.uv_layers.new(name="uv")
@@ -36,6 +38,8 @@ def body(path, material):
         polygon.use_smooth = True
         for loop, corner in zip(polygon.loop_indices, face):
             layer.data[loop].uv = uvs[corner[1]]
+    mesh.use_auto_smooth = True  # without it Blender takes normals of its own
+    mesh.normals_split_custom_set_from_vertices(normals)
     mesh.materials.append(material)
     return bpy.data.objects.new("body", mesh)
 

@@ -242,7 +242,7 @@ std::string grey_photographer(const fs::path& folder, const std::string& size) {
   const fs::path script = folder / "photographer";
   std::ofstream(script) << "#!/bin/sh\nset -e\nsed -n 's/.*\"picture\": \"\\(.*\\)\".*/\\1/p' "
                            "\"$1/scene.json\" | while read name; do\n"
-                           "  test -s \"$1/${name%%-*}.obj\"\n"
+                           "  grep -q '^vn ' \"$1/${name%%-*}.obj\"\n"
                            "  oiiotool --create "
                         << size << " 1 --addc 0.25 -d float -o \"$1/$name\"\ndone\n";
   fs::permissions(script, fs::perms::owner_all);

@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -32,6 +34,25 @@ TEST(ReadSurface, ObjKeepsTrianglesPositionsAndSeams) {
       EXPECT_EQ(back.uv[t][k], box.uv[t][k]);
     }
   }
+}
+
+TEST(ReadSurface, ObjIsWrittenWithNormals) {
+  SurfaceMesh box = box_surface({3, 2, 1}, 1);
+  const Eigen::Matrix3Xd normals = box.X.colwise().normalized();
+  const Scratch scratch;
+  const auto lines_with = [&](const std::string& start) {
+    write_surface_obj(scratch / "box.obj", box, normals);
+    EXPECT_EQ(read_surface(scratch / "box.obj").triangles.size(), box.triangles.size());
+    std::ifstream file(scratch / "box.obj");
+    Eigen::Index count = 0;
+    for (std::string line; std::getline(file, line);) count += line.starts_with(start);
+    return count;
+  };
+  EXPECT_EQ(lines_with("vn "), box.X.cols());
+  const int corner = box.triangles[0][0] + 1;
+  EXPECT_EQ(lines_with(fmt::format("f {}/1/{} ", corner, corner)), 1);
+  box.uv.clear();
+  EXPECT_GE(lines_with(fmt::format("f {}//{} ", corner, corner)), 1);
 }
 
 TEST(ReadSurface, ObjWeldsAndCountsFromTheEndAndAcrossGroups) {
