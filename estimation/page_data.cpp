@@ -7,6 +7,7 @@
 #include "capture_io/run.h"
 #include "estimation/energy_curves.h"
 #include "estimation/fitted_fields.h"
+#include "estimation/step_json.h"
 #include "render/renderer.h"
 
 namespace hookeye {
@@ -286,6 +287,15 @@ void write_page_data(const std::filesystem::path& folder, const Scene& scene, co
       write_text(folder / ("photo-" + photo_name(scene, photo) + ".json"),
                  flow_json(scene, model, photo).dump());
   }
+}
+
+void write_page_free_form(const std::filesystem::path& folder, const Scene& scene,
+                          const std::vector<FreeForm>& fields) {
+  const Shell shell = make_shell(scene.body->mesh);
+  json out = to_json(fields);
+  for (size_t i = 0; i < fields.size(); ++i)
+    out[i]["forces"] = array_json(fields[i].forces(Eigen::all, shell.nodes));
+  write_text(folder / "free_form.json", out.dump());
 }
 
 }  // namespace hookeye

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimation/fit.h"
+#include "estimation/free_form.h"
 
 namespace hookeye {
 
@@ -22,6 +23,11 @@ namespace hookeye {
 /// Arrays are base64 of little-endian float32 (`{"components": 3, "float32": "..."}`).
 void write_page_data(const std::filesystem::path& folder, const Scene& scene, const Model& model,
                      const Fitted& fitted);
+
+/// Writes `folder`/free_form.json: fields as in a step's free_form.json, with their `forces` on the
+/// nodes of body.json.
+void write_page_free_form(const std::filesystem::path& folder, const Scene& scene,
+                          const std::vector<FreeForm>& fields);
 
 /// base64 (RFC 4648).
 std::string base64(const void* bytes, size_t size);

@@ -9,6 +9,7 @@
 #include "app/progress.h"
 #include "estimation/contest.h"
 #include "estimation/doubts.h"
+#include "estimation/page_data.h"
 #include "estimation/removed.h"
 #include "estimation/step_json.h"
 
@@ -138,7 +139,7 @@ void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions&
 void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& session) {
   constexpr size_t kTold = 3;
   const std::filesystem::path folder = run.steps().back();
-  for (const char* stale : {"free_form.json", "free_form.vtu"})
+  for (const char* stale : {"free_form.json", "free_form.vtu", "page/free_form.json"})
     std::filesystem::remove(folder / stale);
   if (at_floor(step.fitted, step.diagnosis.floor)) return;
   auto fields = value_or_fail(free_form(bench.workspace, step.fitted, &interrupted()));
@@ -147,6 +148,7 @@ void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& ses
   write_text(folder / "free_form.json", session.document["free_form"].dump(1) + "\n");
   fields.resize(std::min(fields.size(), kTold));
   write_free_form(folder / "free_form.vtu", *step.fitted.form.scene, fields);
+  write_page_free_form(folder / "page", *step.fitted.form.scene, fields);
   session.say("{}", wrapped("no effect of the catalogue explains what is left. Forces that would "
                             "show where to look, whatever they stand for:"));
   for (const FreeForm& field : fields) session.say("{}", wrapped("- " + field.sentence));

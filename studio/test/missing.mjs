@@ -1,26 +1,52 @@
 // What the view of the ranked effects is held to.
 import assert from 'node:assert/strict';
 
+/** Pixels of each canvas that are no grey. */
+const coloured = (page, canvases) => page.$$eval(canvases, (all) => all.map((canvas) => {
+  const copy = document.createElement('canvas');
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const context = copy.getContext('2d');
+  context.drawImage(canvas, 0, 0);  // the body's canvas has no pixels of its own to ask for
+  const data = context.getImageData(0, 0, copy.width, copy.height).data;
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4)
+    if (Math.abs(data[i] - data[i + 2]) > 25) count += 1;
+  return count;
+}));
+
+/** Waits for `count` pictures in colour. */
+async function inColour(page, canvases, count) {
+  for (const end = Date.now() + 30000; Date.now() < end; await page.waitForTimeout(300)) {
+    const counts = await coloured(page, canvases);
+    if (counts.length === count && counts.every((c) => c > 100)) return;
+  }
+  assert.fail(`${canvases} is not drawn: ${await coloured(page, canvases)}`);
+}
+
 /** The leading effect's pictures, all in colour: the residual there is and what it would remove
  *  over the photo, and the latter on the body. */
 export async function removedIsDrawn(page) {
   await page.click('#tab-missing');
-  const coloured = () => page.$$eval('.removed canvas', (all) => all.map((canvas) => {
-    const copy = document.createElement('canvas');
-    [copy.width, copy.height] = [canvas.width, canvas.height];
-    const context = copy.getContext('2d');
-    context.drawImage(canvas, 0, 0);  // the body's canvas has no pixels of its own to ask for
-    const data = context.getImageData(0, 0, copy.width, copy.height).data;
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4)
-      if (Math.abs(data[i] - data[i + 2]) > 25) count += 1;
-    return count;
-  }));
-  for (const end = Date.now() + 30000; Date.now() < end; await page.waitForTimeout(300)) {
-    const counts = await coloured();
-    if (counts.length === 3 && counts.every((c) => c > 100)) return;
+  await inColour(page, '.removed canvas', 3);
+}
+
+/** The fields of forces that a step's free_form.json tells, the best three of them: each is drawn
+ *  when it is chosen, and the sentence is its own. */
+export async function whereToLook(page, told) {
+  await page.click('#tab-missing');
+  await page.waitForSelector('.free-form');
+  const choices = await page.$$('.free-form li button');
+  assert.equal(choices.length, Math.min(3, told.length));
+  const pictures = new Set();
+  for (const [i, choice] of choices.entries()) {
+    await choice.click();
+    await page.waitForTimeout(500);
+    await inColour(page, '.free-form canvas', 1);
+    pictures.add(await page.$eval('.free-form canvas', (canvas) => canvas.toDataURL()));
+    const said = await page.textContent('.free-form .note');
+    assert.equal(said.slice(1, told[i].sentence.length), told[i].sentence.slice(1));
   }
-  assert.fail(`what the effect would remove is not drawn: ${await coloured()}`);
+  assert.equal(pictures.size, choices.length, 'two fields look the same');
 }
 
 /** Pointing at an effect only shows it; a click chooses it. */

@@ -9,7 +9,7 @@ import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {launch} from './browser.mjs';
 import {broken, lost, withoutSteps} from './damaged.mjs';
-import {choiceIsTold, hoverIsNoChoice, removedIsDrawn} from './missing.mjs';
+import {choiceIsTold, hoverIsNoChoice, removedIsDrawn, whereToLook} from './missing.mjs';
 import {smallCapture} from './small_capture.mjs';
 
 const hookeye = process.argv[2];
@@ -356,6 +356,23 @@ async function chosen() {
   say('what was added tells what it was chosen from');
 }
 
+/** A run that ended unexplained, because nothing of the catalogue was allowed, shows where to look. */
+async function unexplained(capture) {
+  const folderOfRun = join(folder, 'unexplained');
+  const effects = runJson().steps[0].diagnosis.map((e) => e.effect);
+  tell('discover', capture, '-o', folderOfRun, ...effects.flatMap((effect) => ['--without', effect]));
+  const html = join(folder, 'unexplained.html');
+  tell('report', folderOfRun, '-o', html);
+  const told = JSON.parse(readFileSync(join(folderOfRun, 'steps', '00-base', 'free_form.json'), 'utf8'));
+  const {page, faults, close} = await open('file://' + html);
+  await whereToLook(page, told);
+  if (shots) await page.screenshot({path: join(shots, 'unexplained-missing.png'), fullPage: true});
+  await accessible(page);
+  assert.deepEqual(faults, []);
+  await close();
+  say('what no effect explains is drawn as forces on the body');
+}
+
 /** Names as long as people give them do not make any view wider than a phone. */
 async function longNames() {
   const long = join(folder, 'long');
@@ -413,6 +430,7 @@ try {
   await studio();
   await retold();
   await chosen();
+  await unexplained(capture);
   await longNames();
   await large();
   for (const tried of [broken, lost, withoutSteps]) say(await tried({folder, run, tell, open, walk, until}));

@@ -6,13 +6,42 @@ import {
 } from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import type {Rgb} from '../colours';
-import type {Surface} from './surface';
+import {norms, type Surface} from './surface';
 
 export interface Look {
   /** 0: rest, 1: deformed, more: exaggerated. */
   amount: number;
   colour: (node: number) => Rgb;
   ghost: boolean;
+  /** Vectors at the nodes, of which arrows show some; the longest is a fifth of the body's size. */
+  arrows?: Float32Array;
+}
+
+/** Arrows at nodes that lie apart, outside the body: those that point into it end at their node. */
+function arrows(body: BufferGeometry, vectors: Float32Array): LineSegments {
+  const [at, normal] = [body.getAttribute('position'), body.getAttribute('normal')];
+  body.computeBoundingSphere();
+  const radius = body.boundingSphere!.radius;
+  const most = Math.max(1e-300, ...norms(vectors));
+  const [from, along, out, aside, kept] = [new Vector3(), new Vector3(), new Vector3(), new Vector3(), [] as Vector3[]];
+  const lines: number[] = [];
+  for (let i = 0; i < at.count; ++i) {
+    from.fromBufferAttribute(at, i);
+    along.fromArray(vectors, 3 * i).multiplyScalar((0.4 * radius) / most);
+    if (along.length() < 0.02 * radius || kept.some((other) => other.distanceTo(from) < 0.14 * radius)) continue;
+    kept.push(from.clone());
+    out.fromBufferAttribute(normal, i);
+    from.addScaledVector(out, 0.01 * radius);
+    if (along.dot(out) < 0) from.sub(along);
+    const tip = from.clone().add(along);
+    aside.crossVectors(along, Math.abs(along.z) < 0.9 * along.length() ? new Vector3(0, 0, 1) : new Vector3(1, 0, 0)).setLength(0.12 * along.length());
+    lines.push(...from, ...tip);
+    for (const side of [1, -1])
+      lines.push(...tip, ...tip.clone().addScaledVector(along, -0.3).addScaledVector(aside, side));
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(new Float32Array(lines), 3));
+  return new LineSegments(geometry, new LineBasicMaterial({color: 0xc2410c}));
 }
 
 export class BodyScene {
@@ -92,6 +121,7 @@ export class BodyScene {
     const first = !this.shown;
     this.shown = surface;
     this.fill(surface, look);
+    if (look.arrows) this.group.add(arrows(this.mesh!.geometry, look.arrows));
     if (first) this.frame();
     this.draw();
   }

@@ -65,7 +65,8 @@ export function unitOf(q: Quantity): string {
   return q === 'von_mises' ? `${units.value.stress}, von Mises` : units.value.length;
 }
 
-function lengths(vectors: Float32Array): Float32Array {
+/** Lengths of vectors in a row. */
+export function norms(vectors: Float32Array): Float32Array {
   const out = new Float32Array(vectors.length / 3);
   for (let i = 0; i < out.length; ++i)
     out[i] = Math.hypot(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]);
@@ -92,10 +93,10 @@ export async function surface(step: StepEntry, example: string): Promise<Surface
     displacement,
     scalars: {
       residual: array(state.residual),
-      gap: lengths(array(state.gap)),
+      gap: norms(array(state.gap)),
       strain: array(state.strain),
       von_mises: array(state.von_mises),
-      displacement: lengths(displacement),
+      displacement: norms(displacement),
       stiffness: state.stiffness ? array(state.stiffness) : none,
       swelling: state.swelling ? array(state.swelling) : none,
       beyond: state.beyond ? array(state.beyond) : none,

@@ -8,6 +8,7 @@ import {AddButton} from '../add/add';
 import {Ask} from '../facts/glossary';
 import {bothOf, decidedBy, tooLittle, triedBy} from '../story';
 import {Confusion} from './confusion';
+import {FreeForm} from './free_form';
 import {Removed} from './removed';
 import {Share, Wide} from '../widgets';
 
@@ -108,7 +109,9 @@ export function Missing() {
   const all = effectsOf(step.value);
   const ranked = all.filter(wasTested);
   if (!all.length)
-    return <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
+    return step.value?.fields['free_form']
+      ? <div class="missing"><p>No effect of the catalogue was tried.</p><FreeForm /></div>
+      : <p class="empty">This step has not been diagnosed: run <code>hookeye diagnose RUN</code>.</p>;
   const decision = decisionAfter(step.value);
   const tried = decision?.tried ?? [];
   const byName = (name: string | undefined): EffectScore | undefined => all.find((e) => e.effect === name);
@@ -130,6 +133,7 @@ export function Missing() {
         </Wide>
       </div>
       <div class="side">
+        <FreeForm />
         {pinned && <Detail effect={byName(previewed.value) ?? pinned} pinned={pinned} />}
         <Confusion effects={ranked} strong={pinned.effect} />
       </div>
