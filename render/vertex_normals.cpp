@@ -88,17 +88,19 @@ Matrix3Xd VertexNormals::at(const Matrix3Xd& x) const {
 Eigen::SparseMatrix<double, Eigen::RowMajor> VertexNormals::derivative(const Matrix3Xd& x) const {
   if (weights_.size() == 0) return own_derivative(x);
   const Matrix3Xd mean = (weights_ * own(x).transpose()).transpose();
-  std::vector<Eigen::Triplet<double>> entries;  // d(n)/d(n of the cut triangles' vertices)
+  Eigen::SparseMatrix<double, Eigen::RowMajor> by_cut(3 * weights_.rows(), 3 * weights_.cols());
+  by_cut.reserve(9 * weights_.nonZeros());  // d(n)/d(n of the cut triangles' vertices)
   for (int v = 0; v < weights_.outerSize(); ++v) {
     const Matrix3d project = projection(mean.col(v));
-    for (decltype(weights_)::InnerIterator w(weights_, v); w; ++w)
-      for (int r = 0; r < 3; ++r)
+    for (int r = 0; r < 3; ++r) {
+      by_cut.startVec(3 * v + r);
+      for (decltype(weights_)::InnerIterator w(weights_, v); w; ++w)
         for (int c = 0; c < 3; ++c)
-          entries.emplace_back(3 * v + r, 3 * static_cast<int>(w.col()) + c,
-                               w.value() * project(r, c));
+          by_cut.insertBack(3 * v + r, 3 * static_cast<int>(w.col()) + c) =
+              w.value() * project(r, c);
+    }
   }
-  Eigen::SparseMatrix<double, Eigen::RowMajor> by_cut(3 * weights_.rows(), 3 * weights_.cols());
-  by_cut.setFromTriplets(entries.begin(), entries.end());
+  by_cut.finalize();
   return by_cut * own_derivative(x);
 }
 

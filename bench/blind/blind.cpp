@@ -50,7 +50,7 @@ int photograph(const Options& options, const std::string& effect, unsigned seed,
   constexpr int kRefused = 2;
   int status = kRefused;
   Drawing drawing = options.drawing;
-  for (; status == kRefused && drawing.step_back < 3; ++drawing.step_back) {
+  for (; status == kRefused && drawing.step_back < 8; ++drawing.step_back) {
     write_text(folder / "recipe.yaml", draw_recipe(effect, seed, drawing));
     status = run(fmt::format(
         "{} synth {} -o {} {} 2> {}", shell_quoted(options.hookeye),
