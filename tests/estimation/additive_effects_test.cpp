@@ -16,6 +16,7 @@
 #include "estimation/model.h"
 #include "simulation/equilibrium.h"
 #include "support/derivative.h"
+#include "support/temporary_folder.h"
 
 namespace hookeye::test {
 namespace {
@@ -238,7 +239,8 @@ TEST(EffectsOnAdditive, StayConvexWithTheMaterial) {
   for (size_t k = 0; k < parameters.size(); ++k)
     if (parameters[k].name == "I1bar.2") damaged[static_cast<Eigen::Index>(k)] = 0.02;
   ASSERT_TRUE(not_convex(form.realise(damaged)));
-  const auto file = std::filesystem::temp_directory_path() / "hookeye_not_convex.yaml";
+  const TemporaryFolder folder;
+  const auto file = folder / "model.yaml";
   std::ofstream(file) << write_model(form, damaged);
   try {
     read_model(file, scene);
@@ -246,7 +248,6 @@ TEST(EffectsOnAdditive, StayConvexWithTheMaterial) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.wrong(), testing::HasSubstr("not convex at I1bar = "));
   }
-  std::filesystem::remove(file);
   const Eigen::MatrixXd I = Eigen::MatrixXd::Identity(q.size(), q.size());
   const ConvexProjection back = project_convex(parts, q, I);
   ASSERT_TRUE(back.converged);

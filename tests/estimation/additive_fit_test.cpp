@@ -1,9 +1,7 @@
 // The additive material fitted to positions, forces and photos of a sheet made by another law.
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <Eigen/Dense>
-#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -18,15 +16,10 @@
 #include "estimation/sheet.h"
 #include "simulation/equilibrium.h"
 #include "support/derivative.h"
+#include "support/temporary_folder.h"
 
 namespace hookeye::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-fs::path folder(const std::string& name) {
-  return fs::temp_directory_path() / ("hookeye_" + name + "_" + std::to_string(getpid()));
-}
 
 /// A coarse sheet with few load levels: seconds.
 std::shared_ptr<const Scene> small_sheet(std::set<std::string> kinds,
@@ -34,8 +27,9 @@ std::shared_ptr<const Scene> small_sheet(std::set<std::string> kinds,
                                          const std::string& material, const std::string& fit,
                                          double finer = 0.7,
                                          std::optional<Vector3d> dead_force = {}) {
+  const TemporaryFolder folder;
   SheetOptions o;
-  o.folder = folder("sheet");
+  o.folder = folder.path();
   o.kinds = std::move(kinds);
   o.truth = std::move(truth);
   o.material = material;
@@ -44,9 +38,7 @@ std::shared_ptr<const Scene> small_sheet(std::set<std::string> kinds,
   o.finer = finer;
   o.levels = 2;
   o.dead_force = dead_force;
-  const auto scene = make_sheet(o);
-  fs::remove_all(o.folder);
-  return scene;
+  return make_sheet(o);
 }
 
 std::shared_ptr<const EnergyTerm> cloth() { return woven_sheet(0.1, 0.3, 0.08, 4.0, 0.02, 1.0); }
@@ -62,147 +54,6 @@ TEST(WovenSheet, HasItsDerivatives) {
                       VectorXd::Constant(1, law->P(F)(k % 3, k / 3)), 1e-4, 1e-6);
     expect_derivative([&](double h) { return VectorXd(law->P(F + h * d).reshaped()); },
                       law->dP_dF(F).col(k), 1e-4, 1e-6);
-  }
-}
-
-TEST(AdditiveMaterial, IsReadBackFromItsVariantAndFile) {
-  const auto scene = block_scene();
-  const ModelForm base = base_form(scene);
-  auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = additive_parts(form, p).at(0).model;
-  model.frame = Eigen::AngleAxisd(0.4, Vector3d::UnitZ()).matrix();
-  add_addend(model, "E11", {-0.1, 0.2}, {}, Eigen::Vector2d(0.01, 0.03));
-  add_addend(model, "E22", {0.0}, {}, VectorXd::Constant(1, 0.02));
-  add_addend(model, "E11_E22", {0.0, 0.1}, {0.0, 0.1}, Eigen::Vector4d(0.001, 0.002, 0.001, 0.002));
-  add_addend(model, "fibre1", {0.0}, {}, VectorXd::Constant(1, 0.02));
-  model.components[component_index(model, "fibre1")].direction = Vector3d(0.6, 0.8, 0);
-  std::tie(form, p) = with_structures(form, p, {model});
-  const fs::path file = folder("model.yaml");
-  std::ofstream(file) << write_model(form, p);
-  const auto [again, q] = read_model(file, scene);
-  fs::remove(file);
-  EXPECT_EQ(q, p);
-  const VectorXd x = deformed_state(*scene);
-  EXPECT_EQ(signature(again.realise(q), x), signature(form.realise(p), x));
-  EXPECT_EQ(again.ingredients[0]->variant(), form.ingredients[0]->variant());
-  const std::string variant = form.ingredients[0]->variant();
-  const auto damaged = [&](const std::string& from, const std::string& to) {
-    std::string text = variant;
-    const size_t at = text.find(from);
-    if (at == std::string::npos) return "no " + from + " in " + text;
-    try {
-      additive_material_from(text.replace(at, from.size(), to), scene->capture.units);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
-  };
-  EXPECT_THAT(damaged("[-0.1,0.2]", "[0.2,-0.1]"), testing::HasSubstr("out of order"));
-  EXPECT_THAT(damaged("[-0.1,0.2]", "[]"), testing::HasSubstr("values"));
-  EXPECT_THAT(damaged("[0.6,0.8,0.0]", "[0,0,2]"), testing::HasSubstr("no unit vector"));
-  EXPECT_THAT(damaged("\"barrier\":[", "\"barrier\":[1,1.5],\"y\":["),
-              testing::HasSubstr("begins at J = 1.5"));
-  EXPECT_THAT(damaged("\"barrier\":[", "\"barrier\":[-1,0.99],\"y\":["),
-              testing::HasSubstr("modulus is -1"));
-  EXPECT_THAT(damaged("\"frame\":[", "\"frame\":[2,0,0,0,1,0,0,0,1],\"x\":["),
-              testing::HasSubstr("not orthonormal"));
-  EXPECT_THROW(additive_material_from("{\"additive\": 1}", scene->capture.units),
-               std::invalid_argument);
-}
-
-TEST(AdditiveMaterial, ValuesOfAFileMustBeConvex) {
-  const auto scene = block_scene();
-  const ModelForm base = base_form(scene);
-  auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = additive_parts(form, p).at(0).model;
-  for (const char* name : {"E11", "E22"})
-    add_addend(model, name, {0.0}, {}, VectorXd::Constant(1, 0.01));
-  add_addend(model, "E11_E22", {0.0}, {0.0}, VectorXd::Constant(1, 0.02));
-  std::tie(form, p) = with_structures(form, p, {model});
-  const fs::path file = folder("model.yaml");
-  std::ofstream(file) << write_model(form, p);
-  try {
-    read_model(file, scene);
-    ADD_FAILURE() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.wrong(), testing::HasSubstr("not convex at E11 = 0, E22 = 0"));
-  }
-  fs::remove(file);
-}
-
-TEST(AdditiveMaterial, FramesOfATubeReachTheElements) {
-  auto scene = std::make_shared<Scene>(*block_scene());
-  MaterialSpec& spec = scene->capture.materials.at(0);
-  spec.law = "additive";
-  spec.parameters = {{"frame.axis", {{1, 0, 0}, {}}},
-                     {"frame.center", {{0, 0, 20}, {}}},
-                     {"I1bar.at", {{0}, {}}},
-                     {"I1bar.stiffness", {{0.05}, {}}},
-                     {"J.at", {{0}, {}}},
-                     {"J.stiffness", {{0.5}, {}}},
-                     {"E22.at", {{0}, {}}},
-                     {"E22.stiffness", {{0.5}, {}}}};
-  scene->capture.fit = {"additive"};
-  scene->capture.fit_places.assign(1, {});
-  const ModelForm form = base_form(scene);
-  const Model model = form.realise(form.initial());
-  ASSERT_EQ(model.energy.parts.at(0).frames.cols(), scene->body->mesh.size());
-  // Axis 3 is the tube's in every element, axis 2 goes around it.
-  const Eigen::Map<const Matrix3d> A(model.energy.parts[0].frames.col(0).data());
-  EXPECT_NEAR(A(0, 2), 1.0, 1e-12);
-  EXPECT_NEAR(A(0, 1), 0.0, 1e-12);
-}
-
-TEST(AdditiveMaterial, KeepsTheFrameOfAFibreReinforcedLaw) {
-  auto scene = std::make_shared<Scene>(*block_scene());
-  MaterialSpec& spec = scene->capture.materials.at(0);
-  spec.law = "holzapfel";
-  spec.parameters = {{"mu", {{0.05}, {}}},     {"k1", {{0.1}, {}}},
-                     {"k2", {{2.0}, {}}},      {"kappa", {{0.5}, {}}},
-                     {"angles", {{30.0}, {}}}, {"frame", {{0, 1, 0, 0, 0, 1, 1, 0, 0}, {}}}};
-  scene->capture.fit = {"mu"};
-  scene->capture.fit_places.assign(1, {});
-  const ModelForm base = base_form(scene);
-  const auto [form, p] = to_additive(base, base.initial());
-  const AdditiveModel model = additive_parts(form, p).at(0).model;
-  EXPECT_NEAR(model.frame(1, 0), 1.0, 1e-12);
-  EXPECT_NEAR(model.frame(0, 2), 1.0, 1e-12);
-  // At rest the fibres are slack: the moduli are the matrix's.
-  const Matrix3d F = Matrix3d::Identity() * (1 + 1e-4);
-  EXPECT_NEAR(form.realise(p).energy.parts.at(0).psi(0, F),
-              base.realise(base.initial()).energy.parts.at(0).psi(0, F), 1e-12);
-}
-
-TEST(AdditiveMaterial, StartsAtTheEnergyOfTheTextbookLaw) {
-  const auto scene = block_scene();
-  const ModelForm base = base_form(scene);
-  const auto [form, p] = to_additive(base, base.initial());
-  const VectorXd x = deformed_state(*scene);
-  const VectorXd a = signature(base.realise(base.initial()), x), b = signature(form.realise(p), x);
-  EXPECT_LE((a - b).norm(), 1e-12 * a.norm());
-}
-
-TEST(AdditiveMaterial, ForceDerivativesAreThoseOfTheAssembly) {
-  const auto scene = block_scene();
-  const ModelForm base = base_form(scene);
-  auto [form, p] = to_additive(base, base.initial());
-  AdditiveModel model = refined(additive_parts(form, p).at(0).model, 0, 0.2);
-  add_addend(model, "E33", {-0.1, 0.1}, {}, Eigen::Vector2d(0.01, 0.02));
-  std::tie(form, p) = with_structures(form, p, {model});
-  Equilibrium at;
-  at.q = deformed_state(*scene);
-  const Model now = form.realise(p);
-  const auto R = [&](int k, double h) {
-    VectorXd moved = p;
-    moved[k] += h;
-    const Model there = form.realise(moved);
-    return residual(scene->body->mesh, there.energy_of(1), there.examples[1].loading, at.q);
-  };
-  for (int k = 0; k < model.size(); ++k) {
-    MechanicsDerivative out;
-    ASSERT_TRUE(
-        form.ingredients[0]->mechanics_derivative(p.head(model.size()), now, 1, at, k, out));
-    expect_derivative([&](double h) { return R(k, h); }, out.dR_dt, 1e-3, 1e-8, std::to_string(k));
   }
 }
 
@@ -286,8 +137,9 @@ TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
 /// additive model is five times nearer than St Venant-Kirchhoff there, and twice under the shear
 /// that the fit never saw.
 TEST(ProgressiveFit, ASheetIsFiveTimesNearerThanWithStVenantKirchhoff) {
+  const TemporaryFolder folder;
   SheetOptions o;
-  o.folder = folder("five");
+  o.folder = folder / "corner";
   o.truth = woven_sheet(0.05, 0.15, 0.06, 8.0, 0.02, 2.0);
   o.material = "{law: stvk, lambda: 0.1, mu: 0.1}";
   o.fit = "[lambda, mu]";
@@ -297,7 +149,7 @@ TEST(ProgressiveFit, ASheetIsFiveTimesNearerThanWithStVenantKirchhoff) {
   o.fitted = "corner";
   o.only_fitted = true;
   const auto scene = make_sheet(o);
-  o.folder += "_both";
+  o.folder = folder / "both";
   o.only_fitted = false;
   const auto both = make_sheet(o);
   Workspace workspace(scene);
@@ -315,7 +167,6 @@ TEST(ProgressiveFit, ASheetIsFiveTimesNearerThanWithStVenantKirchhoff) {
   const MarkerErrors textbook = errors(stvk), sums = errors(additive);
   EXPECT_GT(textbook.corner, 5.0 * sums.corner);
   EXPECT_GT(textbook.shear, 2.0 * sums.shear);
-  for (const fs::path& made : {o.folder, folder("five")}) fs::remove_all(made);
 }
 
 TEST(ProgressiveFit, ACouplingIsRefinedAlongBothAxes) {

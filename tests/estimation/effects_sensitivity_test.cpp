@@ -8,6 +8,7 @@
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation.h"
 #include "meshing/interpolation.h"
+#include "support/temporary_folder.h"
 
 namespace hookeye::test {
 
@@ -202,10 +203,10 @@ std::pair<ModelForm, VectorXd> on_finer_mesh(const ModelForm& base, double share
 /// Written and read, the finer mesh is there again.
 TEST(Sensitivity, AFinerMeshIsReadBack) {
   const auto [form, p] = on_finer_mesh(base_form(block_scene()), 0.4);
-  const auto file = std::filesystem::temp_directory_path() / "hookeye-finer-model.yaml";
+  const TemporaryFolder folder;
+  const auto file = folder / "model.yaml";
   std::ofstream(file) << write_model(form, p);
   const auto [again, values] = read_model(file, block_scene());
-  std::filesystem::remove(file);
   EXPECT_EQ(values, p);
   EXPECT_EQ(again.scene->body->mesh.nodes(), form.scene->body->mesh.nodes());
   EXPECT_EQ(again.ingredients.back()->name(), "mesh_resolution");
@@ -217,7 +218,8 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
 TEST(Sensitivity, EveryEffectIsReadBackAtItsBoundsFromASofterModel) {
   const ModelForm base = base_form(block_scene());
   const Model model = base.realise(base.initial());
-  const auto file = std::filesystem::temp_directory_path() / "hookeye-bounds-model.yaml";
+  const TemporaryFolder folder;
+  const auto file = folder / "model.yaml";
   int bounded = 0;
   for (const Effect* effect : catalogue()) {
     const auto candidates = effect->candidates(model, nullptr);
@@ -242,7 +244,6 @@ TEST(Sensitivity, EveryEffectIsReadBackAtItsBoundsFromASofterModel) {
       EXPECT_EQ(read[k].high, own[k].high) << own[k].name;
     }
   }
-  std::filesystem::remove(file);
   EXPECT_GT(bounded, 10);
 }
 

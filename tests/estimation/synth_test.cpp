@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
@@ -10,6 +9,7 @@
 
 #include "estimation/evaluation.h"
 #include "meshing/surface_mesh.h"
+#include "support/temporary_folder.h"
 
 namespace hookeye {
 namespace {
@@ -49,16 +49,10 @@ const char* const kGravity = "hidden:\n  - {effect: gravity, values: {gravity.z:
 
 class SynthTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("hookeye_synth_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
   Synthesis make(const std::string& text, const std::string& name) {
     return std::get<Synthesis>(synthesize(parse_recipe(text, "recipe.yaml"), folder_ / name));
   }
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 std::string bytes(const fs::path& file) {
@@ -123,7 +117,7 @@ TEST_F(SynthTest, HiddenEffectsMustBeInTheCatalogueAndInRange) {
                        "values: {anisotropy.k: -9}}\n"),
               testing::HasSubstr("anisotropy.k = -9 is out of range"));
   EXPECT_FALSE(fs::exists(folder_ / "broken"));
-  EXPECT_TRUE(fs::is_empty(folder_)) << "a failed synthesis leaves nothing behind";
+  EXPECT_TRUE(fs::is_empty(folder_.path())) << "a failed synthesis leaves nothing behind";
 }
 
 TEST_F(SynthTest, SameSeedSameBytesAndOtherSeedOtherPhotos) {
@@ -188,9 +182,8 @@ TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
   for (const std::string shape : {"block", "cylinder", "blob"}) {
     const Recipe recipe =
         parse_recipe(replaced(recipe_text(), "shape: block", "shape: " + shape), "recipe.yaml");
-    const fs::path folder =
-        fs::temp_directory_path() / ("hookeye_shape_" + std::to_string(getpid()));
-    fs::remove_all(folder);
+    const test::TemporaryFolder made;
+    const fs::path folder = made / "capture";
     Recipe quick = recipe;
     quick.truth = {1.0, 1, 1, 0};
     quick.examples.resize(2);
@@ -204,8 +197,6 @@ TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
         EXPECT_GE(uv.minCoeff(), 0.0);
         EXPECT_LE(uv.maxCoeff(), 1.0);
       }
-    fs::remove_all(folder);
-    fs::remove(truth_file(folder));
   }
 }
 
@@ -264,7 +255,7 @@ TEST_F(SynthTest, WhatIsDrawnShowsInThePhotos) {
 TEST_F(SynthTest, AnotherPhotographerTakesThePictures) {
   const Recipe recipe = parse_recipe(recipe_text("", kFast), "recipe.yaml");
   SynthOptions options;
-  options.photographer = grey_photographer(folder_, "96x120");
+  options.photographer = grey_photographer(folder_.path(), "96x120");
   synthesize(recipe, folder_ / "grey", options);
   const Image photo = read_image(folder_ / "grey/photos/pull_cam0.png", Encoding{});
   double mean = 0.0;
@@ -287,7 +278,8 @@ TEST_F(SynthTest, APhotographerThatFailsLeavesNothing) {
   };
   EXPECT_THAT(fault("exit 7;"), testing::HasSubstr("exit status 7"));
   EXPECT_THAT(fault("true"), testing::HasSubstr("rest-cam0.exr"));
-  EXPECT_THAT(fault(grey_photographer(folder_, "90x120")), testing::HasSubstr("is 90 x 120 px"));
+  EXPECT_THAT(fault(grey_photographer(folder_.path(), "90x120")),
+              testing::HasSubstr("is 90 x 120 px"));
   EXPECT_FALSE(fs::exists(folder_ / "none"));
 }
 

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 
@@ -11,7 +12,7 @@ namespace hookeye::test {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    static int count = 0;
+    static std::atomic<int> count = 0;
     path_ = std::filesystem::canonical(std::filesystem::temp_directory_path()) /
             ("hookeye-" + std::to_string(getpid()) + "-" + std::to_string(count++));
     std::filesystem::remove_all(path_);
