@@ -1,17 +1,13 @@
 #include "estimation/effects_scene.h"
 
-#include <unistd.h>
-
-#include <filesystem>
 #include <fstream>
 
 #include "simulation/equilibrium.h"
+#include "support/temporary_folder.h"
 
 namespace hookeye::test {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 const char* const kCapture = R"(hookeye: 1
 title: block for the catalogue
@@ -105,9 +101,8 @@ f 4/1 5/3 8/4
 )";
 
 std::shared_ptr<const Scene> read_block() {
-  const fs::path folder =
-      fs::temp_directory_path() / ("hookeye_effects_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  // The body's surface is read again for another mesh: the folder goes with the program.
+  static const TemporaryFolder folder;
   std::ofstream(folder / "capture.yaml") << kCapture;
   std::ofstream(folder / "block.obj") << kBlock;
   Image grey{64, 48, 1, std::vector<float>(64 * 48, 0.25f)};
@@ -117,15 +112,7 @@ std::shared_ptr<const Scene> read_block() {
     for (int x = 0; x < 64; ++x)
       albedo.values.push_back(0.5f + 0.3f * std::sin(0.7f * x) * std::cos(0.5f * y));
   write_image(folder / "albedo.png", albedo);
-  // The body's surface is read again for another mesh: the folder goes with the program.
-  static const struct Cleaner {
-    fs::path folder;
-    ~Cleaner() {
-      std::error_code ignored;
-      fs::remove_all(folder, ignored);
-    }
-  } cleaner{folder};
-  return load_scene(read_capture(folder));
+  return load_scene(read_capture(folder.path()));
 }
 
 Eigen::Matrix3d quarter() {

@@ -1,15 +1,10 @@
 #include "tests/estimation/small_capture.h"
 
-#include <unistd.h>
-
-#include <atomic>
 #include <stdexcept>
 
 #include "estimation/synth.h"
 
 namespace hookeye::test {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -46,17 +41,11 @@ examples:
 }  // namespace
 
 SmallScene::SmallScene(const SmallCapture& capture) {
-  static std::atomic<int> count{0};
-  folder_ = fs::temp_directory_path() /
-            ("hookeye_small_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-  fs::create_directories(folder_);
   const auto made = synthesize(
       parse_recipe(capture.recipe.empty() ? recipe(capture) : capture.recipe, "recipe.yaml"),
       folder_ / "capture");
   scene = load_scene(read_capture(std::get<Synthesis>(made).capture));
 }
-
-SmallScene::~SmallScene() { fs::remove_all(folder_); }
 
 Discovery discover(const SmallScene& small, const DiscoverOptions& options) {
   Workspace workspace(small.scene);

@@ -1,11 +1,11 @@
 // A small synthetic capture on disk, gone when it goes out of scope.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "estimation/discover.h"
+#include "tests/support/temporary_folder.h"
 
 namespace hookeye::test {
 
@@ -23,13 +23,10 @@ struct SmallCapture {
 class SmallScene {
  public:
   explicit SmallScene(const SmallCapture& capture);
-  ~SmallScene();
-  SmallScene(const SmallScene&) = delete;
-  SmallScene& operator=(const SmallScene&) = delete;
   std::shared_ptr<const Scene> scene;
 
  private:
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// The whole search in it; throws where it fails.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,6 +11,7 @@
 
 #include "meshing/surface_mesh.h"
 #include "meshing/tet_mesh.h"
+#include "support/temporary_folder.h"
 
 namespace hookeye::test {
 
@@ -67,24 +67,13 @@ inline double area_of(const SurfaceMesh& s) {
   return sum;
 }
 
-/// A folder that goes away with the test.
-class Scratch {
+/// A folder that goes away with the test, and files in it.
+class Scratch : public TemporaryFolder {
  public:
-  Scratch() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("hookeye_meshing_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  ~Scratch() { std::filesystem::remove_all(path_); }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name, std::ios::binary) << text;
-    return path_ / name;
+    std::ofstream(*this / name, std::ios::binary) << text;
+    return *this / name;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 /// The message of the InputError that `action` throws; a failure when it throws none.
