@@ -43,12 +43,12 @@ void set_up_log(bool verbose) {
   spdlog::set_default_logger(std::move(logger));
 }
 
-/// The one document of --json; true where standard output took it.
-bool print(const nlohmann::ordered_json& document) {
+/// The one document of --json.
+void print(const nlohmann::ordered_json& document) {
   using nlohmann::ordered_json;
   const std::string text =
       document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
 int report(const Session& session, Exit status, const std::string& kind, const std::string& wrong,
@@ -67,8 +67,10 @@ int report_failure(const Session& session, const NumericalFailure& failure) {
   const std::string where =
       failure.example.empty() ? "" : fmt::format("example {}: ", failure.example);
   return report(session, kNumericalFailure, "numbers failed",
-                fmt::format("{}{}\n  reached {:.4g} of the load", where, failure.reason,
-                            failure.load_fraction),
+                failure.load_fraction < 1.0
+                    ? fmt::format("{}{}\n  reached {:.4g} of the load", where, failure.reason,
+                                  failure.load_fraction)
+                    : where + failure.reason,
                 {{"example", failure.example},
                  {"load_fraction", failure.load_fraction},
                  {"reason", failure.reason}});
@@ -86,8 +88,12 @@ int report_input(const Session& session, const InputError& error) {
 int run(const CommandBody& body, Session& session) {
   try {
     body(session);
-    if (session.json && !print(session.document)) throw std::runtime_error("cannot write stdout");
-    if (std::fflush(stdout) != 0) throw std::runtime_error("cannot write stdout");
+    for (const auto& warning : session.warnings) session.document["warnings"].push_back(warning);
+    if (session.json) print(session.document);
+    // A buffer that could not be written on the way leaves the error, and nothing to flush.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw InputError({"standard output"}, "this cannot be written to",
+                       "a file on a disk with room, or a pipe that is read to its end");
     return kDone;
   } catch (const InputError& error) {
     return report_input(session, error);

@@ -8,7 +8,7 @@ namespace hookeye {
 
 void Session::warn(const std::string& sentence) {
   spdlog::warn("{}", sentence);
-  document["warnings"].push_back(sentence);
+  warnings.push_back(sentence);
 }
 
 void fail(NumericalFailure failure) {

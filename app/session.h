@@ -20,12 +20,14 @@ class App;
 namespace hookeye {
 
 /// Commands fill `document`, which is printed with --json, and say() lines for people, which are
-/// printed without. Warnings go through warn(): standard error and the document's "warnings".
+/// printed without. Warnings go through warn(): standard error and, at the end, the
+/// document's "warnings".
 struct Session {
   bool json = false;
   bool verbose = false;
   int threads = 0;  ///< 0: all cores
   nlohmann::ordered_json document;
+  std::vector<std::string> warnings;
 
   template <class... Args>
   void say(fmt::format_string<Args...> format, Args&&... args) const {

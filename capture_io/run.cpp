@@ -6,9 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <fstream>
 #include <system_error>
+
+#include "capture_io/fingerprints.h"
 
 namespace hookeye {
 namespace {
@@ -99,24 +100,16 @@ fs::path yaml_of(const fs::path& capture) {
   return fs::weakly_canonical(fs::is_directory(capture) ? capture / "capture.yaml" : capture);
 }
 
-/// Of the capture's text (FNV-1a, 64 bit); empty where the file cannot be read.
-std::string fingerprint(const fs::path& yaml) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(yaml, ignored)) return "";
-  uint64_t hash = 14695981039346656037u;
-  for (const unsigned char c : read_text(yaml)) hash = (hash ^ c) * 1099511628211u;
-  return fmt::format("{:016x}", hash);
-}
-
-/// Steps made from another text cannot stand beside those made from this one.
+/// Steps made from another text or other photos cannot stand beside those made from these.
 void check_unchanged(const json& timeline, const fs::path& folder) {
-  const std::string now = fingerprint(timeline["capture"].get<std::string>());
-  const std::string then = timeline.value("capture_fingerprint", now);
-  if (now.empty() || then == now || timeline["steps"].empty()) return;
-  throw InputError(
-      {timeline["capture"].get<std::string>()},
-      fmt::format("the capture has changed since the run {} was made", folder.string()),
-      "name a new folder for the changed capture's run, or undo the change");
+  using Marks = std::map<std::string, std::string>;
+  const fs::path yaml = timeline["capture"].get<std::string>();
+  const Marks now = fingerprints(yaml);
+  const std::string changed = changed_since(timeline.value("fingerprints", now), now);
+  if (now.empty() || changed.empty() || timeline["steps"].empty()) return;
+  throw InputError({(yaml.parent_path() / changed).string()},
+                   fmt::format("this has changed since the run {} was made", folder.string()),
+                   "name a new folder for the changed capture's run, or undo the change");
 }
 
 void check_name(const std::string& name) {
@@ -183,7 +176,7 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
   fs::create_directories(impl->folder / "steps");
   impl->store({{"hookeye", 1},
                {"capture", yaml_of(capture).string()},
-               {"capture_fingerprint", fingerprint(yaml_of(capture))},
+               {"fingerprints", fingerprints(yaml_of(capture))},
                {"verdict", "unexplained"},
                {"steps", json::array()}});
   return Run(std::move(impl));

@@ -70,6 +70,8 @@ void run_add(const AddArguments& arguments, Session& session) {
   spdlog::info("diagnosing the new step");
   diagnose_newest(run, bench, step, options.diagnosis);
   session.document = run.timeline()["steps"].back();
+  if (const auto said = not_converged(step.fitted.converged, step.fitted.iterations); !said.empty())
+    session.warn(said);
   session.say("{}{}", parameter_table(step.fitted), wrapped(conclusion(step.diagnosis)));
   session.say("written to {}\n", folder.string());
 }

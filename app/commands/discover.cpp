@@ -69,7 +69,10 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   const auto& steps = run.timeline().at("steps");
   session.say("{}", steps_table(run.timeline()));
   for (size_t i = 1; i < steps.size(); ++i) session.say("{}", choice_table(steps[i - 1], steps[i]));
-  session.say("\n{}", parameter_table(found.steps.back().fitted));
+  const Fitted& last = found.steps.back().fitted;
+  session.say("\n{}", parameter_table(last));
+  if (const auto said = not_converged(last.converged, last.iterations); !said.empty())
+    session.warn(said);
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));
   session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));

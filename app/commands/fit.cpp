@@ -13,19 +13,26 @@ namespace {
 
 struct FitArguments {
   std::string capture, run, model, material;
+  int iterations = FitOptions{}.max_iterations;
+  FitOptions options() const {
+    FitOptions options = fit_options();
+    options.max_iterations = iterations;
+    return options;
+  }
 };
 
 /// The textbook law first, where it can move; then the same energy told additively, refined.
-Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p, Session& session) {
+Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p,
+                    const FitOptions& fit_options, Session& session) {
   const bool own = has_additive(form);
   std::vector<AdditiveStart> starts = {own ? AdditiveStart(form, p) : to_additive(form, p)};
   if (!own && form.size() > 0) {
-    const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options()));
+    const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options));
     session.say("{}", parameter_table(base));
     starts.insert(starts.begin(), to_additive(form, base.p));
   }
   ProgressiveOptions options;
-  options.fit = fit_options();
+  options.fit = fit_options;
   return value_or_fail(fit_progressive(bench.workspace, starts, options));
 }
 
@@ -54,6 +61,10 @@ void run_fit(const FitArguments& arguments, Session& session) {
   Bench bench = open_capture(arguments.capture, session);
   Run run = Run::create(arguments.run, bench.scene->capture.file);
   if (!run.steps().empty()) {
+    if (!arguments.model.empty() || !arguments.material.empty())
+      throw InputError({arguments.run},
+                       "the base model of this run is fitted already, from another start",
+                       "name a new folder, or leave -m and --material out to see what is there");
     session.say("{}: the base model is fitted already\n", arguments.run);
     session.document = run.timeline();
     return;
@@ -64,8 +75,9 @@ void run_fit(const FitArguments& arguments, Session& session) {
   Step step;
   step.name = "base";
   const bool additive = arguments.material == "additive" || has_additive(form);
-  step.fitted = additive ? fit_additive(bench, form, start, session)
-                         : value_or_fail(fit(bench.workspace, form, start, fit_options()));
+  const FitOptions options = arguments.options();
+  step.fitted = additive ? fit_additive(bench, form, start, options, session)
+                         : value_or_fail(fit(bench.workspace, form, start, options));
   const auto folder = record(run, step);
   const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
@@ -77,6 +89,14 @@ void run_fit(const FitArguments& arguments, Session& session) {
               chi_text(step.fitted.evaluation.chi(false)),
               chi_text(step.fitted.evaluation.chi(true)), floor.chi, floor.source);
   session.say("written to {}\n", folder.string());
+  const std::string unfinished = not_converged(step.fitted.converged, step.fitted.iterations);
+  if (!unfinished.empty())
+    fail(
+        {"", 1.0,
+         unfinished + fmt::format(". The step is written; to go on: hookeye fit {} -o A_NEW_FOLDER "
+                                  "-m {} --iterations {}",
+                                  arguments.capture, (folder / "model.yaml").string(),
+                                  2 * arguments.iterations)});
 }
 
 }  // namespace
@@ -87,6 +107,9 @@ void add_fit(CLI::App& app, CommandBody& chosen) {
   command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
   command->add_option("-o,--out", arguments->run, "Run folder")->required();
   command->add_option("-m,--model", arguments->model, "Start from this model.yaml");
+  command->add_option("--iterations", arguments->iterations, "Most iterations at full size")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
   command
       ->add_option("--material", arguments->material,
                    "additive: go on with the additive energy model from the fitted law")

@@ -65,6 +65,15 @@ FitOptions fit_options() {
   return options;
 }
 
+std::string not_converged(bool converged, int iterations) {
+  if (converged) return {};
+  return fmt::format(
+      "the fit has not converged: the misfit still fell when it stopped after {} iterations, so "
+      "that "
+      "its values may move further",
+      iterations);
+}
+
 std::vector<std::string> tied_in(const nlohmann::json& step) {
   std::vector<std::string> tied;
   for (const auto& rival : step.value("rivals", nlohmann::json::array()))
@@ -156,8 +165,9 @@ void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& ses
 }
 
 void say_pictures(const std::filesystem::path& step, const Session& session) {
-  if (std::filesystem::is_empty(step / "compare")) return;  // forces and positions alone
-  session.say("pictures: {}\n", (step / "compare").string());
+  const auto compared = step / "compare";  // removed by hand, or of forces and positions alone
+  if (!std::filesystem::exists(compared) || std::filesystem::is_empty(compared)) return;
+  session.say("pictures: {}\n", compared.string());
   if (std::filesystem::exists(step / "removed"))
     session.say("          what effects would remove:\n          {}\n",
                 (step / "removed").string());

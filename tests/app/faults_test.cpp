@@ -41,6 +41,16 @@ TEST_F(Faults, ResultsThatCannotBeWrittenAreNoInternalErrors) {
   }
 }
 
+TEST_F(Faults, AnOutputThatIsFullIsToldWhateverWasPrinted) {
+  for (const char* command : {"check . > /dev/full", "check . --json > /dev/full"}) {
+    const std::string all = "cd '" + folder_.string() + "' && '" HOOKEYE_PROGRAM "' " + command +
+                            " 2>err.txt </dev/null";
+    const int status = std::system(all.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 2) << command;
+    EXPECT_THAT(read(folder_ / "err.txt"), HasSubstr("standard output: this cannot be written to"));
+  }
+}
+
 TEST_F(Faults, SupportsThatContradictEachOtherAreTold) {
   EXPECT_THAT(hookeye("check .").err, Not(HasSubstr("share")));
   change("top: {box: [[-1, -1, 9.9]", "top: {box: [[-1, -1, -0.1]");
@@ -130,6 +140,40 @@ TEST_F(Faults, ARoundedMaterialFrameIsTold) {
 }
 
 using FaultsOfPhotos = FittedRun;
+
+/// It is no success: the step stands, and the status and every later look say what it is.
+TEST_F(FaultsOfPhotos, AFitThatStopsEarlyIsNoSuccess) {
+  const Result stopped = hookeye("fit capture -o early --iterations 1");
+  EXPECT_EQ(stopped.status, 3);
+  EXPECT_THAT(stopped.err, HasSubstr("the fit has not converged"));
+  EXPECT_THAT(stopped.err, HasSubstr("-m "));
+  ASSERT_TRUE(fs::exists(folder_ / "early/steps/00-base/model.yaml"));
+  const Result compared = hookeye("compare early --json");
+  EXPECT_EQ(compared.status, 0);
+  EXPECT_THAT(json::parse(compared.out)["warnings"].dump(), HasSubstr("has not converged"));
+  const Result onward = hookeye("fit capture -o late -m early/steps/00-base/model.yaml");
+  EXPECT_EQ(onward.status, 0) << onward.err;
+  EXPECT_THAT(hookeye("fit capture -o late -m early/steps/00-base/model.yaml").err,
+              HasSubstr("is fitted already, from another start"));
+}
+
+/// Steps made from one set of photos say nothing of another.
+TEST_F(FaultsOfPhotos, AnotherPhotoNeedsAnotherRun) {
+  fs::copy_file(folder_ / "capture/photos/rest_cam0.png", folder_ / "capture/photos/pull_cam0.png",
+                fs::copy_options::overwrite_existing);
+  for (const char* command : {"discover capture -o run", "diagnose run", "add run gravity"}) {
+    const Result result = hookeye(command);
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_THAT(result.err, HasSubstr("pull_cam0.png: this has changed since the run")) << command;
+  }
+}
+
+TEST_F(FaultsOfPhotos, WarningsAreInTheDocument) {
+  const Result fitted = hookeye("fit capture -o again --json");
+  EXPECT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_THAT(json::parse(fitted.out)["warnings"].dump(), HasSubstr("plane faces"));
+  EXPECT_THAT(json::parse(fitted.out)["steps"].size(), 1u);
+}
 
 TEST_F(FaultsOfPhotos, AFileCutInHalfIsToldWhereTheCaptureNamesIt) {
   const fs::path photo = folder_ / "capture/photos/pull_cam0.png";

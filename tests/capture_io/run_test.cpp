@@ -51,11 +51,37 @@ TEST(RunTest, AChangedCaptureNeedsANewRun) {
   RunFolder::create(folder / "run", folder / "capture.yaml").add_step("base", {}, write_model);
   write_text(folder / "capture.yaml", "mu: 2\n");
   const auto again = [&] { RunFolder::create(folder / "run", folder / "capture.yaml"); };
-  EXPECT_THAT(complaint(again), testing::HasSubstr("has changed since the run"));
+  EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run"));
   EXPECT_NE(complaint([&] { RunFolder::open(folder / "run", true); }), "");
   EXPECT_EQ(complaint([&] { RunFolder::open(folder / "run", false); }), "");  // to look at
   write_text(folder / "capture.yaml", "mu: 1\n");
   EXPECT_EQ(complaint(again), "");
+}
+
+/// A photo that was swapped, one that is gone, and one so large that only samples of it are read.
+TEST(RunTest, AChangedPhotoNeedsANewRun) {
+  const TemporaryFolder folder;
+  std::string large(5 << 20, 'a');
+  write_text(folder / "capture.yaml", "photos: [{front: a.png}, big.tif]\n");
+  write_text(folder / "a.png", "one");
+  write_text(folder / "big.tif", large);
+  RunFolder::create(folder / "run", folder / "capture.yaml").add_step("base", {}, write_model);
+  const auto again = [&] { RunFolder::create(folder / "run", folder / "capture.yaml"); };
+  EXPECT_EQ(complaint(again), "");
+  write_text(folder / "a.png", "two");
+  EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run"));
+  fs::remove(folder / "a.png");
+  EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run"));
+  write_text(folder / "a.png", "one");
+  EXPECT_EQ(complaint(again), "");
+  for (const size_t at : {size_t{0}, large.size() - 1}) {
+    std::string other = large;
+    other[at] = 'b';
+    write_text(folder / "big.tif", other);
+    EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run")) << at;
+  }
+  write_text(folder / "big.tif", large + "a");
+  EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run"));
 }
 
 TEST(RunTest, AFailedStepLeavesNothing) {
