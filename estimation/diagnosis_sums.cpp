@@ -18,14 +18,16 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
   int photos = 0;
   for (NormalEquations* sums : {&out.seen, &out.seen_held_out})
     sums->JtJ.setZero(m, m), sums->Jtr.setZero(m);
-  for (const auto& example : evaluation.examples)
-    for (const auto& photo : example.photos) {
+  for (const auto& example : evaluation.examples) {
+    const auto statistics = photo_statistics(example.photos);
+    for (size_t k = 0; k < example.photos.size(); ++k) {
+      const auto& photo = example.photos[k];
       (example.held_out ? out.held_r2 : out.photo_r2) += photo.linear_r2;
       (example.held_out ? out.held_count : out.photo_count) += photo.count;
       NormalEquations& seen = example.held_out ? out.seen_held_out : out.seen;
       if (photo.count > 0.0) seen.JtJ += photo.sums.JtJ, seen.Jtr += photo.sums.Jtr;
       if (example.held_out) continue;
-      const FlowStatistics flow = flow_statistics(photo.flow);
+      const FlowStatistics& flow = statistics[k];
       if (flow.count == 0.0) continue;
       ++photos;
       out.whiteness_p = std::min(out.whiteness_p, flow.whiteness_p);
@@ -37,6 +39,7 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
       out.noise += w * w * flow.inflation * photo.sums.JtJ;
       out.null_noise += w * w * floor.cell_inflation * photo.sums.JtJ;
     }
+  }
   out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
   const double photo_noise =
       std::max(out.effective.floor2, out.effective.r2 / std::max(out.effective.count, 1.0));

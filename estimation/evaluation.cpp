@@ -93,6 +93,17 @@ Camera camera_at_level(const Camera& camera, int level) {
   return coarse;
 }
 
+std::vector<FlowStatistics> photo_statistics(const std::vector<PhotoEvaluation>& photos) {
+  std::vector<FlowStatistics> out;
+  for (size_t begin = 0, end = 0; begin < photos.size(); begin = end) {
+    std::vector<const FlowField*> channels;
+    for (; end < photos.size() && photos[end].photo == photos[begin].photo; ++end)
+      channels.push_back(&photos[end].flow);
+    for (FlowStatistics& one : flow_statistics(channels)) out.push_back(one);
+  }
+  return out;
+}
+
 void keep_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc takes

@@ -110,6 +110,10 @@ class Workspace {
   std::unique_ptr<Impl> impl_;
 };
 
+/// flow_statistics() of every photo of an example, in their order; the channels of one photo
+/// together.
+std::vector<FlowStatistics> photo_statistics(const std::vector<PhotoEvaluation>& photos);
+
 /// The local numbers b - a of two photo states (kPhotoColumns).
 VectorXd photo_difference(const PhotoState& a, const PhotoState& b);
 

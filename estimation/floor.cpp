@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "estimation/fit.h"
 
@@ -106,6 +107,16 @@ int degree_for(const FlowField& flow) {
   return degree;
 }
 
+/// Sum of the inflations of photos, the channels of each in one entry; and how many they are.
+struct Inflations {
+  double sum = 0.0, count = 0.0;
+  void add(const std::vector<FlowField>& channels) {
+    std::vector<const FlowField*> all;
+    for (const FlowField& channel : channels) all.push_back(&channel);
+    for (const FlowStatistics& one : flow_statistics(all)) sum += one.inflation, count += 1.0;
+  }
+};
+
 /// Floor::per_px2.
 double fall_per_px2(const Evaluation& evaluation) {
   double information = 0.0, pixels = 0.0;
@@ -124,9 +135,11 @@ double fall_per_px2(const Evaluation& evaluation) {
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   Floor floor;
   floor.per_px2 = fall_per_px2(evaluation);
-  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0, inflation = 0.0, photos = 0.0;
+  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0;
+  Inflations inflations;
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
+    std::map<int, std::vector<FlowField>> channels;  // by photo
     for (const auto& photo : example.photos) {
       const int degree = degree_for(photo.flow);
       if (degree < 0) continue;
@@ -141,15 +154,15 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
       for (const auto& cell : photo.aligned.cells)
         cells += cell.z.squaredNorm(), cell_count += cell.known;
       // A photo that is too bright all over is no noise that is correlated from cell to cell.
-      inflation += flow_statistics(without_smooth(photo.aligned, aligned, degree)).inflation;
-      photos += 1.0;
+      channels[photo.photo].push_back(without_smooth(photo.aligned, aligned, degree));
     }
+    for (const auto& [photo, fields] : channels) inflations.add(fields);
   }
   // Some cells' worth of pixels at least, else the told noise is the better witness.
   if (count < 1000.0) return floor;
   floor.chi = std::sqrt(std::max(r2, 0.0) / count);
   floor.source = "rest photos";
-  floor.cell_inflation = std::max(1.0, inflation / photos);
+  floor.cell_inflation = std::max(1.0, inflations.sum / inflations.count);
   if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);
   return floor;
 }

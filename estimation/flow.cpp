@@ -125,6 +125,18 @@ class CellGrid {
     }
     return out;
   }
+  /// Sums over the cells that another channel of the photo has too.
+  Lag same_cells(const FlowField& channel) const {
+    Lag out;
+    for (const auto& cell : channel.cells) {
+      if (cell.row >= rows_ || cell.column >= columns_) continue;
+      const FlowCell* own = at_[static_cast<size_t>(cell.row) * columns_ + cell.column];
+      if (!own) continue;
+      out.product += cell.z.dot(own->z);
+      out.pairs += std::min(cell.known, own->known);
+    }
+    return out;
+  }
 
  private:
   const std::vector<FlowCell>& cells_;
@@ -176,6 +188,28 @@ FlowStatistics flow_statistics(const FlowField& flow) {
   const double p_variance = 0.5 * std::erfc(excess / std::sqrt(2.0));
   const double p_neighbours = std::erfc(std::sqrt(q / 2.0));
   out.whiteness_p = std::min(1.0, 2.0 * std::min(p_variance, p_neighbours));
+  return out;
+}
+
+std::vector<FlowStatistics> flow_statistics(const std::vector<const FlowField*>& channels) {
+  std::vector<FlowStatistics> alone;
+  for (const FlowField* channel : channels) alone.push_back(flow_statistics(*channel));
+  std::vector<FlowStatistics> out = alone;
+  for (size_t i = 0; i < channels.size(); ++i) {
+    const CellGrid grid(*channels[i]);
+    double sum_rho = 1.0, sum_rho2 = 1.0;
+    for (size_t j = 0; j < channels.size(); ++j) {
+      if (j == i || alone[i].count == 0.0 || alone[j].count == 0.0) continue;
+      const CellGrid::Lag lag = grid.same_cells(*channels[j]);
+      if (lag.pairs == 0.0) continue;
+      const double rho = lag.product / lag.pairs / std::sqrt(alone[i].variance * alone[j].variance);
+      if (rho * std::sqrt(lag.pairs) < 2.0) continue;  // as rings of lags are judged
+      sum_rho += std::min(rho, 1.0);
+      sum_rho2 += std::min(rho * rho, 1.0);
+    }
+    out[i].inflation *= sum_rho;
+    out[i].effective = std::max(1.0, out[i].effective / sum_rho2);
+  }
   return out;
 }
 

@@ -47,5 +47,9 @@ struct FlowStatistics {
       1;  ///< p-value of "neighbouring cells are uncorrelated and of unit variance"
 };
 FlowStatistics flow_statistics(const FlowField& flow);
+/// The same of the channels of one photo, each by itself, where they repeat one another: a motion
+/// is seen in all of them, and a Bayer filter's neighbours are one measurement. `inflation` and
+/// `effective` count the channels' correlation at the same cell, on top of that between cells.
+std::vector<FlowStatistics> flow_statistics(const std::vector<const FlowField*>& channels);
 
 }  // namespace hookeye

@@ -112,7 +112,8 @@ std::vector<std::string> name_directions(const std::vector<Parameter>& parameter
   return out;
 }
 
-/// One photo's, or one measurement's, share of the normal equations at the fitted values.
+/// One photo's (all its channels), or one measurement's, share of the normal equations at the
+/// fitted values.
 struct Cluster {
   Eigen::MatrixXd H;
   VectorXd s;  ///< J^T r; their sum vanishes
@@ -157,22 +158,26 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
     std::vector<bool> counts(n, !example.held_out);
     for (int i = 0; i < n; ++i)
       if (parameters[i].example == example.example) counts[i] = true;
-    auto add = [&](const Eigen::MatrixXd& Hk, VectorXd sk, double inflation) {
+    auto add = [&](const Eigen::MatrixXd& Hk, VectorXd sk, double inflation, bool same_cluster) {
       const Eigen::MatrixXd counted = part_of(Hk, counts);
       for (int i = 0; i < n; ++i)
         if (!counts[i]) sk[i] = 0.0;
       H += counted;
       V += inflation * counted;
-      clusters.push_back(
-          {scale.asDiagonal() * counted * scale.asDiagonal(), scale.cwiseProduct(sk)});
+      if (!same_cluster) clusters.push_back({Eigen::MatrixXd::Zero(n, n), VectorXd::Zero(n)});
+      clusters.back().H += scale.asDiagonal() * counted * scale.asDiagonal();
+      clusters.back().s += scale.cwiseProduct(sk);
     };
-    for (const auto& photo : example.photos)
-      add(photo.sums.JtJ.topLeftCorner(n, n), photo.sums.Jtr.head(n),
-          flow_statistics(photo.flow).inflation);
+    const auto statistics = photo_statistics(example.photos);
+    for (size_t k = 0; k < example.photos.size(); ++k) {
+      const auto& photo = example.photos[k];
+      add(photo.sums.JtJ.topLeftCorner(n, n), photo.sums.Jtr.head(n), statistics[k].inflation,
+          k > 0 && example.photos[k - 1].photo == photo.photo);
+    }
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd J = measured.J.leftCols(n);
       add(J.transpose() * J, J.transpose() * measured.r,
-          std::max(1.0, measured.r.squaredNorm() / 3.0));
+          std::max(1.0, measured.r.squaredNorm() / 3.0), false);
     }
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();

@@ -127,9 +127,11 @@ Shares sum_present(const Scene& scene, const ViewPhotos& of_photo, const Evaluat
   out.H = Eigen::MatrixXd::Zero(evaluation.columns, evaluation.columns);
   for (const auto& example : evaluation.examples) {
     const auto& photos = scene.capture.examples[example.example].photos;
-    for (const auto& photo : example.photos) {
+    const auto statistics = photo_statistics(example.photos);
+    for (size_t k = 0; k < example.photos.size(); ++k) {
+      const auto& photo = example.photos[k];
       if (of_photo.count({example.example, photo.photo})) continue;
-      const FlowStatistics flow = flow_statistics(photo.flow);
+      const FlowStatistics& flow = statistics[k];
       if (flow.count == 0.0) continue;
       const double w = flow.effective / flow.count;
       shares.add(photos[photo.photo].camera, {w, flow.effective / std::max(photo.count, 1.0)});

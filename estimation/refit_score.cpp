@@ -26,10 +26,10 @@ EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool
   for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
     const auto& example = fitted.evaluation.examples[e];
     if (held_out_alone && !example.held_out) continue;
+    const auto weights = photo_statistics(reference.evaluation.examples[e].photos);
     for (size_t k = 0; k < example.photos.size(); ++k) {
       const FlowStatistics own = flow_statistics(example.photos[k].flow);
-      const FlowStatistics weight =
-          flow_statistics(reference.evaluation.examples[e].photos[k].flow);
+      const FlowStatistics& weight = weights[k];
       if (own.count == 0.0 || weight.count == 0.0) continue;
       const double w = weight.effective / weight.count;
       out.r2 += w * own.variance * weight.count;

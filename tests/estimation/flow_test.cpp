@@ -132,6 +132,26 @@ TEST(Flow, StripesAreOneObservationToo) {
   EXPECT_LT(s.effective, 0.1 * s.count);
 }
 
+/// Three channels with noise of their own are three photos; the same one three times is one.
+TEST(Flow, ChannelsCountWhatTheyDoNotRepeat) {
+  const Image model = speckle(0.0, 0.0);
+  const auto field = [&](unsigned seed) {
+    std::mt19937 engine(seed);
+    std::normal_distribution<float> noise;
+    Image residual = constant(0.0f);
+    for (float& r : residual.values) r = noise(engine);
+    return residual_flow(model, residual, constant(0.01f));
+  };
+  const FlowField a = field(1), b = field(2), c = field(3);
+  const FlowStatistics one = flow_statistics(a);
+  for (const FlowStatistics& same : flow_statistics({&a, &a, &a})) {
+    EXPECT_NEAR(same.inflation, 3.0 * one.inflation, 1e-9);
+    EXPECT_NEAR(same.effective, one.effective / 3.0, 1e-9);
+  }
+  EXPECT_NEAR(flow_statistics({&a, &b, &c})[0].inflation, one.inflation, 0.2 * one.inflation);
+  EXPECT_NEAR(flow_statistics({&a, &b, &c})[0].effective, one.effective, 0.2 * one.effective);
+}
+
 TEST(Flow, OneMotionEverywhereIsOneObservation) {
   const Image model = speckle(0, 0), photo = speckle(0.3, 0.3);
   const FlowStatistics s =

@@ -139,6 +139,7 @@ TEST(ParameterCovariance, ScatterFromPhotoToPhotoWidensIt) {
     double sum = 0.0;
     for (int k = 0; k < 10; ++k) {
       PhotoEvaluation photo;
+      photo.photo = k;
       photo.sums.JtJ = Eigen::MatrixXd::Constant(1, 1, 1e4);
       photo.sums.Jtr = VectorXd::Constant(1, 100.0 * common * normal(engine));
       sum += photo.sums.Jtr[0] / 10.0;

@@ -187,6 +187,29 @@ TEST_F(OwnPhotos, InColour) {
   EXPECT_NEAR(std::get<Fitted>(result).p[0], 0.02, 2e-5);
 }
 
+/// The same photo in three channels says what it said in one: neither interval nor effective number
+/// of residuals may count it three times.
+TEST_F(OwnPhotos, ChannelsThatRepeatEachOtherCountOnce) {
+  const Scene& scene = *small_.scene;
+  for (size_t e = 0; e < scene.photos.size(); ++e)
+    for (size_t k = 0; k < scene.photos[e].size(); ++k) {
+      fs::path file = scene.capture.examples[e].photos[k].file;
+      write_image(file.replace_extension(".exr"), tinted(scene.photos[e][k].planes[0], {1, 1, 1}));
+    }
+  const auto look = [](const std::shared_ptr<const Scene>& at) {
+    Workspace workspace(at);
+    const ModelForm form = base_form(at);
+    const auto fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+    double effective = 0.0;
+    for (const auto& example : fitted.evaluation.examples)
+      for (const FlowStatistics& one : photo_statistics(example.photos)) effective += one.effective;
+    return Eigen::Vector2d(fitted.high[0] - fitted.low[0], effective);
+  };
+  const Eigen::Vector2d grey = look(small_.scene), thrice = look(told("black", "channels: rgb"));
+  EXPECT_NEAR(thrice[0], grey[0], 0.05 * grey[0]);
+  EXPECT_NEAR(thrice[1], grey[1], 0.05 * grey[1]);
+}
+
 /// From half a stiffness away, through the coarse sizes: contours pull towards where the photo
 /// differs from what is behind the body.
 TEST_F(OwnPhotos, AFitBeforeAPicture) {
