@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 
+#include "estimation/effect.h"
 #include "estimation/fit.h"
 #include "estimation/normal_equations.h"
 #include "support/derivative.h"
@@ -161,17 +162,23 @@ void write_middle_mask(const std::filesystem::path& file) {
   write_image(file, mask);
 }
 
-/// A set-up that stands elsewhere moves the photo that gives the texture as well: the derivative
-/// must know of both cameras.
-TEST(RestTexture, PlacementMovesTheReferencePhotoToo) {
-  const test::TemporaryFolder folder;
+/// A body that was turned by less than its photo shows, so that every slope is there.
+std::shared_ptr<const Scene> turned_scene(const test::TemporaryFolder& folder,
+                                          const std::string& keys = "") {
   write_photo(folder / "rest.tif", 1, [](double x, double y) { return Eigen::Vector2d(x, y); });
   write_photo(folder / "moved.tif", 2,
               [](double x, double y) { return Eigen::Vector2d(x - 2.2 + 0.01 * y, y + 1.5); });
   write_middle_mask(folder / "mask.png");
-  const auto scene = block_scene(
+  return block_scene(
       folder, "{rotate: {axis: [1, 2, 6], degrees: 8, center: [0, 0, 0]}, move: [0.5, -0.4, 1]}",
-      ", placement: fit");
+      keys);
+}
+
+/// A set-up that stands elsewhere moves the photo that gives the texture as well: the derivative
+/// must know of both cameras.
+TEST(RestTexture, PlacementMovesTheReferencePhotoToo) {
+  const test::TemporaryFolder folder;
+  const auto scene = turned_scene(folder, ", placement: fit");
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
   ASSERT_EQ(form.size(), 6);
@@ -195,6 +202,48 @@ TEST(RestTexture, PlacementMovesTheReferencePhotoToo) {
                                     look(p + h * direction, false).examples.at(1).photos.at(0).r2);
         },
         VectorXd::Constant(1, 2.0 * sums.Jtr.dot(direction)), 2e-4, 0.01);
+}
+
+/// The photo that gives the texture was taken by a camera and with an exposure of its own: what
+/// changes these changes every picture, and derivatives know it.
+TEST(RestTexture, WhatTheReferencePhotoWasTakenWithCounts) {
+  const test::TemporaryFolder folder;
+  const auto scene = turned_scene(folder);
+  Workspace workspace(scene);
+  const ModelForm base = base_form(scene);
+  for (const std::string name : {"focal_length", "exposure", "camera_pose"}) {
+    int tried = 0;
+    for (const auto& candidate :
+         find_effect(name)->candidates(base.realise(base.initial()), nullptr)) {
+      ModelForm form = base;
+      form.ingredients.push_back(candidate);
+      const auto parameters = form.parameters();
+      VectorXd p = form.initial();
+      for (Eigen::Index i = base.size(); i < p.size(); ++i) p[i] += 0.3 * parameters[i].typical;
+      auto look = [&](const VectorXd& at, bool derivatives) {
+        EvaluationOptions options;
+        options.derivatives = derivatives;
+        return std::get<Evaluation>(workspace.evaluate(form, at, options));
+      };
+      const auto misfit = [&](Eigen::Index i, double h) {
+        return look(p + h * VectorXd::Unit(p.size(), i), false).examples.at(1).photos.at(0).r2;
+      };
+      const auto sums = normal_equations(look(p, true));
+      for (Eigen::Index i = base.size(); i < p.size(); ++i) {
+        const std::string label = name + " [" + candidate->variant() + "] " + parameters[i].name;
+        const double h = 2e-3 * parameters[i].typical;
+        if (std::abs(sums.Jtr[i]) * parameters[i].typical < 1e-9 * misfit(i, 0.0)) {
+          // The distance of an orthographic camera; a gain that both photos share.
+          EXPECT_NEAR(misfit(i, h), misfit(i, -h), 1e-6 * misfit(i, 0.0)) << label;
+          continue;
+        }
+        test::expect_derivative([&](double t) { return VectorXd::Constant(1, misfit(i, t)); },
+                                VectorXd::Constant(1, 2.0 * sums.Jtr[i]), h, 0.01, label);
+        ++tried;
+      }
+    }
+    EXPECT_GT(tried, 0) << name;
+  }
 }
 
 /// A body that hangs in one jaw is at rest wherever the jaw went: such photos tell the floor.
