@@ -6,6 +6,9 @@ namespace hookeye {
 
 namespace {
 
+const char* const kEachPhoto = "each photo";
+const char* const kWithHeldOut = "each photo, held-out ones too";
+
 /// Gains exp(a) on photos.
 class Exposure final : public Effect {
  public:
@@ -36,8 +39,23 @@ class Exposure final : public Effect {
         all.push_back(one_gain(
             "all cameras in " + examples[k].name, [&](size_t e, const auto&) { return e == k; },
             model));
-    if (!all.empty()) all.push_back(every_photo(model));
+    if (!all.empty()) all.push_back(every_photo(model, false));
     return all;
+  }
+
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                            const std::string& variant) const override {
+    return variant == kWithHeldOut ? every_photo(model, true) : nullptr;
+  }
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    if (scored->variant() != kEachPhoto) return scored;
+    auto form = every_photo(model, true);
+    const VectorXd fitted = values;
+    values.setZero(static_cast<Eigen::Index>(form->parameters().size()));
+    values.head(fitted.size()) = fitted;
+    return form;
   }
 
   std::string sentence(const Model&, const Ingredient& ingredient,
@@ -78,21 +96,24 @@ class Exposure final : public Effect {
     return make_ingredient(std::move(spec));
   }
 
-  /// One gain a photo, held-out photos excepted: nothing would fit theirs.
-  std::shared_ptr<const Ingredient> every_photo(const Model& model) const {
+  /// One gain a photo. Of held-out examples the fitted photos say nothing: theirs come with the
+  /// refit, where their own photos settle them (settle_held_out).
+  std::shared_ptr<const Ingredient> every_photo(const Model& model, bool held_out) const {
     const auto& examples = model.scene->capture.examples;
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = "each photo";
+    spec.variant = held_out ? kWithHeldOut : kEachPhoto;
     Slots slots;
-    for (size_t e = 0; e < examples.size(); ++e)
-      for (size_t k = 0; k < examples[e].photos.size() && !examples[e].validate; ++k) {
-        const std::string camera = examples[e].photos[k].camera;
-        spec.parameters.push_back(
-            gain(examples[e].name + "." + camera,
-                 fmt::format("the photo of '{}' by '{}'", examples[e].name, camera)));
-        slots.emplace_back(static_cast<int>(e), static_cast<int>(k));
-      }
+    for (const bool validate : {false, true})
+      for (size_t e = 0; e < examples.size() && (held_out || !validate); ++e)
+        for (size_t k = 0; k < examples[e].photos.size() && examples[e].validate == validate; ++k) {
+          const std::string camera = examples[e].photos[k].camera;
+          spec.parameters.push_back(
+              gain(examples[e].name + "." + camera,
+                   fmt::format("the photo of '{}' by '{}'", examples[e].name, camera)));
+          if (validate) spec.parameters.back().example = static_cast<int>(e);
+          slots.emplace_back(static_cast<int>(e), static_cast<int>(k));
+        }
     spec.touches = {.photos = true};
     spec.apply = [slots](const VectorXd& values, Model& m) {
       for (size_t i = 0; i < slots.size(); ++i)

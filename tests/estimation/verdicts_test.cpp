@@ -216,5 +216,26 @@ TEST(Diagnose, APhotoThatIsTooBrightFromTheStartIsNoCorrelatedNoise) {
   }
 }
 
+/// Held-out photos have exposures too, which no other photo tells: they are fitted to their own,
+/// and the search does not end at the misfit that they would leave.
+TEST(Discover, HeldOutPhotosHaveTheirOwnExposure) {
+  const SmallScene small({.hidden = R"(hidden:
+  - effect: exposure
+    variant: each photo, held-out ones too
+    values: {exposure.pull.cam0: 0.06, exposure.pull.cam1: 0.05, exposure.side.cam0: -0.05,
+             exposure.twist.cam1: 0.08, exposure.poke.cam0: -0.07, exposure.poke.cam1: 0.09}
+)"});
+  const Discovery found = test::discover(small);
+  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
+  EXPECT_THAT(found.missing, ElementsAre("exposure"));
+  const Fitted& last = found.steps.back().fitted;
+  EXPECT_LT(last.evaluation.chi(true), 1.15 * found.floor.chi);
+  const auto parameters = last.form.parameters();
+  const auto at = std::find_if(parameters.begin(), parameters.end(),
+                               [](const auto& one) { return one.name == "exposure.poke.cam1"; });
+  ASSERT_NE(at, parameters.end());
+  EXPECT_NEAR(last.p[at - parameters.begin()], 0.09, 0.005);
+}
+
 }  // namespace
 }  // namespace hookeye
