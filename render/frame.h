@@ -93,10 +93,12 @@ struct EdgeSegment {
 struct SurfaceEdge {
   int a, b;
   std::array<int, 2> triangle;
+  bool seam;  ///< the triangles have different places of the texture here
 };
 std::vector<SurfaceEdge> surface_edges(const SurfaceMesh& surface);
 
-/// Silhouette term of the derivative: integral over visible contours of contrast times normal
+/// Silhouette term of the derivative: integral over visible contours, and over other edges at which
+/// the intensity jumps (facets of flat shading, seams of the texture), of contrast times normal
 /// motion, through the pixel filter. Unordered; edges [first, last).
 void silhouette_segments(const Frame& frame, const PixelFilter& filter,
                          const std::vector<SurfaceEdge>& edges, size_t first, size_t last,

@@ -7,6 +7,20 @@
 
 namespace hookeye {
 
+namespace {
+
+/// Whether triangles f and g find vertex a or b at different places of the texture.
+bool is_seam(const SurfaceMesh& surface, int f, int g, int a, int b) {
+  constexpr double kSame = 1e-6;  // rounding where a surface was cut
+  const auto at = [&](int triangle, int vertex) {
+    const auto& t = surface.triangles[triangle];
+    return surface.uv[triangle][std::find(t.begin(), t.end(), vertex) - t.begin()];
+  };
+  return (at(f, a) - at(g, a)).norm() > kSame || (at(f, b) - at(g, b)).norm() > kSame;
+}
+
+}  // namespace
+
 std::vector<SurfaceEdge> surface_edges(const SurfaceMesh& surface) {
   std::map<std::pair<int, int>, std::vector<int>> at;
   for (size_t f = 0; f < surface.triangles.size(); ++f) {
@@ -15,8 +29,11 @@ std::vector<SurfaceEdge> surface_edges(const SurfaceMesh& surface) {
       at[std::minmax(t[k], t[(k + 1) % 3])].push_back(static_cast<int>(f));
   }
   std::vector<SurfaceEdge> out;
-  for (const auto& [edge, faces] : at)
-    out.push_back({edge.first, edge.second, {faces[0], faces.size() > 1 ? faces[1] : -1}});
+  for (const auto& [edge, faces] : at) {
+    const auto [a, b] = edge;
+    const int f = faces[0], g = faces.size() > 1 ? faces[1] : -1;
+    out.push_back({a, b, {f, g}, g >= 0 && !surface.uv.empty() && is_seam(surface, f, g, a, b)});
+  }
   return out;
 }
 
@@ -29,9 +46,10 @@ constexpr double kStepPx = 0.002;
 /// Of the distance to the camera: what a ray of floats must be off an edge to be beside it.
 constexpr double kRayError = 1e-6;
 
-/// A point on a silhouette edge that may be visible.
+/// A point that may be visible on an edge at which the intensity may jump.
 struct EdgePoint {
-  int inside;  ///< triangle
+  int inside;   ///< triangle
+  int outside;  ///< the other triangle where it is seen too; else -1
   int a, b;
   double s;                                ///< position between the edge's ends
   double length_px;                        ///< of the edge that this point stands for
@@ -44,11 +62,23 @@ struct EdgePoint {
   Eigen::Matrix<double, 1, 7> n_by_camera;
 };
 
-/// The triangle turned to the camera where exactly one is, or the one at a boundary; else -1.
-int contour_triangle(const View& view, const SurfaceEdge& edge) {
+/// Whether the intensity may jump from one of the edge's triangles to the other where both are
+/// seen.
+bool jumps_between(const Frame& f, const SurfaceEdge& edge) {
+  constexpr double kCoplanar = 1e-6;  // [rad]
+  if (edge.seam && f.texture.source == Texture::Source::image) return true;
+  const auto& facets = f.state.facets;
+  return f.photo.shaded && !f.options.smooth_normals &&
+         (facets[edge.triangle[0]] - facets[edge.triangle[1]]).norm() > kCoplanar;
+}
+
+/// The triangle turned to the camera where exactly one is, or the one at a boundary; either of two
+/// that differ in intensity; else -1.
+int contour_triangle(const Frame& frame, const SurfaceEdge& edge) {
   const int f = edge.triangle[0], g = edge.triangle[1];
   if (g < 0) return f;
-  const bool a = view.front[f] > 0, b = view.front[g] > 0;
+  const bool a = frame.view.front[f] > 0, b = frame.view.front[g] > 0;
+  if (a && b) return jumps_between(frame, edge) ? f : -1;
   return a == b ? -1 : (a ? f : g);
 }
 
@@ -65,6 +95,8 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
       low.y() > view.camera.height + 1)
     return;
   const auto& t = f.state.surface.triangles[inside];
+  const int other = edge.triangle[edge.triangle[0] == inside];
+  const int outside = other >= 0 && view.front[other] > 0 ? other : -1;
   const int apex = t[0] + t[1] + t[2] - edge.a - edge.b;
   const int count = static_cast<int>(std::ceil(length * per_px));
   double size = 0;
@@ -72,7 +104,7 @@ void add_points(const Frame& f, const SurfaceEdge& edge, int inside, double per_
     size = std::max(size, (view.p.col(t[k]) - view.p.col(t[(k + 1) % 3])).norm());
   for (int i = 0; i < count; ++i) {
     EdgePoint q;
-    q.inside = inside, q.a = edge.a, q.b = edge.b;
+    q.inside = inside, q.outside = outside, q.a = edge.a, q.b = edge.b;
     q.facet_size = size;
     q.s = (i + 0.5) / count;
     const Vector3d p = (1 - q.s) * pa + q.s * pb;
@@ -108,6 +140,12 @@ Side beside(const EdgePoint& q, const Samples& s, const Shading& shading, int i)
   // Beside a contour the surface is seen edge-on: within a facet's size nothing counts as in front
   // (and what lies there hides both sides alike, so that the contrast vanishes anyhow).
   return {s.depth[i] < q.depth - q.facet_size ? std::nan("") : shading.I[i], 0.0};
+}
+
+/// Whether lanes i and i+1 see the two triangles at an edge of which both are seen. What is hidden
+/// makes no jump, nor does a facet narrower than the step: the contour behind it has its share.
+bool sees_both(const EdgePoint& q, const Samples& s, int i) {
+  return q.outside < 0 || (s.triangle[i] == q.inside && s.triangle[i + 1] == q.outside);
 }
 
 /// Adds to all pixels whose filter reaches the point. The filter is what the fixed rays amount to
@@ -161,7 +199,7 @@ void silhouette_segments(const Frame& f, const PixelFilter& filter,
   std::vector<EdgePoint> points;
   const double per_px = std::max(4, 2 * filter.n);
   for (size_t e = first; e < last; ++e) {
-    const int inside = contour_triangle(f.view, edges[e]);
+    const int inside = contour_triangle(f, edges[e]);
     if (inside >= 0) add_points(f, edges[e], inside, per_px, &points);
   }
   for (size_t begin = 0; begin < points.size(); begin += 8) {
@@ -177,6 +215,7 @@ void silhouette_segments(const Frame& f, const PixelFilter& filter,
     shade(f, samples, false, &shading);
     for (int i = 0; i < count; ++i) {
       const EdgePoint& q = points[begin + i];
+      if (!sees_both(q, samples, 2 * i)) continue;
       const Side jump = beside(q, samples, shading, 2 * i) - beside(q, samples, shading, 2 * i + 1);
       if ((jump.I != 0 || jump.behind != 0) && !std::isnan(jump.I)) spread(f, filter, q, jump, out);
     }

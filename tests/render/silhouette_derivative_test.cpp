@@ -51,6 +51,38 @@ struct Contours : testing::Test {
         << what << ": analytic " << ours.norm() << ", difference " << numeric.norm();
   }
 
+  /// By a smooth motion of all vertices.
+  void compare_positions(const std::string& what) {
+    Renderer renderer(surface);
+    const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+    const Matrix3Xd u = test::field(surface.X, 0.3);
+    compare(
+        test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
+        [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1,
+        what + ", positions");
+  }
+
+  /// The columns from the exposure to the light.
+  void compare_light(const std::string& what) {
+    Renderer renderer(surface);
+    const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+    for (int column = kLogGain; column < kSpecular; ++column)
+      compare(
+          test::directional(renderer, r, surface.X, nullptr, nullptr,
+                            VectorXd::Unit(kPhotoColumns, column)),
+          [&](double h) {
+            PhotoState s = state;
+            if (column == kLogGain)
+              s.gain *= std::exp(h);
+            else if (column == kAmbient)
+              s.ambient += h;
+            else
+              s.sun[column - kSun] += h;
+            return picture(renderer, surface.X, s);
+          },
+          0.01, what + ", column " + std::to_string(column));
+  }
+
   /// All columns of the camera.
   void compare_camera(const std::string& what) {
     Renderer renderer(surface);
@@ -83,12 +115,7 @@ TEST_F(Contours, positions) {
     for (auto projection : {Camera::Projection::perspective, Camera::Projection::orthographic}) {
       if (distorted && projection == Camera::Projection::orthographic) continue;
       state.camera = test::camera(projection, distorted);
-      Renderer renderer(surface);
-      const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
-      const Matrix3Xd u = test::field(surface.X, 0.3);
-      compare(
-          test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
-          [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1, "positions");
+      compare_positions("image");
     }
 }
 
@@ -167,29 +194,41 @@ TEST_F(Contours, lit) {
   // Held constant (render/README.md): where shadows fall, the jump of the sky's share at facets.
   options.cast_shadows = false;
   const double ambient = std::exchange(state.ambient, 0.0);
-  Renderer renderer(surface);
-  Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
-  const Matrix3Xd u = test::field(surface.X, 0.3);
-  compare(
-      test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
-      [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1, "positions");
+  compare_positions("lit");
   // Light and exposure, at the rim too.
   state.ambient = ambient;
-  r = renderer.render(surface.X, nullptr, texture, state, options, true);
-  const auto column = [&](int k, const std::function<void(PhotoState&, double)>& change) {
-    compare(
-        test::directional(renderer, r, surface.X, nullptr, nullptr,
-                          VectorXd::Unit(kPhotoColumns, k)),
-        [&](double h) {
-          PhotoState s = state;
-          change(s, h);
-          return picture(renderer, surface.X, s);
-        },
-        0.01, "column " + std::to_string(k));
-  };
-  column(kLogGain, [](PhotoState& s, double h) { s.gain *= std::exp(h); });
-  column(kAmbient, [](PhotoState& s, double h) { s.ambient += h; });
-  for (int i = 0; i < 3; ++i) column(kSun + i, [i](PhotoState& s, double h) { s.sun[i] += h; });
+  compare_light("lit");
+}
+
+// Every edge between two facets that are seen moves a jump of the intensity. Without it 40 % of a
+// derivative by positions are missing and 50 to 85 % of those by the camera.
+TEST_F(Contours, flat_facets) {
+  // One of the front ball's facets at its rim is seen 0.004 px wide.
+  surface = test::both(test::sphere({0, 0, -9}, 4, 2), test::sphere({2, 1, 4}, 8, 2, 0.03));
+  texture.source = Texture::Source::uniform;
+  texture.albedo = 0.8;
+  state.shaded = true;
+  options.smooth_normals = options.cast_shadows = false;
+  compare_positions("flat");
+  compare_camera("flat");
+  compare_light("flat");
+  state.camera = test::camera(Camera::Projection::orthographic, false);
+  compare_camera("flat, orthographic");
+}
+
+// Across a seam the colour jumps although the surface is smooth.
+TEST_F(Contours, seam_of_the_texture) {
+  surface = test::sphere({2, 1, 4}, 8, 3);
+  // The background is as bright as the side beyond the seam: half of the contour does not count.
+  state.background = 0.9 * state.gain;
+  for (size_t f = 0; f < surface.triangles.size(); ++f) {
+    const auto& t = surface.triangles[f];
+    const Vector3d middle = (surface.X.col(t[0]) + surface.X.col(t[1]) + surface.X.col(t[2])) / 3;
+    for (Vector2d& uv : surface.uv[f])
+      uv = middle.x() + middle.y() > 2 ? Vector2d(0.2, 0.5) : Vector2d(0.8, 0.5);
+  }
+  compare_positions("seam");
+  compare_camera("seam");
 }
 
 TEST_F(Contours, background_and_blur) {
