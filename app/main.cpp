@@ -13,6 +13,7 @@
 #include "app/interrupt.h"
 #include "app/invocation.h"
 #include "app/progress.h"
+#include "app/validators.h"
 #include "capture_io/input_error.h"
 #include "capture_io/scope.h"
 #include "estimation/evaluation.h"
@@ -154,7 +155,7 @@ int run_program(int argc, char** argv) {
   for (CLI::App* command : app.get_subcommands({})) {
     command->add_flag("--json", session.json, "One JSON document on standard output");
     command->add_option("--threads", session.threads, "Cores to use (default: all)")
-        ->check(CLI::PositiveNumber);
+        ->check(counting_number());
     command->add_flag("-v,--verbose", session.verbose, "More about what is going on");
   }
   try {

@@ -3,6 +3,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
+#include "app/validators.h"
 #include "capture_io/scope.h"
 #include "meshing/surface_mesh.h"
 #include "meshing/tet_mesh.h"
@@ -57,7 +58,7 @@ void add_mesh(CLI::App& app, CommandBody& chosen) {
       ->required();
   command->add_option("-o,--out", options->body, "The body to write: BODY.vtu")->required();
   command->add_option("--edge", options->fill.edge, "Target edge (default: diagonal / 12)")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   command->add_option("--order", options->fill.order, "Order of the tetrahedra (default: 2)")
       ->check(CLI::IsMember({1, 2}));
   // Where more is asked, TetGen may refine without end.

@@ -7,6 +7,7 @@
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/validators.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -148,7 +149,7 @@ void add_plan(CLI::App& app, CommandBody& chosen) {
   command->add_flag("--grid", arguments->grid,
                     "Rate the grid also where the capture tells candidates");
   command->add_option("--most", arguments->most, "Lines of the table (default: 8)")
-      ->check(CLI::PositiveNumber);
+      ->check(counting_number());
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_plan(*arguments, session); };
   });

@@ -56,6 +56,19 @@ TEST_F(Cli, UsageErrorsAreBadInput) {
   EXPECT_EQ(json::parse(asked.out).at("exit"), 2);
 }
 
+TEST_F(Cli, NumbersOutOfRangeAreToldInWords) {
+  for (const std::string number : {"0", "-3", "two", "1.5", "99999999999"}) {
+    const Result result = hookeye("check . --threads " + number);
+    EXPECT_EQ(result.status, 2) << number;
+    EXPECT_EQ(result.err, "hookeye check: --threads: a whole number from 1 is expected, not " +
+                              number + "\n  hookeye check --help tells what is right\n");
+  }
+  EXPECT_THAT(hookeye("plan run --most 0").err, HasSubstr("a whole number from 1 is expected"));
+  for (const std::string number : {"0", "-1", "nan", "inf"})
+    EXPECT_THAT(hookeye("mesh cube.obj -o b.vtu --edge " + number).err,
+                HasSubstr("--edge: a number above zero is expected, not " + number));
+}
+
 TEST_F(Cli, MissingFilesAreBadInput) {
   for (const std::string arguments : {"check nowhere", "mesh nothing.obj -o body.vtu",
                                       "simulate nowhere -o out", "plan nowhere"}) {

@@ -1,0 +1,39 @@
+// Checks of the numbers of options. CLI11's own PositiveNumber states its range, the end of which
+// is the largest double, in 309 digits.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace hookeye {
+
+/// A whole number from 1 that an int holds.
+inline CLI::Validator counting_number() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0.0;
+        const bool good = CLI::detail::lexical_cast(text, value) && value >= 1.0 &&
+                          value <= std::numeric_limits<int>::max() && std::floor(value) == value;
+        return good ? std::string()
+                    : fmt::format("a whole number from 1 is expected, not {}", text);
+      },
+      "FROM 1");
+}
+
+/// A finite number above zero.
+inline CLI::Validator above_zero() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0.0;
+        const bool good =
+            CLI::detail::lexical_cast(text, value) && value > 0.0 && std::isfinite(value);
+        return good ? std::string() : fmt::format("a number above zero is expected, not {}", text);
+      },
+      "POSITIVE");
+}
+
+}  // namespace hookeye
