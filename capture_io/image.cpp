@@ -8,6 +8,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "capture_io/png_chunks.h"
+
 namespace hookeye {
 namespace {
 
@@ -37,32 +39,17 @@ bool jpeg_is_complete(const fs::path& file) {
   return scan != std::string::npos && end != std::string::npos && end > scan;
 }
 
-/// libpng reports a missing rest on standard error before it returns; walking the chunks (length,
-/// name, data, checksum) finds it silently and sooner.
-bool png_has_chunk(const fs::path& file, const char* name) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code error;
-  const auto size = fs::file_size(file, error);
-  for (uintmax_t at = 8; at + 12 <= size;) {
-    unsigned char head[8] = {};
-    stream.seekg(static_cast<std::streamoff>(at));
-    if (!stream.read(reinterpret_cast<char*>(head), sizeof head)) return false;
-    if (std::equal(head + 4, head + 8, name)) return true;
-    at += 12 + (uintmax_t{head[0]} << 24 | uintmax_t{head[1]} << 16 | uintmax_t{head[2]} << 8 |
-                uintmax_t{head[3]});
-  }
-  return false;
+std::string claim_of(const OIIO::ImageSpec& spec) {
+  return fmt::format("the header claims {} x {} pixels with {} channels", spec.width, spec.height,
+                     spec.nchannels);
 }
 
 void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
   const double pixels = double(spec.width) * spec.height;
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
-    unreadable(file, fmt::format("the header claims {} x {} pixels with {} channels", spec.width,
-                                 spec.height, spec.nchannels));
+    unreadable(file, claim_of(spec));
   if (pixels > max_pixels || pixels * spec.nchannels * 4.0 > max_bytes)
-    throw InputError({file.string()},
-                     fmt::format("the header claims {} x {} pixels with {} channels", spec.width,
-                                 spec.height, spec.nchannels),
+    throw InputError({file.string()}, claim_of(spec),
                      "at most 2 GiB of decoded pixels are read: use a smaller picture");
   if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
       spec.height != spec.full_height)
@@ -76,19 +63,13 @@ void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
                      "stored pixels");
 }
 
-bool is_png(const fs::path& file) {
-  char signature[8] = {};
-  std::ifstream(file, std::ios::binary).read(signature, sizeof signature);
-  return std::equal(signature, signature + 8, "\x89PNG\r\n\x1a\n");
-}
-
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored))
     throw InputError({file.string()}, "there is no such file", "check the name and its folder");
   if (!fs::is_regular_file(file, ignored))
     throw InputError({file.string()}, "this is not a file", "name a picture");
-  if (is_png(file) && !png_has_chunk(file, "IDAT"))
+  if (is_png(file) && !png_begins_well(file))
     unreadable(file, "the file cannot be read as a picture");
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);
@@ -181,8 +162,7 @@ Image read_stored(const fs::path& file, Encoding& stored_as) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
-  if ((format == "jpeg" && !jpeg_is_complete(file)) ||
-      (format == "png" && !png_has_chunk(file, "IEND")))
+  if ((format == "jpeg" && !jpeg_is_complete(file)) || (format == "png" && !png_is_intact(file)))
     unreadable(file, "the picture is truncated or damaged");
   std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
   bool complete = false;

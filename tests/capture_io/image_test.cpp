@@ -183,6 +183,21 @@ TEST(ImageTest, HugeClaimsAreRefusedBeforeAllocation) {
   EXPECT_EQ(complaint(folder / "b.ppm"), "the header claims 30000 x 30000 pixels with 3 channels");
 }
 
+/// A changed byte in the pixels of a PNG is found before libpng tells it on standard error.
+TEST(ImageTest, DamagedPngsAreToldOnce) {
+  const TemporaryFolder folder;
+  store(folder / "a.png", ramp(3), OIIO::TypeDesc::UINT8);
+  const std::string whole = read_text(folder / "a.png");
+  for (const size_t at : {size_t{17}, size_t{30}, whole.size() / 2, whole.size() - 20}) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 0x55);
+    write_text(folder / "b.png", bytes);
+    testing::internal::CaptureStderr();
+    EXPECT_NE(complaint(folder / "b.png"), "") << at;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << at;
+  }
+}
+
 TEST(ImageTest, PixelsThatAreNoNumbersAreNamed) {
   const TemporaryFolder folder;
   Image image = ramp(3);
