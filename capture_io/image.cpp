@@ -16,6 +16,11 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double max_pixels = 1e9;
 constexpr double max_bytes = 2147483648.0;  ///< of the decoded picture, four bytes a value
+/// A forged header of some hundred bytes would cost all that memory before the pixels turn out to
+/// be missing, so that what it claims is held against the size of the file. Deflate makes at most
+/// 1032 bytes out of one (258 out of two bits); of the other formats JPEG 2000 packs a picture of
+/// one grey most densely, 40,000 to one; without compression a palette of single bits grows to 24.
+constexpr double deflate_ratio = 1032, any_ratio = 1e5, palette_ratio = 24;
 
 std::string one_line(std::string text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
@@ -44,6 +49,19 @@ std::string claim_of(const OIIO::ImageSpec& spec) {
                      spec.nchannels);
 }
 
+/// Whether a file of this size can hold what its header claims.
+void check_claim(const fs::path& file, const OIIO::ImageSpec& spec) {
+  std::error_code error;
+  const auto size = static_cast<double>(fs::file_size(file, error));
+  double claimed = static_cast<double>(spec.image_bytes()), ratio = any_ratio;
+  if (is_png(file))
+    claimed = png_claimed_bytes(file), ratio = deflate_ratio;
+  else if (spec.get_string_attribute("compression") == "none")
+    ratio = palette_ratio;
+  if (error || claimed > ratio * size)
+    unreadable(file, fmt::format("{}, which {:.0f} bytes cannot hold", claim_of(spec), size));
+}
+
 void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
   const double pixels = double(spec.width) * spec.height;
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
@@ -51,6 +69,7 @@ void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
   if (pixels > max_pixels || pixels * spec.nchannels * 4.0 > max_bytes)
     throw InputError({file.string()}, claim_of(spec),
                      "at most 2 GiB of decoded pixels are read: use a smaller picture");
+  check_claim(file, spec);
   if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
       spec.height != spec.full_height)
     throw InputError({file.string()}, "the stored window differs from the displayed one",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -79,5 +80,13 @@ bool is_png(const fs::path& file) {
 bool png_begins_well(const fs::path& file) { return chunks_hold(file, true); }
 
 bool png_is_intact(const fs::path& file) { return chunks_hold(file, false); }
+
+double png_claimed_bytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  unsigned char header[10];  // width, height, bits a sample, kind of colour
+  if (!read_at(stream, 16, header, sizeof header)) return 0.0;
+  const double samples = header[9] == 2 ? 3 : header[9] == 4 ? 2 : header[9] == 6 ? 4 : 1;
+  return big_endian(header + 4) * (1.0 + std::ceil(big_endian(header) * samples * header[8] / 8.0));
+}
 
 }  // namespace hookeye

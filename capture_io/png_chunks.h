@@ -17,4 +17,7 @@ bool png_begins_well(const std::filesystem::path& file);
 /// libpng would tell faults on standard error before it returns.
 bool png_is_intact(const std::filesystem::path& file);
 
+/// What the header claims that inflating gives, one filter byte a row included.
+double png_claimed_bytes(const std::filesystem::path& file);
+
 }  // namespace hookeye

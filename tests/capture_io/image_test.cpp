@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -43,6 +44,47 @@ double largest_difference(const Image& a, const Image& b) {
   for (size_t i = 0; i < a.values.size(); ++i)
     largest = std::max<double>(largest, std::abs(a.values[i] - b.values[i]));
   return largest;
+}
+
+void put(std::string& bytes, size_t at, uint32_t value, int count, bool big_endian) {
+  for (int i = 0; i < count; ++i)
+    bytes[at + i] = static_cast<char>(value >> 8 * (big_endian ? count - 1 - i : i));
+}
+
+uint32_t crc32_of(const std::string& bytes) {
+  uint32_t crc = 0xFFFFFFFFu;
+  for (const char byte : bytes) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = crc & 1 ? 0xEDB88320u ^ (crc >> 1) : crc >> 1;
+  }
+  return ~crc;
+}
+
+/// Makes the header of a picture claim side x side pixels, with all else as it was.
+void forge_size(const fs::path& file, uint32_t side) {
+  std::string bytes = read_text(file);
+  const std::string type = file.extension().string();
+  if (type == ".png") {
+    for (const size_t at : {16, 20}) put(bytes, at, side, 4, true);
+    put(bytes, 29, crc32_of(bytes.substr(12, 17)), 4, true);
+  } else if (type == ".jpg") {
+    const size_t frame = bytes.find("\xFF\xC0");
+    for (const size_t at : {5, 7}) put(bytes, frame + at, side, 2, true);
+  } else if (type == ".exr") {
+    for (const std::string window : {"dataWindow", "displayWindow"})
+      for (const size_t corner : {8, 12})
+        put(bytes, bytes.find(window) + window.size() + 11 + corner, side - 1, 4, false);
+  } else {
+    size_t entry = 0;  // of the directory, twelve bytes each: tag, type, count, value
+    std::memcpy(&entry, bytes.data() + 4, 4);
+    for (entry += 2;; entry += 12) {
+      const int tag = static_cast<unsigned char>(bytes[entry]) +
+                      256 * static_cast<unsigned char>(bytes[entry + 1]);
+      if (tag == 256 || tag == 257 || tag == 278) put(bytes, entry + 8, side, 2, false);
+      if (tag >= 278) break;  // the rows of a strip, behind width and height
+    }
+  }
+  write_text(file, bytes);
 }
 
 std::string complaint(const fs::path& file) {
@@ -181,6 +223,39 @@ TEST(ImageTest, HugeClaimsAreRefusedBeforeAllocation) {
   EXPECT_EQ(complaint(folder / "a.ppm"), "the header claims 60000 x 60000 pixels with 3 channels");
   write_text(folder / "b.ppm", "P6\n30000 30000\n255\nxxxx");
   EXPECT_EQ(complaint(folder / "b.ppm"), "the header claims 30000 x 30000 pixels with 3 channels");
+}
+
+/// A few hundred bytes that claim almost two gigabytes, in every format.
+TEST(ImageTest, ClaimsAreHeldAgainstTheSizeOfTheFile) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.tif", "a.exr", "a.jpg"}) {
+    const fs::path file = folder / name;
+    const bool exr = file.extension() == ".exr";
+    store(file, {16, 16, 1, std::vector<float>(256, 0.5f)},
+          exr ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
+    const std::string told = std::to_string(fs::file_size(file));
+    forge_size(file, 22000);
+    EXPECT_EQ(complaint(file), exr ? "the file cannot be read as a picture"  // OpenEXR's own check
+                                   : "the header claims 22000 x 22000 pixels with 1 channels, "
+                                     "which " +
+                                         told + " bytes cannot hold");
+    EXPECT_THROW(read_image_header(file), InputError);
+  }
+}
+
+/// What compresses best is no claim: one level all over, in 8 bits and in 16.
+TEST(ImageTest, EvenPicturesAreNoForgeries) {
+  const TemporaryFolder folder;
+  const Image even{3000, 2000, 1, std::vector<float>(6000000, 0.5f)};
+  for (const auto& type : {OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16})
+    for (const char* name : {"a.png", "a.tif"}) {
+      store(folder / name, even, type);
+      EXPECT_EQ(complaint(folder / name), "") << name;
+    }
+  store(folder / "a.exr", even, OIIO::TypeDesc::FLOAT);
+  EXPECT_EQ(complaint(folder / "a.exr"), "");
+  store(folder / "a.jpg", even, OIIO::TypeDesc::UINT8, 1);
+  EXPECT_EQ(complaint(folder / "a.jpg"), "");
 }
 
 /// A changed byte in the pixels of a PNG is found before libpng tells it on standard error.
