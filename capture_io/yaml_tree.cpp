@@ -4,6 +4,7 @@
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -176,12 +177,25 @@ int line_with_tab(const std::string& text, int last_line) {
                    "look at the indentation, brackets and quotes here and just before");
 }
 
+/// Editors of Windows save "Unicode", two bytes a character; the parser finds nothing in it. Told
+/// by the mark at its beginning or, since a capture begins with ASCII, by the zero bytes.
+void check_bytes(const std::string& text, const std::string& file) {
+  const bool marked = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+  const size_t zero = text.find('\0');
+  if (marked || zero < 2) throw InputError({file}, "the file is in UTF-16", "save it in UTF-8");
+  if (zero == std::string::npos) return;
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(zero), '\n');
+  throw InputError({file, static_cast<int>(line)}, "there is a zero byte: this is no text",
+                   "the file as it was written, in UTF-8");
+}
+
 }  // namespace
 
 YamlNode parse_yaml(const std::string& text, const std::string& file, const YamlLimits& limits) {
   if (text.size() > limits.bytes)
     throw InputError({file}, fmt::format("{} bytes of yaml are too many", text.size()),
                      fmt::format("at most {} MiB are read", limits.bytes >> 20));
+  check_bytes(text, file);
   TreeBuilder builder(file, limits);
   try {
     std::istringstream stream(text);

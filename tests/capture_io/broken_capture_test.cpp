@@ -7,6 +7,13 @@
 namespace hookeye::test {
 namespace {
 
+/// ASCII in UTF-16, with its mark.
+std::string utf16(const std::string& text, bool big_endian) {
+  std::string out = big_endian ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : text) out += big_endian ? std::string{'\0', c} : std::string{c, '\0'};
+  return out;
+}
+
 const BrokenCase broken_cases[] = {
     {"EmptyFile", [](CaptureFixture& c) { c.yaml = ""; },
      "capture.yaml: the file is empty\n"
@@ -14,6 +21,18 @@ const BrokenCase broken_cases[] = {
     {"OnlyComments", [](CaptureFixture& c) { c.yaml = "# nothing yet\n"; },
      "capture.yaml: the file is empty\n"
      "  a capture begins with `hookeye: 1`"},
+    {"Utf16", [](CaptureFixture& c) { c.yaml = utf16(c.yaml, false); },
+     "capture.yaml: the file is in UTF-16\n"
+     "  save it in UTF-8"},
+    {"Utf16BigEndian", [](CaptureFixture& c) { c.yaml = utf16(c.yaml, true); },
+     "capture.yaml: the file is in UTF-16\n"
+     "  save it in UTF-8"},
+    {"Utf16WithoutMark", [](CaptureFixture& c) { c.yaml = utf16(c.yaml, false).substr(2); },
+     "capture.yaml: the file is in UTF-16\n"
+     "  save it in UTF-8"},
+    {"ZeroByte", [](CaptureFixture& c) { c.yaml[c.yaml.find("silicone")] = '\0'; },
+     "capture.yaml:2: there is a zero byte: this is no text\n"
+     "  the file as it was written, in UTF-8"},
     {"NotAMap", [](CaptureFixture& c) { c.yaml = "- 1\n- 2\n"; },
      "capture.yaml:1:1: the capture is a list of 2\n"
      "  write a map with the keys hookeye, title, units, body, model, cameras, light, photos, "
