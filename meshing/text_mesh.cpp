@@ -1,6 +1,10 @@
-// Plain text formats without a library in Debian: "nnodes ntets nodes_per_tet", and Abaqus inp.
+// Plain text formats that no library in Debian 12 reads: "nnodes ntets nodes_per_tet", and decks of
+// Abaqus (inp). gmsh 4.8 has GModel::writeINP but no reader of them; the .inp that VTK 9.1 reads is
+// AVS UCD, another format of that name. What moves or makes nodes and elements is obeyed (the
+// placement of an instance) or refused, never passed over.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -137,11 +141,12 @@ class InpReader {
       }
     }
     if (!pending_.empty()) lines_.fault("the last element has too few nodes", "all its nodes");
+    if (in_instance_) lines_.fault("*INSTANCE is not closed", "*END INSTANCE");
     return finished();
   }
 
  private:
-  enum class Block { other, node, element, node_set, element_set };
+  enum class Block { other, node, element, node_set, element_set, instance };
 
   void keyword() {
     if (!pending_.empty()) lines_.fault("the element before has too few nodes", "all its nodes");
@@ -160,9 +165,13 @@ class InpReader {
     generate_ = options.contains("GENERATE");
     set_.clear();
     if (trimmed == "*NODE") {
+      check_node_options(options);
       block_ = Block::node;
       set_ = options["NSET"];
     } else if (trimmed == "*ELEMENT") {
+      if (options.contains("INPUT")) {
+        lines_.fault("INPUT= is not followed", "one file with all nodes and elements");
+      }
       begin_elements(upper(options["TYPE"]), options["ELSET"]);
     } else if (trimmed == "*NSET") {
       block_ = Block::node_set;
@@ -170,10 +179,42 @@ class InpReader {
     } else if (trimmed == "*ELSET") {
       block_ = Block::element_set;
       set_ = options["ELSET"];
-    } else if (trimmed == "*INCLUDE") {
+    } else {
+      structure(trimmed);
+    }
+  }
+
+  /// Keywords that group, place or make nodes and elements.
+  void structure(const std::string& word) {
+    static const char* const makers[] = {"*SYSTEM", "*NGEN",  "*NFILL", "*NCOPY",
+                                         "*NMAP",   "*ELGEN", "*ELCOPY"};
+    if (word == "*INCLUDE") {
       lines_.fault("*INCLUDE is not followed", "one file with all nodes and elements");
-    } else if (trimmed == "*PART" || trimmed == "*INSTANCE") {
-      if (++parts_ > 2) lines_.fault("more than one part", "one part with one instance at most");
+    } else if (word == "*PART") {
+      if (++parts_ > 1) lines_.fault("more than one part", "one part with one instance at most");
+    } else if (word == "*INSTANCE") {
+      if (++instances_ > 1) {
+        lines_.fault("more than one instance", "one part with one instance at most");
+      }
+      in_instance_ = true;
+      block_ = Block::instance;
+    } else if (word == "*END INSTANCE") {
+      for (auto& [label, x] : nodes_) x = placement_ * x;
+      in_instance_ = false;
+    } else if (std::find(std::begin(makers), std::end(makers), word) != std::end(makers)) {
+      lines_.fault(fmt::format("{} is not obeyed", word),
+                   "all nodes and elements written out, in the coordinates of the body");
+    }
+  }
+
+  void check_node_options(const std::unordered_map<std::string, std::string>& options) const {
+    const auto system = options.find("SYSTEM");
+    if (system != options.end() && upper(system->second) != "R") {
+      lines_.fault(fmt::format("nodes in coordinates of system {}", system->second),
+                   "rectangular coordinates");
+    }
+    if (options.contains("INPUT")) {
+      lines_.fault("INPUT= is not followed", "one file with all nodes and elements");
     }
   }
 
@@ -199,9 +240,33 @@ class InpReader {
         return add_set(node_sets_[set_]);
       case Block::element_set:
         return add_set(element_sets_[set_]);
+      case Block::instance:
+        return place_instance();
       case Block::other:
         return;
     }
+  }
+
+  /// First line: the translation. Second: two points of an axis and an angle in degrees, a turn
+  /// about that axis after the translation (Abaqus Keywords Guide, *INSTANCE).
+  void place_instance() {
+    std::vector<double> v;
+    for (const std::string_view f : lines_.fields()) v.push_back(lines_.real(f));
+    const int line = ++placement_lines_;
+    if (line == 1) v.resize(std::max<size_t>(v.size(), 3), 0.0);
+    if (line > 2 || v.size() != (line == 1 ? 3 : 7)) {
+      lines_.fault("no placement of an instance",
+                   "x, y, z of a translation, then seven numbers of a rotation: two points of its "
+                   "axis and degrees");
+    }
+    if (line == 1) {
+      placement_ = Eigen::Translation3d(v[0], v[1], v[2]);
+      return;
+    }
+    const Vector3d a(v[0], v[1], v[2]), axis = Vector3d(v[3], v[4], v[5]) - a;
+    if (!(axis.norm() > 0.0)) lines_.fault("the axis has no direction", "two distinct points");
+    const Eigen::AngleAxisd turn(v[6] * EIGEN_PI / 180.0, axis.normalized());
+    placement_ = Eigen::Translation3d(a) * turn * Eigen::Translation3d(-a) * placement_;
   }
 
   void add_node() {
@@ -288,7 +353,9 @@ class InpReader {
   Lines lines_;
   Block block_ = Block::other;
   bool generate_ = false;
-  int per_ = 0, parts_ = 0;
+  int per_ = 0, parts_ = 0, instances_ = 0, placement_lines_ = 0;
+  bool in_instance_ = false;
+  Eigen::Isometry3d placement_ = Eigen::Isometry3d::Identity();  ///< of the instance's nodes
   std::string set_;
   std::vector<int> pending_;
   std::map<int, Vector3d> nodes_;  ///< ascending labels: label i of a full numbering is column i-1
