@@ -13,6 +13,7 @@
 #include "estimation/lost_ellipticity.h"
 #include "estimation/page_data.h"
 #include "estimation/removed.h"
+#include "estimation/verdict.h"
 
 namespace hookeye {
 
@@ -53,6 +54,7 @@ json timeline_entry(const Step& step) {
                 {"converged", fitted.converged},
                 {"iterations", fitted.iterations},
                 {"undetermined", fitted.undetermined},
+                {"says", effects_in_words(fitted)},
                 {"parameters",
                  parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high)},
                 {"diagnosis", json::array()}};

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "estimation/contest.h"
+#include "estimation/effect.h"
 
 namespace hookeye {
 
@@ -76,6 +77,22 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   return photos && measured ? Verdict::explained : Verdict::unexplained;
 }
 
+std::vector<std::string> effects_in_words(const Fitted& fitted) {
+  std::vector<std::string> out;
+  ModelForm before = fitted.form;
+  before.ingredients.clear();
+  for (const auto& ingredient : fitted.form.ingredients) {
+    const auto size = static_cast<Eigen::Index>(ingredient->parameters().size());
+    const Eigen::Index at = before.size();
+    if (const Effect* effect = find_effect(ingredient->name()))
+      out.push_back(fmt::format("{}: {}", effect->name(),
+                                effect->sentence(before.realise(fitted.p.head(at)), *ingredient,
+                                                 fitted.p.segment(at, size))));
+    before.ingredients.push_back(ingredient);
+  }
+  return out;
+}
+
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
                 const std::vector<std::string>& tie, std::string why, const std::string& refused) {
   if (!refused.empty()) why += "; " + refused;
@@ -86,9 +103,10 @@ std::string say(Verdict verdict, const std::vector<std::string>& missing,
   const std::string finer =
       mesh.empty() ? "" : fmt::format("a finer mesh ({})", fmt::join(mesh, " and "));
   if (!physical.empty())
-    return fmt::format("missing: {}; with {}{}, {}", fmt::join(physical, " and "),
-                       physical.size() == 1 ? "it" : "them", mesh.empty() ? "" : " on " + finer,
-                       why);
+    return fmt::format("{}: {}; with {}{}, {}",
+                       verdict == Verdict::unexplained ? "named, but not enough" : "missing",
+                       fmt::join(physical, " and "), physical.size() == 1 ? "it" : "them",
+                       mesh.empty() ? "" : " on " + finer, why);
   if (verdict != Verdict::explained)
     return fmt::format(
         "{}: {}{}", refused.empty() ? "not in the catalogue" : "nothing that was tried explains it",

@@ -21,6 +21,10 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
 /// times all that was fitted before, and name nothing.
 bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis);
 
+/// What each effect of the model is at its fitted values, in the order in which they were added:
+/// "gravity: self-weight, 9.8 m/s2 towards (0.15, 0.09, -0.98)".
+std::vector<std::string> effects_in_words(const Fitted& fitted);
+
 /// One line: what was missing, how sure, what else. `why` is judge()'s, `refused` why the effect
 /// that came farthest was not added ("": none was refused).
 std::string say(Verdict verdict, const std::vector<std::string>& missing,

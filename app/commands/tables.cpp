@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/text.h"
+#include "estimation/verdict.h"
 
 namespace hookeye {
 namespace {
@@ -41,6 +42,7 @@ std::string parameter_table(const Fitted& fitted) {
                     fmt::format("{:.5g} .. {:.5g}", fitted.low[i], fitted.high[i]),
                     parameters[i].unit, parameters[i].long_name});
   std::string text = table(rows);
+  for (const auto& sentence : effects_in_words(fitted)) text += wrapped(sentence, 2);
   for (const auto& sentence : fitted.undetermined) text += wrapped(sentence, 2);
   return text;
 }
@@ -104,8 +106,9 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
   const auto raced = step.value("raced", none), rivals = step.value("rivals", none);
   if (raced.size() < 2) return "";
   const std::string added = step.at("added");
-  std::vector<std::vector<std::string>> rows = {
-      {"effect", "evidence", "tried: chi fitted", "held out", "refitted: chi fitted", "held out"}};
+  std::vector<std::vector<std::string>> rows = {{"effect", "evidence", "tried: chi fitted",
+                                                 "held out", "refitted: chi fitted", "held out",
+                                                 "behind"}};
   const auto chi = [](const nlohmann::json& one, const char* key) {
     const double value = number_in(one, key);
     return value > 0.0 ? fmt::format("{:.2f}", value) : "-";
@@ -125,13 +128,17 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
                     score.is_null() ? "-" : fmt::format("{:.1f}", number_in(score, "evidence")),
                     chi(one, "chi_fit"), chi(one, "chi_validate"),
                     refit.is_null() ? "" : chi(refit, "chi_fit"),
-                    refit.is_null() ? "" : chi(refit, "chi_validate")});
+                    refit.is_null() ? "" : chi(refit, "chi_validate"),
+                    refit.is_null()   ? ""
+                    : effect == added ? "-"
+                                      : fmt::format("{:.1f}", -number_in(refit, "score"))});
   }
   return "\n" +
          wrapped(
              fmt::format("why {}: what each of the {} effects that stood out leaves (tried: after "
-                         "two steps of its refit, half-size photos)",
-                         added, raced.size())) +
+                         "two steps of its refit, half-size photos; behind: in the refits' log "
+                         "likelihood less the price of their parameters, below {:.0f} is a tie)",
+                         added, raced.size(), kTie)) +
          table(rows);
 }
 

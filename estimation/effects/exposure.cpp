@@ -34,6 +34,12 @@ class Exposure final : public Effect {
               },
               model);
         });
+    if (scene.capture.cameras.size() > 1)  // a lamp that grew brighter
+      for (const FirstExample& first : first_examples(
+               scene, [&](int e) { return !examples[static_cast<size_t>(e)].photos.empty(); }))
+        all.push_back(one_gain(
+            "all cameras " + first.text,
+            [&](size_t e, const auto&) { return static_cast<int>(e) >= first.index; }, model));
     for (size_t k = 0; k < examples.size(); ++k)
       if (!examples[k].validate && examples[k].photos.size() > 1)
         all.push_back(one_gain(

@@ -318,6 +318,8 @@ TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
             "nothing that is missing pays for itself: little is left; creep was refused");
   EXPECT_EQ(say(Verdict::unexplained, {}, {}, "much is left", ""),
             "not in the catalogue: much is left");
+  EXPECT_EQ(say(Verdict::unexplained, {"gravity"}, {}, "much is left", ""),
+            "named, but not enough: gravity; with it, much is left");
   EXPECT_EQ(say(Verdict::unexplained, {"mesh_resolution"}, {}, "much is left", "creep was refused"),
             "nothing that was tried explains it: even on a finer mesh (mesh_resolution), much is "
             "left; creep was refused");
