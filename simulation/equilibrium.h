@@ -13,7 +13,7 @@
 
 namespace hookeye {
 
-using SparseMatrix = Eigen::SparseMatrix<double>;  ///< column-major, full symmetric
+using SparseMatrix = Eigen::SparseMatrix<double>;  ///< column-major, both triangles
 
 /// R(q) = dE_internal/dq + sum of force terms; K = dR/dq. All 3n unknowns, supports not eliminated.
 double internal_energy(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
@@ -42,7 +42,7 @@ struct ElementState {
 };
 ElementState element_state(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q);
 
-/// The factored true tangent on the free unknowns at the solution.
+/// The factored symmetric part of the true tangent on the free unknowns at the solution.
 class TangentFactor;
 
 struct Equilibrium {
@@ -50,10 +50,12 @@ struct Equilibrium {
   VectorXd R;      ///< 3n; zero on free unknowns, on prescribed ones the force the
                    ///< support exerts on the body [force]
   SparseMatrix K;  ///< true tangent at q, 3n x 3n
-  std::shared_ptr<const TangentFactor> factor;
+  std::shared_ptr<const TangentFactor> factor;  ///< of K_ff's symmetric part
+  SparseMatrix W_ff;  ///< skew part of K_ff, not in `factor`; no values: no pressure ends at a
+                      ///< free rim
   int newton_iterations = 0;
   int factorizations = 0;
-  bool stable = true;  ///< K_ff positive definite
+  bool stable = true;  ///< K_ff's symmetric part is positive definite
 };
 
 struct EquilibriumOptions {
@@ -100,6 +102,7 @@ std::variant<Equilibrium, NumericalFailure> solve_equilibrium(
 /// S = dq/dp for columns given by dR/dp at fixed q (3n x m, at all unknowns) and the change of the
 /// prescribed unknowns dq_c/dp (rows in the order of loading.prescribed; empty: none):
 ///   S_c = dq_c/dp,  S_f = -K_ff^-1 (dR_f/dp + K_fc S_c).   Returns 3n x m.
+/// Where K_ff is unsymmetric the factor preconditions, and a column costs some ten solves.
 Eigen::MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
                               const Eigen::MatrixXd& dR_dp, const Eigen::MatrixXd& dqc_dp);
 

@@ -125,7 +125,7 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
     }
     step = std::min(step, 1 - s);
     const double next = step >= 1 - s - 1e-12 ? 1.0 : s + step;
-    problem.tangent(x, s, false, state.K);
+    state.set_tangent(problem, x, s);
     if (!state.factorize()) {
       problem.tangent(x, s, true, state.K);
       if (!state.factorize()) {
@@ -179,7 +179,8 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(cons
     e.factor = state.factor;
   }
   for (int u : state.free) e.R[u] = 0;
-  e.K = state.K;
+  e.K = sum(state.K, state.W);
+  e.W_ff = state.W_ff;
   e.newton_iterations = state.iterations;
   e.factorizations = state.factorizations;
   q = x;

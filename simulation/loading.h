@@ -15,8 +15,9 @@ namespace hookeye {
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 /// A force on the nodes with its derivative. q: 3n deformed positions, X likewise.
-/// R += -force (residual = internal - external). K += d(-force)/dq; unsymmetric parts (follower
-/// pressure on an open patch) are symmetrised in K and said so in the file that has them.
+/// R += -force (residual = internal - external). d(-force)/dq comes in two parts: the symmetric
+/// one, which is factored, and the skew one of forces without a potential (follower pressure on an
+/// open patch).
 class ForceTerm {
  public:
   virtual ~ForceTerm() = default;
@@ -26,7 +27,11 @@ class ForceTerm {
   virtual bool has_potential() const { return true; }
   virtual void add_residual(const TetMesh& mesh, const VectorXd& q, double s,
                             VectorXd& R) const = 0;
+  /// K += symmetric part of d(-force)/dq.
   virtual void add_tangent(const TetMesh& mesh, const VectorXd& q, double s, Triplets& K) const = 0;
+  /// W += skew part of d(-force)/dq, W^T = -W.
+  virtual void add_skew_tangent(const TetMesh&, const VectorXd& /*q*/, double /*s*/,
+                                Triplets& /*W*/) const {}
   /// True when add_tangent adds nothing (dead loads): keeps the symbolic pattern.
   virtual bool dead() const { return false; }
 };

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "simulation/krylov.h"
+
 namespace hookeye {
 namespace {
 
@@ -11,13 +13,6 @@ namespace {
 constexpr int kMaxCg = 15;
 /// Below this error the tangent changes little from one iteration to the next.
 constexpr double kNear = 0.3;
-
-VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::Index size) {
-  VectorXd all = VectorXd::Zero(size);
-  for (size_t i = 0; i < unknowns.size(); ++i)
-    all[unknowns[i]] = some[static_cast<Eigen::Index>(i)];
-  return all;
-}
 
 struct LineSearch {
   double step = 0.0;
@@ -58,6 +53,14 @@ LineSearch search(const Problem& problem, double s, const VectorXd& q, const Vec
   return out;
 }
 
+/// K_ff x = b with the true tangent on the factor at hand, of whichever tangent. -1: not reached.
+int solve_iteratively(const NewtonState& state, const VectorXd& b, double tolerance,
+                      int max_iterations, VectorXd& x) {
+  if (state.W_ff.nonZeros() == 0)
+    return conjugate_gradients(state.K, *state.factor, b, tolerance, max_iterations, x);
+  return gmres(sum(state.K, state.W), *state.factor, b, tolerance, max_iterations, x);
+}
+
 /// A descent direction from the true tangent (unless `project` says that it will be indefinite),
 /// else from the projected one, else from that with a growing shift. False: nothing factorizes.
 bool direction_by_factor(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
@@ -81,6 +84,12 @@ bool direction_by_factor(const Problem& problem, const NewtonGoal& goal, NewtonS
 }
 
 }  // namespace
+
+void NewtonState::set_tangent(const Problem& problem, const VectorXd& q, double s) {
+  problem.tangent(q, s, false, K);
+  W = problem.skew_tangent(q, s);
+  W_ff = free_block(W, free);
+}
 
 bool NewtonState::factorize(double shift) {
   if (!symbolic || !symbolic->fits(K, free)) {
@@ -108,32 +117,6 @@ double relative_error(const Problem& problem, const NewtonState& state, const Ve
   return largest > 0 ? error / largest : error;
 }
 
-int conjugate_gradients(const SparseMatrix& K, const TangentFactor& factor, const VectorXd& b,
-                        double tolerance, int max_iterations, VectorXd& x) {
-  const std::vector<int>& free = factor.free();
-  VectorXd r = b, z, Kp;
-  factor.solve(r, z);
-  x = VectorXd::Zero(b.size());
-  VectorXd p = z;
-  double rz = r.dot(z);
-  const double goal = tolerance * tolerance * rz;  // |r| in the norm of K^-1: soft modes count
-  if (rz == 0) return 1;
-  for (int i = 1; i <= max_iterations; ++i) {
-    Kp = select(K * spread(p, free, K.cols()), free);
-    const double curvature = p.dot(Kp);
-    if (!(curvature > 0) || !(rz > 0)) return -1;
-    const double alpha = rz / curvature;
-    x += alpha * p;
-    r -= alpha * Kp;
-    factor.solve(r, z);
-    const double next = r.dot(z);
-    if (next <= goal) return i;
-    p = z + (next / rz) * p;
-    rz = next;
-  }
-  return -1;
-}
-
 NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
                      VectorXd& q) {
   NewtonOutcome out;
@@ -145,7 +128,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
   double last_error = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= goal.max_iterations; ++i) {
     if (goal.cancelled && goal.cancelled()) return {false, last_error, "cancelled"};
-    problem.tangent(q, goal.s, false, state.K);
+    state.set_tangent(problem, q, goal.s);
     out.error = relative_error(problem, state, R, q, goal.s);
     if (out.error <= goal.tolerance) {
       out.converged = true;
@@ -160,15 +143,15 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     // than the last step needs.
     const double forcing =
         std::clamp(std::max(0.01 * out.error, 0.05 * goal.tolerance / out.error), 1e-7, 1e-2);
-    const bool by_cg = reuse && state.symbolic->fits(state.K, state.free) &&
-                       conjugate_gradients(state.K, *state.factor, b, forcing, kMaxCg, x) > 0;
-    if (!by_cg) {
+    const bool iterated = reuse && state.symbolic->fits(state.K, state.free) &&
+                          solve_iteratively(state, b, forcing, kMaxCg, x) > 0;
+    if (!iterated) {
       // Far from the solution an indefinite tangent is followed by others.
       projected = projected && out.error > kNear;
       if (!direction_by_factor(problem, goal, state, q, b, projected, x))
         return {false, out.error, "the tangent is singular: something is not held"};
     }
-    reuse = (by_cg || !projected) && (by_cg || out.error < kNear);
+    reuse = (iterated || !projected) && (iterated || out.error < kNear);
     LineSearch found =
         search(problem, goal.s, q, R, spread(x, state.free, q.size()), use_potential);
     if (found.step == 0) {

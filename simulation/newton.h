@@ -13,9 +13,13 @@ struct NewtonState {
   std::vector<int> free;
   std::shared_ptr<const SymbolicFactor> symbolic;
   std::shared_ptr<TangentFactor> factor;  ///< of some earlier tangent; null: none
-  SparseMatrix K;                         ///< last tangent assembled
+  SparseMatrix K;                         ///< last tangent assembled, its symmetric part
+  SparseMatrix W;                         ///< its skew part; no values: none
+  SparseMatrix W_ff;                      ///< that of K_ff; no values: K_ff is symmetric
   int iterations = 0, factorizations = 0;
 
+  /// Assembles the true tangent at q.
+  void set_tangent(const Problem& problem, const VectorXd& q, double s);
   /// Factor of the K at hand: reuses the memory of `factor` unless an Equilibrium holds it.
   bool factorize(double shift = 0.0);
 };
@@ -42,10 +46,5 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
 /// an unloaded body from dividing rounding by rounding (stiffness times 1e-5 of the size).
 double relative_error(const Problem& problem, const NewtonState& state, const VectorXd& R,
                       const VectorXd& q, double s);
-
-/// Solves K_ff x = b by conjugate gradients preconditioned with the factor. Returns the number of
-/// iterations, or -1 where `max_iterations` did not reach |r| <= tolerance |b| or K is indefinite.
-int conjugate_gradients(const SparseMatrix& K, const TangentFactor& factor, const VectorXd& b,
-                        double tolerance, int max_iterations, VectorXd& x);
 
 }  // namespace hookeye

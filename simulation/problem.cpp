@@ -35,6 +35,18 @@ void Problem::tangent(const VectorXd& q, double s, bool projected, SparseMatrix&
   if (!triplets.empty()) add_triplets(triplets, K);
 }
 
+SparseMatrix Problem::skew_tangent(const VectorXd& q, double s) const {
+  Triplets triplets;
+  for (const auto& f : loading.forces) f->add_skew_tangent(mesh, q, s, triplets);
+  double largest = 0;
+  for (const auto& t : triplets) largest = std::max(largest, std::abs(t.value()));
+  if (largest == 0) return {};
+  SparseMatrix W(q.size(), q.size());
+  W.setFromTriplets(triplets.begin(), triplets.end());
+  W.prune(largest, 1e-12);  // neighbouring faces cancel but for rounding
+  return W;
+}
+
 std::vector<int> Problem::free_unknowns() const {
   std::vector<int> free;
   free.reserve(3 * mesh.nodes() - loading.prescribed.size());
@@ -65,11 +77,43 @@ void add_triplets(const Triplets& triplets, SparseMatrix& K) {
   K = SparseMatrix(K + more);
 }
 
+SparseMatrix sum(const SparseMatrix& K, const SparseMatrix& W) {
+  SparseMatrix all = K;
+  for (Eigen::Index column = 0; column < W.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator it(W, column); it; ++it)
+      all.coeffRef(it.row(), column) += it.value();
+  return all;
+}
+
+SparseMatrix free_block(const SparseMatrix& W, const std::vector<int>& free) {
+  const auto size = static_cast<Eigen::Index>(free.size());
+  SparseMatrix block(size, size);
+  if (W.nonZeros() == 0) return block;
+  const auto index = [&](Eigen::Index unknown) {
+    const auto at = std::lower_bound(free.begin(), free.end(), unknown);
+    return at != free.end() && *at == unknown ? static_cast<int>(at - free.begin()) : -1;
+  };
+  Triplets inside;
+  for (Eigen::Index column = 0; column < W.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator it(W, column); it; ++it)
+      if (const int i = index(it.row()), j = index(column); i >= 0 && j >= 0)
+        inside.emplace_back(i, j, it.value());
+  block.setFromTriplets(inside.begin(), inside.end());
+  return block;
+}
+
 VectorXd select(const VectorXd& all, const std::vector<int>& unknowns) {
   VectorXd some(static_cast<Eigen::Index>(unknowns.size()));
   for (size_t i = 0; i < unknowns.size(); ++i)
     some[static_cast<Eigen::Index>(i)] = all[unknowns[i]];
   return some;
+}
+
+VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::Index size) {
+  VectorXd all = VectorXd::Zero(size);
+  for (size_t i = 0; i < unknowns.size(); ++i)
+    all[unknowns[i]] = some[static_cast<Eigen::Index>(i)];
+  return all;
 }
 
 double internal_energy(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {
@@ -85,9 +129,10 @@ VectorXd residual(const TetMesh& mesh, const EnergyModel& energy, const Loading&
 SparseMatrix tangent(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
                      const VectorXd& q, double load_fraction) {
   Assembly assembly(mesh);
+  const Problem problem{mesh, assembly, energy, loading};
   SparseMatrix K;
-  Problem{mesh, assembly, energy, loading}.tangent(q, load_fraction, false, K);
-  return K;
+  problem.tangent(q, load_fraction, false, K);
+  return sum(K, problem.skew_tangent(q, load_fraction));
 }
 
 MatrixXd element_forces(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {

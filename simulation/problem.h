@@ -17,13 +17,23 @@ struct Problem {
   VectorXd residual(const VectorXd& q, double s) const;
   /// External forces only, -sum add_residual(q): what the tolerance is measured against.
   VectorXd external(const VectorXd& q, double s) const;
+  /// Symmetric part of the tangent.
   void tangent(const VectorXd& q, double s, bool projected, SparseMatrix& K) const;
+  /// Skew part, 3n x 3n or 0 x 0; no values where the tangent is symmetric.
+  SparseMatrix skew_tangent(const VectorXd& q, double s) const;
   std::vector<int> free_unknowns() const;
 };
 
 /// K += triplets; the pattern grows only where it must.
 void add_triplets(const Triplets& triplets, SparseMatrix& K);
 
+/// K + W, W of few values that K's pattern has.
+SparseMatrix sum(const SparseMatrix& K, const SparseMatrix& W);
+/// W_ff of a W of few values.
+SparseMatrix free_block(const SparseMatrix& W, const std::vector<int>& free);
+
+/// The chosen unknowns of all, and back: zero on the others.
 VectorXd select(const VectorXd& all, const std::vector<int>& unknowns);
+VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::Index size);
 
 }  // namespace hookeye

@@ -1,9 +1,44 @@
 #include <Eigen/Dense>
+#include <algorithm>
+#include <stdexcept>
 
+#include "simulation/krylov.h"
 #include "simulation/problem.h"
-#include "simulation/sparse_factor.h"
 
 namespace hookeye {
+namespace {
+
+/// |r| over |B|: what differences of solved equilibria can tell.
+constexpr double kTolerance = 1e-9;
+/// Right-hand sides that are refined together.
+constexpr Eigen::Index kBlock = 32;
+
+/// X = K_ff^-1 B with the true tangent.
+void solve(const Equilibrium& equilibrium, const MatrixXd& B, MatrixXd& X) {
+  const TangentFactor& factor = *equilibrium.factor;
+  if (equilibrium.W_ff.nonZeros() == 0) {
+    factor.solve(B, X);
+    return;
+  }
+  X.resize(B.rows(), B.cols());
+  for (Eigen::Index j = 0; j < B.cols(); j += kBlock) {
+    const Eigen::Index m = std::min(kBlock, B.cols() - j);
+    MatrixXd x;
+    if (factor.positive() &&
+        skew_gradients(equilibrium.W_ff, factor, B.middleCols(j, m), kTolerance, 200, x) >= 0) {
+      X.middleCols(j, m) = x;
+      continue;
+    }
+    VectorXd one;  // past a point of instability H is indefinite
+    for (Eigen::Index k = j; k < j + m; ++k) {
+      if (gmres(equilibrium.K, factor, B.col(k), kTolerance, 500, one) < 0)
+        throw std::runtime_error("GMRES does not converge on the unsymmetric tangent");
+      X.col(k) = one;
+    }
+  }
+}
+
+}  // namespace
 
 MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
                        const MatrixXd& dR_dp, const MatrixXd& dqc_dp) {
@@ -18,7 +53,7 @@ MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
   }
   const MatrixXd B = -rhs(free, Eigen::all);
   MatrixXd X;
-  equilibrium.factor->solve(B, X);
+  solve(equilibrium, B, X);
   S(free, Eigen::all) = X;
   return S;
 }

@@ -35,8 +35,8 @@ void add_face(const TetMesh& mesh, int face, const MatrixXd& stiffness, Triplets
 }
 
 /// Force -p n da on the deformed faces. On a closed surface it has the potential p V. On an open
-/// patch the exact derivative is unsymmetric by terms along the patch's rim; K has its symmetric
-/// part (exact again where the rim is held).
+/// patch the derivative is unsymmetric by terms along the patch's rim: those of neighbouring faces
+/// cancel everywhere else.
 class FollowerPressure final : public ForceTerm {
  public:
   FollowerPressure(Faces faces, double pressure) : faces_(std::move(faces)), p_(pressure) {}
@@ -60,23 +60,38 @@ class FollowerPressure final : public ForceTerm {
   }
 
   void add_tangent(const TetMesh& mesh, const VectorXd& q, double s, Triplets& K) const override {
-    // d(t0 x t1) = dt0 x t1 + t0 x dt1 = (-[t1] N_b,0 + [t0] N_b,1) dq_b.
-    for (const auto& [face, fraction] : faces_) {
-      const MatrixXd x = face_nodes(mesh, q, face);
-      MatrixXd D = MatrixXd::Zero(x.size(), x.size());
-      for (const FacePoint& g : face_rule(mesh.order)) {
-        const Tangents t = x * g.dN;
-        const Matrix3d S0 = skew(t.col(0)), S1 = skew(t.col(1));
-        const double w = s * p_ * fraction * g.weight;
-        for (Eigen::Index a = 0; a < x.cols(); ++a)
-          for (Eigen::Index b = 0; b < x.cols(); ++b)
-            D.block<3, 3>(3 * a, 3 * b) += w * g.N[a] * (g.dN(b, 1) * S0 - g.dN(b, 0) * S1);
-      }
-      add_face(mesh, face, 0.5 * (D + D.transpose()), K);
+    for (const auto& face : faces_) {
+      const MatrixXd D = derivative(mesh, q, s, face);
+      add_face(mesh, face.first, 0.5 * (D + D.transpose()), K);
+    }
+  }
+
+  void add_skew_tangent(const TetMesh& mesh, const VectorXd& q, double s,
+                        Triplets& W) const override {
+    if (p_ == 0 || closed(mesh)) return;
+    for (const auto& face : faces_) {
+      const MatrixXd D = derivative(mesh, q, s, face);
+      add_face(mesh, face.first, 0.5 * (D - D.transpose()), W);
     }
   }
 
  private:
+  /// d(-force)/dq of one face by its nodes, unsymmetric:
+  /// d(t0 x t1) = dt0 x t1 + t0 x dt1 = (-[t1] N_b,0 + [t0] N_b,1) dq_b.
+  MatrixXd derivative(const TetMesh& mesh, const VectorXd& q, double s,
+                      const Faces::value_type& face) const {
+    const MatrixXd x = face_nodes(mesh, q, face.first);
+    MatrixXd D = MatrixXd::Zero(x.size(), x.size());
+    for (const FacePoint& g : face_rule(mesh.order)) {
+      const Tangents t = x * g.dN;
+      const Matrix3d S0 = skew(t.col(0)), S1 = skew(t.col(1));
+      const double w = s * p_ * face.second * g.weight;
+      for (Eigen::Index a = 0; a < x.cols(); ++a)
+        for (Eigen::Index b = 0; b < x.cols(); ++b)
+          D.block<3, 3>(3 * a, 3 * b) += w * g.N[a] * (g.dN(b, 1) * S0 - g.dN(b, 0) * S1);
+    }
+    return D;
+  }
   double volume(const TetMesh& mesh, const VectorXd& q) const {
     double sum = 0;
     for (const auto& [face, fraction] : faces_) {

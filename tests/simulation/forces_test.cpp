@@ -99,6 +99,38 @@ TEST_P(Forces, PressureOnClosedSurface) {
   EXPECT_NEAR(-f.dot(X), 0.3 * 3 * 3.0, 1e-12);
 }
 
+MatrixXd dense_skew(const ForceTerm& force, const TetMesh& mesh, const VectorXd& q, double s) {
+  Triplets triplets;
+  force.add_skew_tangent(mesh, q, s, triplets);
+  MatrixXd W = MatrixXd::Zero(q.size(), q.size());
+  for (const auto& t : triplets) W(t.row(), t.col()) += t.value();
+  return W;
+}
+
+TEST_P(Forces, PressureOnPatchHasATangentOfTwoParts) {
+  const TetMesh mesh = test::block(4, 4, 1, {2, 1.5, 1}, GetParam());
+  const auto pressure = follower_pressure(top(mesh), 0.3);
+  const VectorXd q = deformed(mesh), d = test::noise(q.size(), 12);
+  const MatrixXd K = dense_tangent(*pressure, mesh, q, 0.7),
+                 W = dense_skew(*pressure, mesh, q, 0.7);
+  EXPECT_EQ(W, MatrixXd(-W.transpose()));
+  EXPECT_EQ(K, MatrixXd(K.transpose()));
+  EXPECT_GT(W.norm(), 0.1 * K.norm());
+  test::expect_derivative([&](double t) { return residual_of(*pressure, mesh, q + t * d, 0.7); },
+                          (K + W) * d, 1e-4, 1e-8, "pressure on a patch");
+  // The rim alone has the skew part.
+  const auto inner = [&](double x, double most) { return x > 1e-9 && x < most - 1e-9; };
+  for (int a = 0; a < mesh.nodes(); ++a)
+    if (inner(mesh.X(0, a), 2) && inner(mesh.X(1, a), 1.5)) {
+      EXPECT_LE(W.middleRows<3>(3 * a).norm(), 1e-14 * W.norm()) << a;
+    }
+  Loading loading;
+  loading.forces = {pressure};
+  EXPECT_LE((MatrixXd(tangent(mesh, EnergyModel{}, loading, q, 0.7)) - K - W).norm(),
+            1e-12 * K.norm());
+  EXPECT_EQ(dense_skew(*follower_pressure(everywhere(mesh), 0.3), mesh, q, 1.0).norm(), 0.0);
+}
+
 TEST_P(Forces, PressureOnPatchFollowsTheNormalAndHasTheTangentOfAHeldRim) {
   const TetMesh mesh = test::block(4, 4, 1, {2, 1.5, 1}, GetParam());
   const Region patch = top(mesh);
