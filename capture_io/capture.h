@@ -36,6 +36,8 @@ struct RegionSpec {
   struct Faces {
     std::filesystem::path file;
     std::vector<int> triangles;
+    std::string told;                         ///< the file's name for messages
+    std::vector<std::array<int, 2>> told_at;  ///< line and column of each triangle; may be empty
   };
   struct Sphere {
     Vector3d center;
@@ -81,7 +83,7 @@ struct BodySpec {
   bool mesh_given = false;  ///< `mesh:` stands in the capture
   double density = 0.0;     ///< [force s^2 / length^4]; 0: not given
   enum class Texture { none, image, rest, uniform } texture = Texture::none;
-  std::filesystem::path texture_image;
+  NamedFile texture_image;
   std::optional<Encoding> texture_encoding;
   std::string texture_example;           ///< of `from: NAME`
   std::optional<double> uniform_albedo;  ///< empty with Texture::uniform: fitted

@@ -22,8 +22,8 @@ void read_texture(const YamlNode& node, const CaptureFolder& folder, BodySpec& b
   }
   if (source == "image") {
     body.texture = BodySpec::Texture::image;
-    body.texture_image = read_file_path(value, "the texture's image", folder);
-    header_at(value, body.texture_image);
+    body.texture_image = {read_file_path(value, "the texture's image", folder), value.place};
+    header_at(value, body.texture_image.path);
   } else if (source == "from") {
     body.texture = BodySpec::Texture::rest;
     body.texture_place = value.place;

@@ -71,7 +71,7 @@ void read_pose(const YamlNode& node, Camera& camera) {
   camera.t = read_vector3(pose.need("translation", right), "translation" + of);
 }
 
-/// The calibration file's camera; its faults carry the file's name as the user would write it.
+/// The calibration file's camera.
 Camera read_calibrated(const YamlNode& node, const std::string& name, const CaptureFolder& folder,
                        bool* has_pose) {
   const std::string what = fmt::format("calibration of camera `{}`", name);
@@ -79,7 +79,7 @@ Camera read_calibrated(const YamlNode& node, const std::string& name, const Capt
   try {
     return read_opencv_calibration(file, has_pose);
   } catch (const InputError& error) {
-    throw InputError({(folder.given / node.text).string()}, error.wrong(), error.right());
+    throw told_at(node.place, error);
   }
 }
 

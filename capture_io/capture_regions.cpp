@@ -11,9 +11,9 @@ namespace hookeye {
 namespace {
 
 /// Blank-separated 0-based indices; faults carry line and column of the file.
-std::vector<int> read_indices(const std::filesystem::path& file, const std::string& name) {
+RegionSpec::Faces read_indices(const std::filesystem::path& file, const std::string& name) {
   const std::string text = read_text(file);
-  std::vector<int> indices;
+  RegionSpec::Faces faces{file, {}, name, {}};
   int line = 1;
   size_t line_start = 0, i = 0;
   while (i < text.size()) {
@@ -24,20 +24,22 @@ std::vector<int> read_indices(const std::filesystem::path& file, const std::stri
     }
     size_t end = i;
     while (end < text.size() && !std::isspace(static_cast<unsigned char>(text[end]))) ++end;
+    const int column = static_cast<int>(i - line_start) + 1;
     long value = -1;
     const auto [stop, error] = std::from_chars(text.data() + i, text.data() + end, value);
     if (stop != text.data() + end || error != std::errc() || value < 0 || value > INT_MAX)
-      throw InputError({name, line, static_cast<int>(i - line_start) + 1},
+      throw InputError({name, line, column},
                        fmt::format("`{}` is no triangle of the surface",
                                    text.substr(i, std::min<size_t>(end - i, 40))),
                        "0-based indices of triangles are expected, separated by blanks");
-    indices.push_back(static_cast<int>(value));
+    faces.triangles.push_back(static_cast<int>(value));
+    faces.told_at.push_back({line, column});
     i = end;
   }
-  if (indices.empty())
+  if (faces.triangles.empty())
     throw InputError({name}, "the list of triangles is empty",
                      "0-based indices of triangles are expected, separated by blanks");
-  return indices;
+  return faces;
 }
 
 RegionSpec::Box read_box(const YamlNode& node, const std::string& of) {
@@ -68,8 +70,11 @@ RegionSpec read_region(const YamlNode::Entry& entry, const CaptureFolder& folder
     region.shape = read_box(value, of);
   } else if (shape == "faces") {
     const std::filesystem::path file = read_file_path(value, "faces" + of, folder);
-    region.shape =
-        RegionSpec::Faces{file, read_indices(file, (folder.given / value.text).string())};
+    try {
+      region.shape = read_indices(file, (folder.given / value.text).string());
+    } catch (const InputError& error) {
+      throw told_at(value.place, error);
+    }
   } else if (shape == "sphere") {
     const YamlSection sphere(value, "sphere" + of, {"center", "radius"});
     const std::string right = "write `sphere: {center: [0, 0, 0], radius: 5}`";

@@ -216,6 +216,14 @@ Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
   return image;
 }
 
+Image read_image(const NamedFile& file, std::optional<Encoding> encoding) {
+  try {
+    return read_image(file.path, encoding);
+  } catch (const InputError& error) {
+    throw told_at(file.place, error);
+  }
+}
+
 void write_image(const fs::path& file, const Image& image, Encoding encoding) {
   const std::string type = file.extension().string();
   if (type != ".exr" && type != ".png" && type != ".tif" && type != ".tiff")

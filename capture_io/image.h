@@ -52,6 +52,14 @@ ImageHeader read_image_header(const std::filesystem::path& file);
 /// Throws InputError: missing, truncated, unreadable, claimed size above 1 Gpixel.
 Image read_image(const std::filesystem::path& file, std::optional<Encoding> encoding = {});
 
+/// A file that the capture names, and where it does.
+struct NamedFile {
+  std::filesystem::path path;
+  Place place;
+};
+/// The same; what is wrong with the file is told where the capture names it.
+Image read_image(const NamedFile& file, std::optional<Encoding> encoding = {});
+
 /// A float picture in which NaN means "does not count" (residuals); values as stored.
 Image read_image_with_holes(const std::filesystem::path& file);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -40,6 +41,12 @@ std::string lower_case(std::string text) {
 }
 
 }  // namespace
+
+InputError told_at(const Place& named, const InputError& error) {
+  if (error.place().line > 0 || named.file.empty()) return error;
+  const std::string name = std::filesystem::path(error.place().file).filename().string();
+  return {named, fmt::format("{}: {}", name, error.wrong()), error.right()};
+}
 
 InputError cannot_write(const std::string& file, const std::string& why) {
   return {{file},

@@ -30,6 +30,10 @@ class InputError : public std::runtime_error {
   std::string right_;
 };
 
+/// A fault of a file that the capture names at `named`: one of the file as a whole is told there,
+/// the file's name in front; one with a line keeps its place.
+InputError told_at(const Place& named, const InputError& error);
+
 /// Of a result that cannot be written; `why` may be empty.
 InputError cannot_write(const std::string& file, const std::string& why = "");
 

@@ -21,17 +21,6 @@ void check_size(const PhotoSpec& spec, const std::string& what, const Image& ima
                    "photos are compared at the size that the camera was calibrated for");
 }
 
-/// What is wrong with a picture is told where the capture names it.
-Image read_told(const PhotoSpec& spec, const std::filesystem::path& file,
-                const std::optional<Encoding>& encoding) {
-  try {
-    return read_image(file, encoding);
-  } catch (const InputError& error) {
-    throw InputError(spec.place, fmt::format("{}: {}", file.filename().string(), error.wrong()),
-                     error.right());
-  }
-}
-
 Image plane_of(const Image& image, int channel) {
   Image plane{image.width, image.height, 1, {}};
   plane.values.resize(image.pixels());
@@ -95,7 +84,7 @@ void mark_invalid(const PhotoSpec& spec, const Camera& camera, const Image& imag
     for (size_t i = 0; i < image.values.size(); ++i)
       if (image.values[i] >= saturated) photo.valid[i / image.channels] = 0;
   if (spec.mask.empty()) return;
-  const Image mask = luminance(read_told(spec, spec.mask, Encoding{}));
+  const Image mask = luminance(read_image(NamedFile{spec.mask, spec.place}, Encoding{}));
   check_size(spec, "the mask", mask, camera);
   for (size_t p = 0; p < mask.pixels(); ++p)
     if (mask.values[p] < 0.5f) photo.valid[p] = 0;
@@ -104,7 +93,7 @@ void mark_invalid(const PhotoSpec& spec, const Camera& camera, const Image& imag
 /// The empty scene, taken as the photo was: by planes like the photo's own.
 std::vector<Image> backdrop_of(const PhotoSpec& spec, const Camera& camera, bool by_channel) {
   if (spec.background.kind != BackgroundSpec::Kind::photo) return {};
-  const Image empty = read_told(spec, spec.background.photo, spec.encoding);
+  const Image empty = read_image(NamedFile{spec.background.photo, spec.place}, spec.encoding);
   check_size(spec, "the photo of the background", empty, camera);
   if (!by_channel || empty.channels != 3)
     return std::vector<Image>(by_channel ? 3 : 1, luminance(empty));
@@ -121,7 +110,7 @@ Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
   const bool silhouette = spec.kind == PhotoSpec::Kind::silhouette;
   std::optional<Encoding> encoding = spec.encoding;
   if (silhouette && !encoding) encoding = Encoding{};  // a coverage, not a brightness
-  const Image image = read_told(spec, spec.file, encoding);
+  const Image image = read_image(NamedFile{spec.file, spec.place}, encoding);
   check_size(spec, "the photo", image, camera);
   if (spec.noise)
     photo.noise = *spec.noise;

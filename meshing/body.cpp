@@ -225,10 +225,26 @@ RenderSurface ride(const TetMesh& mesh, const MendedSurface& file, std::vector<s
   return out;
 }
 
+SurfaceMesh surface_of(const BodySpec& spec) {
+  try {
+    return read_surface(spec.surface);
+  } catch (const InputError& error) {
+    throw told_at(spec.surface_place, error);
+  }
+}
+
+TetMesh volume_of(const BodySpec& spec, std::vector<std::string>& said) {
+  try {
+    return read_volume(spec.volume, spec.volume_place, &said);
+  } catch (const InputError& error) {
+    throw told_at(spec.volume_place, error);
+  }
+}
+
 TetMesh make_mesh(const BodySpec& spec, const MendedSurface* surface, double edge_factor, int order,
                   std::vector<std::string>& said) {
   if (!spec.volume.empty()) {
-    const TetMesh mesh = read_volume(spec.volume, spec.volume_place, &said);
+    const TetMesh mesh = volume_of(spec, said);
     if (edge_factor != 1.0 && surface == nullptr) {
       said.emplace_back("the volume of the file was kept: only a surface can be meshed anew");
     }
@@ -262,7 +278,7 @@ Body make(const Capture& capture, double edge_factor, int order, const RenderSur
   if (!spec.surface.empty()) {
     const Place place =
         spec.surface_place.file.empty() ? Place{spec.surface.string()} : spec.surface_place;
-    surface = std::make_unique<MendedSurface>(mend(read_surface(spec.surface), place));
+    surface = std::make_unique<MendedSurface>(mend(surface_of(spec), place));
     body.said = surface->said;
   }
   body.mesh = make_mesh(spec, surface.get(), edge_factor, order, body.said);

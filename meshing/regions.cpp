@@ -196,10 +196,15 @@ Patch group_patch(const RegionSpec& spec, const TetMesh& mesh) {
   return patch;
 }
 
+/// Where the i-th triangle of a list stands.
+Place place_of(const RegionSpec& spec, const RegionSpec::Faces& faces, size_t i) {
+  if (i >= faces.told_at.size()) return spec.place;
+  return {faces.told, faces.told_at[i][0], faces.told_at[i][1]};
+}
+
 /// Triangles of the file, as triangles of the mended surface.
 std::set<int> chosen_triangles(const RegionSpec& spec, const MendedSurface* surface) {
   const auto& faces = std::get<RegionSpec::Faces>(spec.shape);
-  const Place place = faces.file.empty() ? spec.place : Place{faces.file.string()};
   if (surface == nullptr) {
     throw InputError(spec.place, "`faces` counts triangles of a surface file, but there is none",
                      "a `surface:` in body, or a box, sphere, halfspace or group");
@@ -211,10 +216,11 @@ std::set<int> chosen_triangles(const RegionSpec& spec, const MendedSurface* surf
     triangles = std::max(triangles, surface->file_triangle[t] + 1);
   }
   std::set<int> chosen;
-  for (const int t : faces.triangles) {
+  for (size_t i = 0; i < faces.triangles.size(); ++i) {
+    const int t = faces.triangles[i];
     if (t < 0 || t >= triangles) {
       throw InputError(
-          place, fmt::format("there is no triangle {}", t),
+          place_of(spec, faces, i), fmt::format("there is no triangle {}", t),
           fmt::format("0 to {}: triangles of the surface file, counted from 0", triangles - 1));
     }
     const auto it = mended_of.find(t);

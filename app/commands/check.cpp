@@ -81,7 +81,7 @@ std::string texture_text(const BodySpec& body) {
     case BodySpec::Texture::none:
       return "none told";
     case BodySpec::Texture::image:
-      return body.texture_image.filename().string() + ", " + normals;
+      return body.texture_image.path.filename().string() + ", " + normals;
     case BodySpec::Texture::rest:
       return "the photos of example " + body.texture_example;
     case BodySpec::Texture::uniform:

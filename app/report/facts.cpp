@@ -43,7 +43,7 @@ std::string load_text(const LoadSpec& load, const Units& units) {
 std::string texture_text(const BodySpec& body) {
   switch (body.texture) {
     case BodySpec::Texture::image:
-      return "image " + body.texture_image.filename().string();
+      return "image " + body.texture_image.path.filename().string();
     case BodySpec::Texture::rest:
       return "photos of " + body.texture_example;
     case BodySpec::Texture::uniform:

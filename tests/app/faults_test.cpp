@@ -176,23 +176,27 @@ TEST_F(FaultsOfPhotos, WarningsAreInTheDocument) {
 }
 
 TEST_F(FaultsOfPhotos, AFileCutInHalfIsToldWhereTheCaptureNamesIt) {
-  const fs::path photo = folder_ / "capture/photos/pull_cam0.png";
-  ASSERT_TRUE(fs::exists(photo));
-  fs::resize_file(photo, fs::file_size(photo) / 2);
   const std::string text = read(folder_ / "capture/capture.yaml");
-  const size_t at = text.find("photos/pull_cam0.png");
-  ASSERT_NE(at, std::string::npos);
-  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
-  const auto column = at - text.rfind('\n', at);
-  for (const char* command : {"check capture", "fit capture -o again"}) {
-    const Result result = hookeye(command);
-    EXPECT_EQ(result.status, 2) << command;
-    EXPECT_EQ(result.err, "capture/capture.yaml:" + std::to_string(line) + ":" +
-                              std::to_string(column) +
-                              ": pull_cam0.png: the picture is truncated or damaged\n"
-                              "  hand over a complete PNG, TIFF, JPEG or EXR picture\n")
-        << command;
-    EXPECT_FALSE(fs::exists(folder_ / "again"));
+  for (const std::string name : {"photos/pull_cam0.png", "albedo.png"}) {
+    const fs::path picture = folder_ / "capture" / name;
+    ASSERT_TRUE(fs::exists(picture));
+    const std::string whole = read(picture);
+    fs::resize_file(picture, whole.size() / 2);
+    const size_t at = text.find(name);
+    ASSERT_NE(at, std::string::npos);
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
+    const auto column = at - text.rfind('\n', at);
+    for (const char* command : {"check capture", "fit capture -o again"}) {
+      const Result result = hookeye(command);
+      EXPECT_EQ(result.status, 2) << command;
+      EXPECT_EQ(result.err, "capture/capture.yaml:" + std::to_string(line) + ":" +
+                                std::to_string(column) + ": " + picture.filename().string() +
+                                ": the picture is truncated or damaged\n"
+                                "  hand over a complete PNG, TIFF, JPEG or EXR picture\n")
+          << command;
+      EXPECT_FALSE(fs::exists(folder_ / "again"));
+    }
+    write("capture/" + name, whole);
   }
 }
 

@@ -122,11 +122,11 @@ const BrokenCase broken_cases[] = {
      "capture.yaml:20:33: camera `left` has both `calibration` and `intrinsics`\n"
      "  keep one of the two"},
     {"CalibrationNotOpenCv", [](CaptureFixture& c) { c.write_file("left.yml", "hello\n"); },
-     "left.yml: this is not an OpenCV file\n"
+     "capture.yaml:20:23: left.yml: this is not an OpenCV file\n"
      "  write it with cv::FileStorage (yml, xml or json)"},
     {"CalibrationWithoutMatrix",
      [](CaptureFixture& c) { c.write_file("left.yml", "%YAML:1.0\n---\nimage_width: 8\n"); },
-     "left.yml: there is no camera matrix\n"
+     "capture.yaml:20:23: left.yml: there is no camera matrix\n"
      "  the key `camera_matrix` or `K` is read"},
     {"LightDark",
      swap("  ambient: 0.4\n  sun: {toward: [-0.3, -0.5, 0.8], strength: 0.6}", "  ambient: 0"),
@@ -179,7 +179,7 @@ const BrokenCase broken_cases[] = {
      "grip.txt:2:3: `-3` is no triangle of the surface\n"
      "  0-based indices of triangles are expected, separated by blanks"},
     {"FacesEmpty", [](CaptureFixture& c) { c.write_file("grip.txt", "\n"); },
-     "grip.txt: the list of triangles is empty\n"
+     "capture.yaml:37:17: grip.txt: the list of triangles is empty\n"
      "  0-based indices of triangles are expected, separated by blanks"},
     {"NameWithSlash", swap("  held_out:", "  ../held_out:"),
      "capture.yaml:62:3: `../held_out` cannot be a name in examples\n"
@@ -294,7 +294,7 @@ const BrokenCase broken_cases[] = {
                     "%YAML:1.0\n---\nK: [20., 0., 3., 0., 21., 2., 0., 0., 1.]\nimage_size: [8, "
                     "6]\nR: [1., 0., 0., 0., 1., 0., 0., 0., -1.]\nT: [0., 0., 1.]\n");
      },
-     "left.yml: `R` is a reflection\n"
+     "capture.yaml:20:23: left.yml: `R` is a reflection\n"
      "  a rotation has orthonormal rows and determinant +1 (within 1e-4)"},
     {"HugePhotoClaim", [](CaptureFixture& c) { c.write_file("photos/pull.png", huge_png()); },
      "capture.yaml:55:14: photos/pull.png: the header claims 60000 x 60000 pixels with 3 channels\n"

@@ -29,7 +29,7 @@ TEST(CaptureTest, HeadBodyAndModel) {
   EXPECT_TRUE(c.body.mesh_given);
   EXPECT_EQ(c.body.density, 1.07e-9);
   EXPECT_EQ(c.body.texture, BodySpec::Texture::image);
-  EXPECT_EQ(c.body.texture_image, fixture.folder() / "albedo.png");
+  EXPECT_EQ(c.body.texture_image.path, fixture.folder() / "albedo.png");
   EXPECT_EQ(c.body.texture_encoding->kind, Encoding::Kind::srgb);
   EXPECT_TRUE(c.body.fit_placement);
   EXPECT_FALSE(c.body.flat_shading);

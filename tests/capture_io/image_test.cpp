@@ -284,6 +284,20 @@ TEST(ImageTest, PixelsThatAreNoNumbersAreNamed) {
   EXPECT_EQ(complaint(folder / "a.exr"), "pixel (7, 11) holds infinity");
 }
 
+TEST(ImageTest, FaultsAreToldWhereTheCaptureNamesThePicture) {
+  const TemporaryFolder folder;
+  store(folder / "a.png", ramp(1), OIIO::TypeDesc::UINT8);
+  fs::resize_file(folder / "a.png", fs::file_size(folder / "a.png") / 2);
+  try {
+    read_image(NamedFile{folder / "a.png", {"capture.yaml", 8, 20}});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "capture.yaml:8:20: a.png: the picture is truncated or damaged\n"
+                 "  hand over a complete PNG, TIFF, JPEG or EXR picture");
+  }
+}
+
 TEST(ImageTest, OtherFaultsAreNamed) {
   const TemporaryFolder folder;
   EXPECT_EQ(complaint(folder / "none.png"), "there is no such file");

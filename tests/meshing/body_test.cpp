@@ -134,7 +134,7 @@ TEST(Regions, FacesOfAReadVolumeAreTheSamePatch) {
   write_surface_obj(box.scratch / "coarse.obj", box_surface({30, 20, 10}, 3));
   const Body cut = make_body(other);
   const double expected = 6 * 0.5 * (30.0 / 3) * (20.0 / 3);
-  other.regions[1] = spec("top", RegionSpec::Faces{{}, {18, 19, 20, 21, 22, 23}});
+  other.regions[1] = spec("top", RegionSpec::Faces{{}, {18, 19, 20, 21, 22, 23}, {}, {}});
   EXPECT_NEAR(make_body(other).regions.at("top").area, expected, 0.01 * expected);
 }
 
@@ -158,12 +158,31 @@ TEST(Regions, FaultsAreRefusedWithPlaceAndNearestName) {
   EXPECT_THAT(fault(spec("a", RegionSpec::Box{{5, 5, 5}, {6, 6, 6}}), nullptr),
               HasSubstr("capture.yaml:9:3: region 'a' selects no point"));
   EXPECT_THAT(fault(spec("a", RegionSpec::Group{"FOOD"}), nullptr), HasSubstr("'FOOT'"));
-  EXPECT_THAT(fault(spec("a", RegionSpec::Faces{{}, {0}}), nullptr), HasSubstr("surface file"));
-  EXPECT_THAT(fault(spec("a", RegionSpec::Faces{"g.txt", {12}}), &surface),
-              HasSubstr("no triangle 12"));
+  EXPECT_THAT(fault(spec("a", RegionSpec::Faces{{}, {0}, {}, {}}), nullptr),
+              HasSubstr("surface file"));
+  EXPECT_THAT(
+      fault(spec("a", RegionSpec::Faces{"/c/g.txt", {3, 12}, "g.txt", {{1, 1}, {2, 5}}}), &surface),
+      HasSubstr("g.txt:2:5: there is no triangle 12"));
   Capture c;
   c.regions = {spec("foot", RegionSpec::Group{"FOOT"})};
   EXPECT_EQ(RegionSet(c, mesh, nullptr).at("foot").faces.size(), 1u);
+}
+
+TEST(MakeBody, FaultsOfWholeFilesAreToldWhereTheCaptureNamesThem) {
+  const Scratch scratch;
+  Capture c;
+  c.body.surface_place = {"capture.yaml", 5, 12};
+  c.body.volume_place = {"capture.yaml", 6, 11};
+  const auto fault = [&] { return refusal([&] { make_body(c); }); };
+  c.body.surface = scratch.write("empty.obj", "");
+  EXPECT_EQ(fault(),
+            "capture.yaml:5:12: empty.obj: holds no triangles\n"
+            "  a closed surface of triangles");
+  c.body.surface = scratch.write("bad.obj", "v 0 0 0\nv 1 0 x\n");
+  EXPECT_THAT(fault(), HasSubstr("bad.obj:2: 'x' is no finite number"));
+  c.body.surface.clear();
+  c.body.volume = scratch.write("a.mesh", "4 1 4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 2 1 3\n");
+  EXPECT_THAT(fault(), HasSubstr("capture.yaml:6:11: a.mesh: element 0 at"));
 }
 
 void expect_watertight(const SurfaceMesh& s) {
