@@ -199,7 +199,12 @@ Image read_stored(const fs::path& file, Encoding& stored_as) {
 
 }  // namespace
 
-ImageHeader read_image_header(const fs::path& file) { return header_of(open_image(file)->spec()); }
+ImageHeader read_image_header(const fs::path& file) {
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
+  ImageHeader header = header_of(input->spec());
+  header.lossy = std::string(input->format_name()) == "jpeg";
+  return header;
+}
 
 Image read_image_with_holes(const fs::path& file) {
   Encoding ignored;

@@ -37,6 +37,7 @@ struct NoiseModel {
   double full_well = 0.0;  ///< electrons at full scale; 0: no photon noise
   double read = 0.0;       ///< [full scale]
   bool estimated = false;  ///< true where the capture gave none and estimate_noise() did
+  bool doubtful = false;   ///< estimated where the photo hardly tells it
   double sigma(double intensity) const;
 };
 
@@ -44,6 +45,7 @@ struct NoiseModel {
 struct ImageHeader {
   int width = 0, height = 0, channels = 0, bits = 0;
   bool floating = false;
+  bool lossy = false;  ///< JPEG
 };
 ImageHeader read_image_header(const std::filesystem::path& file);
 
@@ -72,7 +74,9 @@ void write_image(const std::filesystem::path& file, const Image& image, Encoding
 Image luminance(const Image& image);
 
 /// Noise standard deviation against intensity from one photo alone: robust fit of
-/// sigma^2(I) = read^2 + I/full_well to high-pass residuals (source named in image.cpp).
-NoiseModel estimate_noise(const Image& image);
+/// sigma^2(I) = read^2 + I/full_well to high-pass residuals of its calmest blocks (image_noise.cpp)
+/// or, where texture fills the photo, of its calmest spots (calm_noise.cpp). Not `white`, as that
+/// of a JPEG: from the blocks alone.
+NoiseModel estimate_noise(const Image& image, bool white = true);
 
 }  // namespace hookeye

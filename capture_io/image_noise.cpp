@@ -6,12 +6,12 @@
 // sigma^2 = read^2 + I / full_well is that of Foi et al. (Practical Poissonian-Gaussian noise
 // modeling, IEEE TIP 17, 2008). Texture that passes the filter would count as noise, so in every
 // band of intensity only the calmest blocks speak, and the chi-square quantile says how far below
-// the truth those lie. Noise that is correlated between pixels (demosaicing, JPEG) is
-// underestimated: say `noise:` there.
+// the truth those lie. Where even those hold texture, calm_noise.cpp is heard. Noise that is
+// correlated between pixels (demosaicing, JPEG) is underestimated: say `noise:` there.
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/image.h"
+#include "capture_io/calm_noise.h"
 
 namespace hookeye {
 namespace {
@@ -22,6 +22,10 @@ constexpr double calm_normal = -0.8416;  ///< normal quantile at calm_share
 /// Independent residuals in a block of 64: n^2 / sum rho_ij^2 over the filter's autocorrelation
 /// (70, -56, 28, -8, 1) / 70 along each axis gives 3.37^2.
 constexpr double independent = 11.3;
+/// What the calmest spots say over what the blocks say: below the first the blocks hold texture;
+/// below the second the photo holds hardly anything else, and the spots themselves may. Below so
+/// many pixels there are too few spots: speckle of three pixels passed for seven times the noise.
+constexpr double same_answer = 0.75, sure_answer = 0.5, sure_pixels = 8000;
 constexpr int reach = 2;                                         ///< of the filter [px]
 constexpr double difference[2 * reach + 1] = {1, -4, 6, -4, 1};  ///< squares sum to 70
 
@@ -139,7 +143,7 @@ Image luminance(const Image& image) {
   return grey;
 }
 
-NoiseModel estimate_noise(const Image& image) {
+NoiseModel estimate_noise(const Image& image, bool white) {
   NoiseModel noise;
   noise.estimated = true;
   std::vector<Block> blocks;
@@ -148,10 +152,19 @@ NoiseModel estimate_noise(const Image& image) {
     blocks.insert(blocks.end(), more.begin(), more.end());
   }
   if (blocks.empty()) return noise;
+  double intensity = 0;
+  for (const Block& one : blocks) intensity += one.intensity / static_cast<double>(blocks.size());
+  const double pixels = static_cast<double>(blocks.size()) * block * block / image.channels;
   double offset = 0, slope = 0;
   fit_law(bands_of(std::move(blocks)), offset, slope);
   noise.read = std::sqrt(offset);
   if (slope > 0) noise.full_well = 1 / slope;
+  noise.doubtful = !white;
+  if (!white || !(noise.sigma(intensity) > 0)) return noise;
+  const std::optional<NoiseModel> calm = calm_noise(image);
+  const double ratio = calm ? calm->sigma(intensity) / noise.sigma(intensity) : 0;
+  if (calm && ratio < same_answer) noise = *calm;
+  noise.doubtful = ratio < sure_answer || pixels < sure_pixels;
   return noise;
 }
 

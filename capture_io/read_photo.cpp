@@ -71,7 +71,7 @@ Image luminance_sigma(const Image& image, const NoiseModel& noise,
 
 /// An estimate never falls below what rounding to levels adds (one level / sqrt 12).
 NoiseModel estimated_noise(const Image& image, const ImageHeader& header) {
-  NoiseModel noise = estimate_noise(image);
+  NoiseModel noise = estimate_noise(image, !header.lossy);
   const double level = header.floating ? 1e-6 : std::exp2(-header.bits);
   noise.read = std::max(noise.read, level / std::sqrt(12.0));
   return noise;

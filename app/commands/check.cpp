@@ -147,6 +147,7 @@ Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
           {"mean", mean},
           {"noise",
            {{"estimated", photo.noise.estimated},
+            {"doubtful", photo.noise.doubtful},
             {"full_well", photo.noise.full_well},
             {"read", photo.noise.read},
             {"sigma_at_mean", photo.noise.sigma(mean)}}}};

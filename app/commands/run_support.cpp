@@ -14,10 +14,31 @@
 #include "estimation/step_json.h"
 
 namespace hookeye {
+namespace {
+
+/// Photos whose noise was estimated where it hardly can be.
+void warn_of_noise(const Scene& scene, Session& session) {
+  std::string first;
+  int others = -1;
+  for (size_t e = 0; e < scene.photos.size(); ++e)
+    for (const Photo& photo : scene.photos[e]) {
+      if (!photo.noise.doubtful || others++ >= 0) continue;
+      first = fmt::format("example {}, photo {}: noise estimated as {:.2g} at half of full scale",
+                          scene.capture.examples[e].name, photo.camera, photo.noise.sigma(0.5));
+    }
+  if (others < 0) return;
+  session.warn(fmt::format(
+      "{}{}, but a small, finely textured or JPEG photo hardly tells it: give it as `noise:`, else "
+      "chi and what is found missing may be wrong",
+      first, others > 0 ? fmt::format(" (and that of {} more)", others) : ""));
+}
+
+}  // namespace
 
 void warn_of_doubts(const Scene& scene, Session& session) {
   for (const auto& said : scene.body->said) session.warn(said);
   for (const auto& said : doubts(scene)) session.warn(said);
+  warn_of_noise(scene, session);
 }
 
 Bench open_capture(const std::filesystem::path& capture_path, Session& session) {

@@ -200,6 +200,18 @@ TEST_F(FaultsOfPhotos, AFileCutInHalfIsToldWhereTheCaptureNamesIt) {
   }
 }
 
+TEST_F(FaultsOfPhotos, NoiseThatAPhotoHardlyTellsIsToldOf) {
+  EXPECT_THAT(hookeye("check capture").err, Not(HasSubstr("noise")));
+  std::string text = read(folder_ / "capture/capture.yaml");
+  const size_t at = text.find("  noise: {full_well");
+  ASSERT_NE(at, std::string::npos);
+  write("capture/capture.yaml", text.erase(at, text.find('\n', at) + 1 - at));
+  const Result result = hookeye("check capture");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, ContainsRegex("example rest, photo cam0: noise estimated as 0.0[0-9]+ at "
+                                        "half of full scale .and that of 2 more., but a small"));
+}
+
 TEST_F(Faults, AMeshFarTooFineIsRefusedAtOnce) {
   const Result result = hookeye("mesh cube.obj -o body.vtu --edge 0.01");
   EXPECT_EQ(result.status, 2);
