@@ -64,18 +64,17 @@ void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& m
     tie.clear();
 }
 
-/// Of those that lost the contest of `then` by less of chi^2 than what later steps took away, the
-/// nearest; null where there is none.
-const Rival* narrow_loser(const Step& then, const Fitted& last) {
+/// Those that lost the contest of `then` by less of chi^2 than what later steps took away. (Not the
+/// nearest alone: of creep and softening, which fit alike, held-out photos may refuse it.)
+std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
   const double won = std::pow(then.fitted.evaluation.chi(false), 2);
-  const Rival* nearest = nullptr;
-  double least = won - std::pow(last.evaluation.chi(false), 2);
-  for (const Rival& rival : then.rivals) {
-    const double lag = std::pow(rival.chi_fit, 2) - won;
-    if (rival.effect == then.added || numerical(rival.effect) || lag >= least) continue;
-    nearest = &rival, least = lag;
-  }
-  return nearest;
+  const double taken = won - std::pow(last.evaluation.chi(false), 2);
+  std::vector<std::string> losers;
+  for (const Rival& rival : then.rivals)
+    if (rival.effect != then.added && !numerical(rival.effect) &&
+        std::pow(rival.chi_fit, 2) - won < taken)
+      losers.push_back(rival.effect);
+  return losers;
 }
 
 /// The loop: one step after the other, until nothing is left to add or to swap.
@@ -261,8 +260,8 @@ class Search {
   }
 
   /// Contests that were won by less than what was missing then are held again: a coarse mesh may
-  /// have let swelling pass for a suction. The nearest loser takes the winner's place in the last
-  /// model.
+  /// have let swelling pass for a suction. The losers take the winner's place in the last model,
+  /// one after the other; the best stays there.
   bool reopened() {
     const Fitted& last = newest().fitted;
     const auto standing = effects_in(last.form);
@@ -272,11 +271,11 @@ class Search {
     for (size_t k = 0; k + 1 < out_.steps.size(); ++k) {
       const Step& then = out_.steps[k];
       if (numerical(then.added) || !stands(then.added)) continue;
-      const Rival* rival = narrow_loser(then, last);
-      if (!rival || stands(rival->effect) || !asked_.insert({then.added, rival->effect}).second)
-        continue;
-      auto asked = ask_tie_again(workspace_, last, {then.added, rival->effect}, out_.floor, base_,
-                                 options_, events_);
+      std::vector<std::string> contest = {then.added};
+      for (const std::string& loser : narrow_losers(then, last))
+        if (!stands(loser) && asked_.insert({then.added, loser}).second) contest.push_back(loser);
+      if (contest.size() < 2) continue;
+      auto asked = ask_tie_again(workspace_, last, contest, out_.floor, base_, options_, events_);
       if (!asked) continue;
       if (asked->better) {
         out_.steps.push_back(swapped_step(std::move(*asked->better)));
