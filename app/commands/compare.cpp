@@ -101,7 +101,9 @@ void run_compare(const std::string& folder, Session& session) {
   if (metrics.contains("chi_by_region") && !metrics["chi_by_region"].empty())
     session.say("{}\n", chi_rows(metrics["chi_by_region"], "by region", floor));
   session.say("{}", measured_rows(metrics["measured"]));
-  if (const auto said = not_converged(metrics["converged"], metrics["iterations"]); !said.empty())
+  if (const auto said =
+          not_converged(metrics.value("converged", true), metrics.value("iterations", 0));
+      !said.empty())
     session.warn(said);
   for (const auto& sentence : metrics["undetermined"]) session.say("{}", wrapped(sentence));
   say_pictures(step, session);
