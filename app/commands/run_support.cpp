@@ -89,9 +89,8 @@ FitOptions fit_options() {
 std::string not_converged(bool converged, int iterations) {
   if (converged) return {};
   return fmt::format(
-      "the fit has not converged: the misfit still fell when it stopped after {} iterations, so "
-      "that "
-      "its values may move further",
+      "the fit has not converged: the misfit still fell when it stopped after {} iterations, "
+      "so that its values may move further",
       iterations);
 }
 
