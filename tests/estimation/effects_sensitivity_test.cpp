@@ -344,6 +344,28 @@ TEST(Sensitivity, RefitForms) {
   EXPECT_GT(tried, 15);
 }
 
+/// A set-up that is turned hangs otherwise; one that is moved, or turned about its weight, does
+/// not.
+TEST(Sensitivity, PlacementTurnsTheBodyAgainstItsWeight) {
+  const ModelForm told = base_form(block_scene());
+  const Model model = told.realise(told.initial());
+  const ModelForm base = extended(told, find_effect("gravity")->candidates(model, nullptr).front());
+  const VectorXd p = with_values(base, 3e3 * Vector3d(0.6, 0.0, -0.8));
+  const auto placement = find_effect("placement")->candidates(model, nullptr);
+  const States start = solve(base, p, {});
+  const Evaluation evaluation = evaluated(base, p, placement);
+  const ModelForm form = extended(base, placement.front());
+  VectorXd at_null(form.size());
+  at_null << p, null_values(*placement.front());
+  const auto parameters = placement.front()->parameters();
+  for (int i = 0; i < 6; ++i) {
+    const double h = parameters[i].typical;
+    const States solved = solved_sensitivity(form, at_null, base.size() + i, h, false, start);
+    EXPECT_EQ(expect_same(evaluation, base.size() + i, solved, h, 1e-3, parameters[i].name), i < 3)
+        << parameters[i].name;
+  }
+}
+
 /// Effects of the photo and the sensor move no equilibrium.
 TEST(Sensitivity, MeasurementMovesNothing) {
   const ModelForm base = base_form(block_scene());
