@@ -123,7 +123,21 @@ void check_name(const std::string& name) {
 struct Run::Impl {
   fs::path folder;
   json timeline;
-  std::unique_ptr<Lock> lock;  ///< empty: opened for reading
+  std::unique_ptr<Lock> lock;               ///< empty: opened for reading
+  bool began = false, made_folder = false;  ///< the run by this object, and its folder
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  /// A run that began here and has no step to show is none.
+  ~Impl() {
+    if (!began || !timeline.at("steps").empty()) return;
+    remove_leftovers(folder);
+    std::error_code ignored;
+    if (!fs::is_empty(folder / "steps", ignored)) return;
+    for (const char* name : {"run.json", "steps", ".lock"}) fs::remove(folder / name, ignored);
+    if (made_folder) fs::remove(folder, ignored);
+  }
 
   void store(json changed) {
     write_text(folder / "run.json", changed.dump(2) + "\n");
@@ -156,7 +170,7 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
                        "name a new or empty folder for the run");
     }
   }
-  fs::create_directories(folder, error);
+  const bool made = fs::create_directories(folder, error);
   if (error)
     throw InputError({folder.string()}, "the folder cannot be made: " + error.message(),
                      "choose a folder that you may write");
@@ -179,6 +193,8 @@ Run Run::create(const fs::path& folder, const fs::path& capture) {
                {"fingerprints", fingerprints(yaml_of(capture))},
                {"verdict", "unexplained"},
                {"steps", json::array()}});
+  impl->began = true;
+  impl->made_folder = made;
   return Run(std::move(impl));
 }
 

@@ -18,7 +18,8 @@ class Run {
  public:
   /// Creates the folder (parents too) and run.json, or opens it when it holds a run of the same
   /// capture. Throws InputError when it holds something else. One writer at a time: takes an
-  /// advisory lock on RUN/.lock, throws InputError when another process has it.
+  /// advisory lock on RUN/.lock, throws InputError when another process has it. A run that has no
+  /// step when the object goes (the first fit failed) goes with it.
   static Run create(const std::filesystem::path& folder, const std::filesystem::path& capture);
   /// Opens an existing run; `write` takes the lock.
   static Run open(const std::filesystem::path& folder, bool write);

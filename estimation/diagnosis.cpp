@@ -144,10 +144,9 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   return score;
 }
 
-/// Information criterion of a hypothesis on the photos and all that is measured.
 double information_of(const DiagnosisSums& sums, const ProjectedHypothesis& hypothesis, double r2) {
-  return bayes_information(hypothesis, sums.effective.s, r2, sums.effective.count,
-                           sums.effective.floor2);
+  const auto& all = sums.effective;  // photos and all that is measured
+  return bayes_information(hypothesis, all.s, r2, all.count, all.floor2);
 }
 
 /// Of all forms of an effect the one that explains most of the held-out photos, where that is more
@@ -262,19 +261,111 @@ bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
           score.fall >= least_fall(diagnosis, score.effect));
 }
 
+namespace {
+
+/// The candidates with their evidence, and the best one of every effect.
+struct Scored {
+  std::vector<Candidate> candidates;
+  std::vector<ProjectedHypothesis> projected;
+  VectorXd evidence;
+  double r2 = 0.0;  ///< effective residual without what the base columns can make
+  std::map<std::string, size_t> best;
+  std::vector<double> null;  ///< simulate_null()
+
+  double p_value(double value) const {
+    const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
+    return (1.0 + above) / (1.0 + null.size());
+  }
+};
+
+Scored score_photos(std::vector<Candidate> candidates, const DiagnosisSums& sums, int base,
+                    const DiagnosisOptions& options) {
+  Scored out;
+  out.r2 = without_base(sums.effective, base);
+  out.evidence.resize(candidates.size());
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    out.projected.push_back(project(sums.effective.H, base, candidates[i].hypothesis));
+    out.evidence[i] = log_evidence(out.projected[i], sums.effective.s, out.r2, sums.effective.count,
+                                   sums.effective.floor2);
+  }
+  out.null = simulate_null(candidates, out.projected, sums, options);
+  keep_within_bounds(sums, base, out.r2, candidates, out.projected, out.evidence);
+  out.candidates = std::move(candidates);
+  return out;
+}
+
+/// The null is at the floor, where one noise holds for all; a misfit of the photos is none of the
+/// sensors', and what a finer mesh would change in their values (`mesh2`, over noise) no error of
+/// theirs.
+void score_sensors(const DiagnosisSums& sums, int base, double mesh2, Scored& scored) {
+  if (sums.measured.count <= 0.0) return;
+  for (size_t i = 0; i < scored.candidates.size(); ++i)
+    if (sensors_alone(*scored.candidates[i].ingredient))
+      scored.evidence[i] = log_evidence_of_told_noise(
+          project(sums.measured.H, base, scored.candidates[i].hypothesis), sums.measured.s,
+          without_base(sums.measured, base), sums.measured_count, 1.0 + mesh2);
+}
+
+EffectScore score_effect(const Context& context, const Scored& scored, size_t best, double evidence,
+                         const Diagnosis& diagnosis) {
+  const Candidate& candidate = scored.candidates[best];
+  const ProjectedHypothesis& projected = scored.projected[best];
+  EffectScore score = describe(context, candidate, projected);
+  score.evidence = evidence;
+  score.mesh_fall = brightness_alone(*score.best)
+                        ? imitated_by_mesh(context.fitted, context.sums, candidate.hypothesis)
+                        : diagnosis.mesh_fall;
+  score.bic =
+      sensors_alone(*score.best) ? evidence : information_of(context.sums, projected, scored.r2);
+  if (evidence >= kNameable)
+    score.other_form = other_form(context, scored.candidates, scored.projected, scored.r2, score);
+  score.p_value = scored.p_value(evidence);
+  // What the photos show they can test, however little a typical change would show of it.
+  if (projected.best_signal() < 4.0 && evidence < std::max(kNameable, diagnosis.gate)) {
+    score.testable = false;
+    score.why_not =
+        "untestable with these photos: a change that would matter moves them by "
+        "less than two standard deviations";
+  }
+  return score;
+}
+
+/// Which of the ranked effects are drawn, and where those and all that speak take the body.
+void displace_leaders(const Evaluation& evaluation, const Scored& scored,
+                      std::vector<EffectScore>& effects) {
+  for (size_t i = 0; i < effects.size(); ++i) {
+    EffectScore& score = effects[i];
+    score.pictured = score.testable && i < kPictured;
+    const bool speaks =
+        score.testable && score.evidence >= kNameable && !sensors_alone(*score.best);
+    if (score.pictured || speaks)
+      displace(evaluation, scored.projected[scored.best.at(score.effect)], score);
+  }
+}
+
+/// The model's pictures and their derivatives by its own parameters and all candidates'.
+std::variant<Evaluation, NumericalFailure> evaluate_for(Workspace& workspace, const Fitted& fitted,
+                                                        const std::vector<Candidate>& candidates,
+                                                        const DiagnosisOptions& options) {
+  std::vector<std::shared_ptr<const Ingredient>> ingredients;
+  for (const auto& candidate : candidates) ingredients.push_back(candidate.ingredient);
+  EvaluationOptions out;
+  out.pictures = true;
+  out.held_out = true;
+  out.cancel = options.cancel;
+  out.progress = options.progress;
+  return workspace.evaluate(fitted.form, fitted.p, out, ingredients);
+}
+
+}  // namespace
+
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options) {
   Diagnosis out;
   const Scene& scene = *fitted.form.scene;
   std::vector<EffectScore> idle;
   std::vector<Candidate> candidates = collect_candidates(fitted, options, idle);
-  std::vector<std::shared_ptr<const Ingredient>> ingredients;
-  for (const auto& candidate : candidates) ingredients.push_back(candidate.ingredient);
-  EvaluationOptions evaluation_options;
-  evaluation_options.pictures = true;
-  evaluation_options.held_out = true;
-  evaluation_options.cancel = options.cancel;
-  auto result = workspace.evaluate(fitted.form, fitted.p, evaluation_options, ingredients);
+  auto result = evaluate_for(workspace, fitted, candidates, options);
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   const Evaluation& evaluation = std::get<Evaluation>(result);
   out.floor = measure_floor(scene, evaluation);
@@ -284,67 +375,26 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   out.whiteness_p = sums.whiteness_p;
   tell_of_refined_mesh(fitted, evaluation, sums, out);
 
-  std::vector<ProjectedHypothesis> projected;
-  VectorXd evidence(candidates.size());
-  const double r2 = without_base(sums.effective, base);
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    projected.push_back(project(sums.effective.H, base, candidates[i].hypothesis));
-    evidence[i] = log_evidence(projected[i], sums.effective.s, r2, sums.effective.count,
-                               sums.effective.floor2);
+  Scored scored = score_photos(std::move(candidates), sums, base, options);
+  if (!scored.null.empty())
+    out.gate = scored.null[static_cast<size_t>(0.95 * (scored.null.size() - 1))];
+  if (const Candidate* mesh = mesh_candidate(scored.candidates, scored.evidence))
+    tell_of_mesh(fitted, evaluation, sums, *mesh, out);
+  score_sensors(sums, base, out.mesh_in_measured, scored);
+  for (size_t i = 0; i < scored.candidates.size(); ++i) {
+    const auto [at, first] = scored.best.emplace(scored.candidates[i].effect->name(), i);
+    if (!first && scored.evidence[i] > scored.evidence[at->second]) at->second = i;
   }
-  const std::vector<double> null = simulate_null(candidates, projected, sums, options);
-  if (!null.empty()) out.gate = null[static_cast<size_t>(0.95 * (null.size() - 1))];
 
   const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
-  keep_within_bounds(sums, base, r2, candidates, projected, evidence);
-  if (const Candidate* mesh = mesh_candidate(candidates, evidence))
-    tell_of_mesh(fitted, evaluation, sums, *mesh, out);
-  // The null is at the floor, where one noise holds for all; a misfit of the photos is none of the
-  // sensors', and what a finer mesh would change in their values no error of theirs.
-  for (size_t i = 0; i < candidates.size(); ++i)
-    if (sensors_alone(*candidates[i].ingredient) && sums.measured.count > 0.0)
-      evidence[i] = log_evidence_of_told_noise(
-          project(sums.measured.H, base, candidates[i].hypothesis), sums.measured.s,
-          without_base(sums.measured, base), sums.measured_count, 1.0 + out.mesh_in_measured);
-
-  std::map<std::string, size_t> best;
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    const std::string name = candidates[i].effect->name();
-    if (!best.count(name) || evidence[i] > evidence[best[name]]) best[name] = i;
-  }
-  for (const auto& [name, value] : by_effect(candidates, evidence)) {
-    EffectScore score = describe(context, candidates[best[name]], projected[best[name]]);
-    score.evidence = value;
-    score.mesh_fall = brightness_alone(*score.best)
-                          ? imitated_by_mesh(fitted, sums, candidates[best[name]].hypothesis)
-                          : out.mesh_fall;
-    score.bic =
-        sensors_alone(*score.best) ? value : information_of(sums, projected[best[name]], r2);
-    if (value >= kNameable)
-      score.other_form = other_form(context, candidates, projected, r2, score);
-    const auto above = null.end() - std::lower_bound(null.begin(), null.end(), value);
-    score.p_value = (1.0 + above) / (1.0 + null.size());
-    // What the photos show they can test, however little a typical change would show of it.
-    if (projected[best[name]].best_signal() < 4.0 && value < std::max(kNameable, out.gate)) {
-      score.testable = false;
-      score.why_not =
-          "untestable with these photos: a change that would matter moves them by "
-          "less than two standard deviations";
-    }
-    out.effects.push_back(std::move(score));
-  }
-  find_confusions(sums.effective.H, projected, best, out.effects);
+  for (const auto& [name, value] : by_effect(scored.candidates, scored.evidence))
+    out.effects.push_back(score_effect(context, scored, scored.best.at(name), value, out));
+  find_confusions(sums.effective.H, scored.projected, scored.best, out.effects);
   weigh(out.effects);
   std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
     return std::pair(a.testable, a.evidence) > std::pair(b.testable, b.evidence);
   });
-  for (size_t i = 0; i < out.effects.size(); ++i) {
-    EffectScore& score = out.effects[i];
-    score.pictured = score.testable && i < kPictured;
-    const bool speaks =
-        score.testable && score.evidence >= kNameable && !sensors_alone(*score.best);
-    if (score.pictured || speaks) displace(evaluation, projected[best[score.effect]], score);
-  }
+  displace_leaders(evaluation, scored, out.effects);
   out.effects.insert(out.effects.end(), idle.begin(), idle.end());
   return out;
 }

@@ -2,6 +2,7 @@
 // refitting (method.md, "Which effect is missing").
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <variant>
@@ -78,6 +79,7 @@ struct DiagnosisOptions {
   /// Tested beside the catalogue (placebos).
   std::vector<const Effect*> also;
   const std::atomic<bool>* cancel = nullptr;
+  std::function<void(int done, int of)> progress;  ///< as EvaluationOptions has it
 };
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,

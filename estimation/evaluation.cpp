@@ -241,11 +241,18 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   if (reference >= 0 && std::find(wanted.begin(), wanted.end(), reference) == wanted.end())
     to_solve.push_back(reference);
   auto cancelled = [&] { return options.cancel && options.cancel->load(); };
+  std::atomic<int> done = 0;
+  const int all = static_cast<int>(to_solve.size() + wanted.size());
+  auto advance = [&] {
+    const int now = ++done;
+    if (options.progress) options.progress(now, all);
+  };
   tbb::parallel_for(size_t{0}, to_solve.size(), [&](size_t i) {
     const int e = to_solve[i];
     if (cancelled()) return;
     failures[e] =
         impl_->solve(model, columns ? &*columns : nullptr, e, options, solved[e], derivative[e]);
+    advance();
   });
   for (int e : to_solve)
     if (failures[e]) return *failures[e];
@@ -262,6 +269,7 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     const ExampleColumns* d = columns ? &derivative[e] : nullptr;
     solved[e].photos = impl_->comparers[e].compare(model, solved[e], reference_state, d, options);
     solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d);
+    advance();
   });
   if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
   Evaluation out;

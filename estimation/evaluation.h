@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,8 @@ struct EvaluationOptions {
   double tolerance = EquilibriumOptions{}.tolerance;
   int most_iterations = EquilibriumOptions{}.most_iterations;
   const std::atomic<bool>* cancel = nullptr;
+  /// Equilibria and comparisons that are done, of all; called by any thread, several at once.
+  std::function<void(int done, int of)> progress;
 };
 
 struct PhotoEvaluation {

@@ -3,7 +3,6 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
-#include "app/interrupt.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -13,9 +12,7 @@ void run_diagnose(const std::string& folder, Session& session) {
   Run run = Run::open(folder, true);
   Bench bench = open_capture(run.capture(), session);
   Step step = newest_step(run, bench);
-  DiagnosisOptions options;
-  options.cancel = &interrupted();
-  diagnose_newest(run, bench, step, options);
+  diagnose_newest(run, bench, step, diagnosis_options());
   session.document = to_json(step.diagnosis);
   session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name, step.fitted.evaluation.chi(false),
               step.diagnosis.floor.chi);

@@ -59,9 +59,7 @@ PlannedStep open_step(const Run& run, Bench& bench, size_t index) {
     out.diagnosis =
         diagnosis_from_json(json::parse(read_text(file), nullptr, false), form.realise(p), file);
   } else {
-    DiagnosisOptions options;
-    options.cancel = &interrupted();
-    out.diagnosis = value_or_fail(diagnose(bench.workspace, out.fitted, options));
+    out.diagnosis = value_or_fail(diagnose(bench.workspace, out.fitted, diagnosis_options()));
   }
   return out;
 }

@@ -86,6 +86,16 @@ FitOptions fit_options() {
   return options;
 }
 
+DiagnosisOptions diagnosis_options() {
+  DiagnosisOptions options;
+  options.cancel = &interrupted();
+  auto progress = std::make_shared<Progress>("diagnose", 0);
+  options.progress = [progress](int done, int of) {
+    progress->set(done, of, "loads solved and compared");
+  };
+  return options;
+}
+
 std::string not_converged(bool converged, int iterations) {
   if (converged) return {};
   return fmt::format(
@@ -104,7 +114,8 @@ std::vector<std::string> tied_in(const nlohmann::json& step) {
 DiscoverOptions discover_options() {
   DiscoverOptions options;
   options.fit = fit_options();
-  options.cancel = options.diagnosis.cancel = options.fit.cancel;
+  options.diagnosis = diagnosis_options();
+  options.cancel = options.fit.cancel;
   return options;
 }
 

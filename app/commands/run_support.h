@@ -31,6 +31,7 @@ T value_or_fail(std::variant<T, NumericalFailure> result) {
 
 /// Options with the progress bar and Ctrl-C wired in.
 FitOptions fit_options();
+DiagnosisOptions diagnosis_options();
 /// What is to be said of a fit that stopped before its end; empty: it did not.
 std::string not_converged(bool converged, int iterations);
 /// The newest step of a run, its model evaluated again (pictures and derivatives).

@@ -1,6 +1,5 @@
 // The blind benchmark: draws recipes, photographs them, lets `hookeye discover` look, scores.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -78,13 +77,14 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
     }
   }
   if (!fs::exists(found)) {
+    std::string without;
+    if (options.left_out)
+      for (const std::string& name : effects_of(effect)) without += " --without " + name;
     // discover works on the folder alone; the truth beside it is read below, after it has ended
     const int status = run(fmt::format(
-        "{0} discover --json {1} -o {2} --threads {6} {5} > {3}.part 2> {4} && mv {3}.part {3}",
+        "{0} discover --json {1} -o {2} --threads {6}{5} > {3}.part 2> {4} && mv {3}.part {3}",
         shell_quoted(options.hookeye), shell_quoted(capture), shell_quoted(folder / "run"),
-        shell_quoted(found), shell_quoted(folder / "discover.log"),
-        options.left_out ? fmt::format("--without {}", fmt::join(effects_of(effect), " --without "))
-                         : "",
+        shell_quoted(found), shell_quoted(folder / "discover.log"), without,
         std::max(1, tbb::info::default_concurrency() / options.jobs)));
     if (status != 0) {
       failed.status = fmt::format("discover {}", status);

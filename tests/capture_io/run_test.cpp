@@ -99,6 +99,19 @@ TEST(RunTest, AFailedStepLeavesNothing) {
   EXPECT_EQ(run.steps().size(), 1u);
 }
 
+TEST(RunTest, ARunWithoutAStepGoes) {
+  const TemporaryFolder folder;
+  const fs::path capture = folder / "capture.yaml", mine = folder / "mine";
+  RunFolder::create(folder / "run", capture);
+  EXPECT_FALSE(fs::exists(folder / "run"));
+  fs::create_directory(mine);
+  RunFolder::create(mine, capture);
+  EXPECT_TRUE(fs::is_empty(mine)) << "a folder that was there stays";
+  RunFolder::create(mine, capture).add_step("base", {}, write_model);
+  RunFolder::create(mine, capture);
+  EXPECT_EQ(RunFolder::open(mine, false).steps().size(), 1u);
+}
+
 /// A process killed in the middle of a step: the run opens, the half step is gone.
 TEST(RunTest, AKillLeavesARunThatResumes) {
   const TemporaryFolder folder;
@@ -139,7 +152,8 @@ TEST(RunTest, OneWriterAtATime) {
   const TemporaryFolder folder;
   const fs::path where = folder / "run", capture = folder / "capture.yaml";
   {
-    const RunFolder first = RunFolder::create(where, capture);
+    RunFolder first = RunFolder::create(where, capture);
+    first.add_step("base", {}, write_model);
     EXPECT_EQ(complaint([&] { RunFolder::create(where, capture); }),
               "another process is writing this run");
     EXPECT_EQ(complaint([&] { RunFolder::open(where, true); }),
@@ -160,7 +174,7 @@ TEST(RunTest, ForeignFoldersAreRefused) {
             "this is a file, not a folder");
   EXPECT_EQ(complaint([&] { RunFolder::open(folder / "photos", false); }),
             "there is no run in this folder");
-  RunFolder::create(folder / "run", folder / "c.yaml");
+  RunFolder::create(folder / "run", folder / "c.yaml").add_step("base", {}, write_model);
   write_text(folder / "capture.yaml", "");
   EXPECT_EQ(RunFolder::create(folder / "by_folder", folder.path()).capture(),
             folder / "capture.yaml");
@@ -202,7 +216,7 @@ TEST(RunTest, FilesOfAStepAreNeverChanged) {
 
 TEST(RunTest, ReadersCannotWrite) {
   const TemporaryFolder folder;
-  RunFolder::create(folder / "run", folder / "capture.yaml");
+  RunFolder::create(folder / "run", folder / "capture.yaml").add_step("base", {}, write_model);
   RunFolder run = RunFolder::open(folder / "run", false);
   EXPECT_THROW(run.add_step("base", {}, write_model), std::logic_error);
 }

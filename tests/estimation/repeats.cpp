@@ -89,11 +89,26 @@ double excess_over_uniform(std::vector<double> p) {
   return most;
 }
 
-// The asymptotic point 1.2239/sqrt(n) with Stephens' correction (1970), good from n = 5 on.
-double excess_95(int n) {
-  const double root = std::sqrt(static_cast<double>(n));
-  return 1.2239 / (root + 0.12 + 0.11 / root);
+double distance_from_uniform(std::vector<double> p) {
+  std::sort(p.begin(), p.end());
+  double most = excess_over_uniform(p);
+  for (size_t i = 0; i < p.size(); ++i)
+    if (p[i] < 1.0) most = std::max(most, p[i] - static_cast<double>(i) / p.size());
+  return most;
 }
+
+namespace {
+
+/// An asymptotic point over sqrt(n) with Stephens' correction (1970), good from n = 5 on.
+double corrected(double point, int n) {
+  const double root = std::sqrt(static_cast<double>(n));
+  return point / (root + 0.12 + 0.11 / root);
+}
+
+}  // namespace
+
+double excess_95(int n) { return corrected(1.2239, n); }
+double distance_95(int n) { return corrected(1.3581, n); }
 
 int count_95(int n) {
   double sum = 0.0, term = std::pow(0.95, n);

@@ -60,6 +60,10 @@ class Placebo final : public Effect {
 double excess_over_uniform(std::vector<double> p);
 /// What that excess passes in 5 % of cases (one-sided Kolmogorov-Smirnov).
 double excess_95(int n);
+/// The excess, or what the empirical distribution falls short of the uniform one, if that is more
+/// (two-sided; p = 1 as above), and its 5 % point.
+double distance_from_uniform(std::vector<double> p);
+double distance_95(int n);
 /// Largest count that a share of 5 % gives in 95 % of cases.
 int count_95(int n);
 

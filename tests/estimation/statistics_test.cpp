@@ -29,7 +29,7 @@ TEST(Statistics, HoldWhereNothingIsHidden) {
   EXPECT_LT(spread, 22.46);
   EXPECT_LE(named, test::count_95(kCaptures));
   EXPECT_LE(missed, test::count_95(kCaptures));
-  EXPECT_LE(test::excess_over_uniform(p), test::excess_95(kCaptures));
+  EXPECT_LE(test::distance_from_uniform(p), test::distance_95(kCaptures));
 }
 
 /// Photos by other rays than the fit's: errors that move together in a photo.
@@ -62,16 +62,22 @@ TEST(Statistics, APlaceboDoesNotComeFirst) {
   }
 }
 
-/// A test that cannot fail proves nothing: p-values that are too small are noticed.
+/// A test that cannot fail proves nothing: p-values that are too small or too large are noticed.
 TEST(Statistics, ExcessAndCountsKnowTheUniformDistribution) {
-  std::vector<double> uniform, small;
+  std::vector<double> uniform, small, large;
   for (int i = 0; i < 200; ++i) {
     uniform.push_back((i + 0.5) / 200.0);
     small.push_back(std::pow((i + 0.5) / 200.0, 1.5));
+    large.push_back(std::pow((i + 0.5) / 200.0, 0.7));
   }
   EXPECT_LT(test::excess_over_uniform(uniform), test::excess_95(200));
   EXPECT_GT(test::excess_over_uniform(small), test::excess_95(200));
-  EXPECT_NEAR(test::excess_95(20), 0.2647, 0.002);  // tabulated one-sided 5 % point
+  EXPECT_LT(test::distance_from_uniform(uniform), test::distance_95(200));
+  EXPECT_GT(test::distance_from_uniform(small), test::distance_95(200));
+  EXPECT_LT(test::excess_over_uniform(large), test::excess_95(200));
+  EXPECT_GT(test::distance_from_uniform(large), test::distance_95(200));
+  EXPECT_NEAR(test::distance_95(20), 0.2941, 0.002);  // tabulated two-sided 5 % point
+  EXPECT_NEAR(test::excess_95(20), 0.2647, 0.002);    // tabulated one-sided 5 % point
   EXPECT_EQ(test::count_95(20), 3);
   EXPECT_EQ(test::count_95(200), 15);
 }
