@@ -4,16 +4,17 @@
 
 #include <csignal>
 #include <string_view>
+#include <thread>
 
 namespace hookeye {
 namespace {
 
 std::atomic<bool> flag{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler sets it");
 
-extern "C" void on_signal(int signal) {
+void on_signal(int signal, const sigset_t& watched) {
   if (flag.exchange(true)) {
     std::signal(signal, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &watched, nullptr);
     std::raise(signal);
     return;
   }
@@ -27,9 +28,19 @@ extern "C" void on_signal(int signal) {
 
 const std::atomic<bool>& interrupted() { return flag; }
 
+// METIS puts a handler of its own in the place of any that stands, and jumps from it to where it
+// last was, on whatever thread: of a signal that all threads block no handler hears.
 void watch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  sigset_t watched;
+  sigemptyset(&watched);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    std::signal(signal, SIG_DFL);  // a shell has its background jobs ignore Ctrl-C
+    sigaddset(&watched, signal);
+  }
+  pthread_sigmask(SIG_BLOCK, &watched, nullptr);
+  std::thread([watched] {
+    for (int signal = 0; sigwait(&watched, &signal) == 0;) on_signal(signal, watched);
+  }).detach();
 }
 
 }  // namespace hookeye

@@ -9,6 +9,7 @@ namespace hookeye {
 
 /// Set by SIGINT and SIGTERM; every long loop polls it (EquilibriumOptions, FitOptions ...).
 const std::atomic<bool>& interrupted();
+/// Before any other thread is there: they all inherit that the signals are blocked.
 void watch_interrupts();
 
 /// Thrown by commands when they stopped because of it; exit status 130.

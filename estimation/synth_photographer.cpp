@@ -1,12 +1,16 @@
 #include "estimation/synth_photographer.h"
 
 #include <fmt/format.h>
+#include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
-#include <cstdlib>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
+#include <system_error>
 
 #include "capture_io/run.h"
 #include "render/vertex_normals.h"
@@ -96,10 +100,34 @@ Image sensor(Image radiance, const PhotoState& state) {
 
 }  // namespace
 
+namespace {
+
+/// std::system(), but that the command hears Ctrl-C, which this program's threads block.
+int run_in_shell(const std::string& command) {
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  std::string shell = "sh", option = "-c", text = command;
+  char* const words[] = {shell.data(), option.data(), text.data(), nullptr};
+  pid_t child = 0;
+  const int error = posix_spawn(&child, "/bin/sh", nullptr, &attributes, words, environ);
+  posix_spawnattr_destroy(&attributes);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "/bin/sh");
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace
+
 Pictures photographed_by(const std::string& command, const Truth& truth, const fs::path& albedo,
                          const fs::path& stage) {
   write_stage(truth, albedo, stage);
-  const int status = std::system(fmt::format("{} {} 1>&2", command, shell_quoted(stage)).c_str());
+  const int status = run_in_shell(fmt::format("{} {} 1>&2", command, shell_quoted(stage)));
   if (status != 0)
     throw InputError({command},
                      fmt::format("the photographer ended with exit status {}",

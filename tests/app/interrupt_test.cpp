@@ -18,15 +18,17 @@ class Interrupted : public Cli {
     ASSERT_EQ(made.status, 0) << made.err;
   }
 
-  /// Ctrl-C once `sign` stands in what the program has said.
-  Result interrupt_at(const std::string& sign, const std::string& arguments) const {
+  /// Ctrl-C (or another signal) once `sign` stands in what the program has said.
+  Result interrupt_at(const std::string& sign, const std::string& arguments,
+                      const std::string& signal = "INT") const {
     const std::string command = "cd '" + folder_.string() + "' && { '" HOOKEYE_PROGRAM "' " +
                                 arguments +
                                 " >out.txt 2>err.txt </dev/null & } && program=$! && "
                                 "while kill -0 $program 2>/dev/null && ! grep -qs '" +
                                 sign +
                                 "' out.txt err.txt; do sleep 0.02; done; "
-                                "kill -INT $program; wait $program";
+                                "kill -" +
+                                signal + " $program; wait $program";
     const int status = std::system(("sh -c '" + escaped(command) + "'").c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"),
             read(folder_ / "err.txt")};
@@ -69,6 +71,8 @@ TEST_F(Interrupted, AFitIsDoneAnewAndASearchGoesOn) {
   EXPECT_FALSE(fs::exists(folder_ / "run/steps/00-base"));
   for (const std::string& file : files(folder_ / "run"))
     EXPECT_THAT(file, AnyOf("run.json", ".lock"));
+  const Result ended = interrupt_at("fit 0/", "fit capture -o run", "TERM");
+  ASSERT_EQ(ended.status, 130) << ended.out << ended.err;
   ASSERT_EQ(hookeye("fit capture -o run").status, 0);
   ASSERT_EQ(hookeye("fit capture -o whole").status, 0);
   EXPECT_EQ(files(folder_ / "run"), files(folder_ / "whole"));
