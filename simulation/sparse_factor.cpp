@@ -11,6 +11,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <mutex>
 #include <stdexcept>
 
 // Weak: another BLAS may stand in for OpenBLAS.
@@ -48,6 +49,19 @@ struct Common {
   cholmod_common c;
 };
 
+/// METIS draws from the C library's one sequence of random numbers, which it starts anew. Examples
+/// that were dissected at the same time drew from one another's sequence: orders, and with them the
+/// last bits of every equilibrium, came out differently from run to run.
+int dissect_graph(idx_t n, std::vector<idx_t>& start, std::vector<idx_t>& near, idx_t* permutation,
+                  idx_t* inverse) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  idx_t options[METIS_NOPTIONS];
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED] = 0;
+  return METIS_NodeND(&n, start.data(), near.data(), nullptr, options, permutation, inverse);
+}
+
 /// Nested dissection of the nodes that have free unknowns; order[k] = index in `free`.
 std::vector<int> dissect(const SparseMatrix& K, const std::vector<int>& free,
                          const std::vector<int>& index) {
@@ -75,14 +89,11 @@ std::vector<int> dissect(const SparseMatrix& K, const std::vector<int>& free,
     near.erase(std::unique(near.begin() + start.back(), near.end()), near.end());
     start.push_back(static_cast<idx_t>(near.size()));
   }
-  idx_t n = static_cast<idx_t>(nodes.size()), options[METIS_NOPTIONS];
+  const idx_t n = static_cast<idx_t>(nodes.size());
   std::vector<idx_t> permutation(n), inverse(n);
-  METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED] = 0;
   if (near.empty()) {
     for (idx_t i = 0; i < n; ++i) permutation[i] = i;
-  } else if (METIS_NodeND(&n, start.data(), near.data(), nullptr, options, permutation.data(),
-                          inverse.data()) != METIS_OK) {
+  } else if (dissect_graph(n, start, near, permutation.data(), inverse.data()) != METIS_OK) {
     throw std::runtime_error("METIS_NodeND failed on the node graph");
   }
   std::vector<int> order;
