@@ -6,16 +6,21 @@ namespace hookeye {
 
 namespace {
 
+/// Root of the least square sum that is told from zero.
+constexpr double kNothing = 1e-150;
+
 /// Eigen-decomposition H = D V diag(values) V^T D over the roots D of the diagonal: columns of
 /// different units differ by many powers of ten, and what a plain decomposition calls rounding of
-/// the large ones drowns the small ones.
+/// the large ones drowns the small ones. A column of zeros has no unit: eigenvectors are zero there
+/// to rounding alone, which no power of ten may scale.
 struct GramEigen {
-  Eigen::VectorXd scale, values;  ///< D, not zero where a column is; ascending
+  Eigen::VectorXd scale, unit, values;  ///< D, its inverse (0 where a column is); ascending
   Eigen::MatrixXd V;
 
-  explicit GramEigen(const Eigen::MatrixXd& H) : scale(H.diagonal().cwiseMax(1e-300).cwiseSqrt()) {
+  explicit GramEigen(const Eigen::MatrixXd& H)
+      : scale(H.diagonal().cwiseMax(0.0).cwiseSqrt()),
+        unit((scale.array() > kNothing).select(scale.cwiseInverse(), 0.0)) {
     if (H.size() == 0) return;
-    const Eigen::VectorXd unit = scale.cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * H *
                                                                unit.asDiagonal());
     values = eigen.eigenvalues();
@@ -29,7 +34,7 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
   const GramEigen of(H);
   Eigen::VectorXd inverse = of.values;
   for (double& x : inverse) x = x > kInverted ? 1.0 / x : 0.0;
-  const Eigen::MatrixXd back = of.scale.cwiseInverse().asDiagonal() * of.V;
+  const Eigen::MatrixXd back = of.unit.asDiagonal() * of.V;
   return back * inverse.asDiagonal() * back.transpose();
 }
 

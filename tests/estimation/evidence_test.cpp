@@ -155,6 +155,27 @@ TEST(Evidence, AStepWithinBoundsIsTheBestThere) {
   EXPECT_EQ(p.step_within(s, Eigen::Vector2d(-inf, -inf), high), p.step(s));
 }
 
+/// A field of many bumps of which some stop at their bounds: what is held had come out as any
+/// number, its step as none, and the field was not asked or was, as the last bits of the sums would
+/// have it.
+TEST(Evidence, AStepOfManyParametersStaysWithinBounds) {
+  std::mt19937 engine(11);
+  Data data = noise(engine, 200, 17);
+  for (int k = 1; k < 17; ++k) data.r -= (k % 5 == 0 ? 3.0 : 0.2) * data.J.col(k);
+  const MatrixXd H = data.J.transpose() * data.J;
+  const VectorXd s = data.J.transpose() * data.r;
+  const auto p = project(H, 1, {1, 16, VectorXd::Ones(16)});
+  const VectorXd bound = VectorXd::Ones(16), t = p.step_within(s, -bound, bound);
+  EXPECT_EQ((t.array() == 1.0).count(), 3);
+  EXPECT_LT((t - t.cwiseMax(-bound).cwiseMin(bound)).norm(), 1e-9);
+  const VectorXd slope = p.projected_score(s) + p.M * t;
+  for (int k = 0; k < 16; ++k)
+    if (t[k] == 1.0)
+      EXPECT_LT(slope[k], 0.0) << k;
+    else
+      EXPECT_NEAR(slope[k], 0.0, 1e-9 * s.norm()) << k;
+}
+
 /// A blur that is in four photos and told of three: both take away more than the cells' sums hold,
 /// the four more than the three.
 TEST(Evidence, WhatTakesMoreThanCellsShowStillRanks) {

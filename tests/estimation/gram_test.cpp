@@ -50,5 +50,21 @@ TEST(Gram, ColumnsThatSayNothingStayOut) {
   EXPECT_EQ(pseudo_inverse(MatrixXd(0, 0)).size(), 0);
 }
 
+/// Eigenvectors are zero at such a column to rounding alone, which was scaled by 150 powers of ten.
+TEST(Gram, ColumnsThatSayNothingStayOutBesideManyThatDo) {
+  std::mt19937 engine(4);
+  std::normal_distribution<double> normal;
+  MatrixXd J(60, 16);
+  for (double& x : J.reshaped()) x = normal(engine);
+  for (Eigen::Index silent = 0; silent < J.cols(); ++silent) {
+    MatrixXd some = J;
+    some.col(silent).setZero();
+    const MatrixXd H = some.transpose() * some, inverse = pseudo_inverse(H);
+    EXPECT_EQ(inverse.row(silent).norm() + inverse.col(silent).norm(), 0.0) << silent;
+    EXPECT_LT((H * inverse * H - H).norm(), 1e-10 * H.norm()) << silent;
+    EXPECT_EQ(square_root(H).row(silent).norm(), 0.0) << silent;
+  }
+}
+
 }  // namespace
 }  // namespace hookeye
