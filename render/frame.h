@@ -82,11 +82,12 @@ void shade(const Frame& frame, const Samples& samples, bool derivatives, Shading
 std::vector<double> sky_visibility(const RayScene& scene, const Matrix3Xd& x,
                                    const Matrix3Xd& normals, int rays);
 
-/// A silhouette edge's share in the derivative of one pixel.
+/// An edge's share in the derivative of one pixel: that by the corners of one triangle and by the
+/// photo's numbers before kSpecular (camera and sun).
 struct EdgeSegment {
-  int pixel, triangle;
-  Eigen::Matrix3d d_position;
-  Eigen::Matrix<double, 7, 1> d_camera;  ///< w, v, log focal length
+  int pixel = -1, triangle = -1;
+  Eigen::Matrix3d d_position = Eigen::Matrix3d::Zero();  ///< column k: by corner k
+  Eigen::Matrix<double, kSpecular, 1> d_photo = Eigen::Matrix<double, kSpecular, 1>::Zero();
 };
 
 /// Edges of the surface with the triangles at them (second -1 at a boundary).
@@ -103,5 +104,12 @@ std::vector<SurfaceEdge> surface_edges(const SurfaceMesh& surface);
 void silhouette_segments(const Frame& frame, const PixelFilter& filter,
                          const std::vector<SurfaceEdge>& edges, size_t first, size_t last,
                          std::vector<EdgeSegment>* out);
+
+/// The same of the shadows that the sun casts: integral over their visible edges of the contrast
+/// times the motion that casting edge, receiving triangle, sun and camera give them. Edges
+/// [first, last) as casters.
+void shadow_segments(const Frame& frame, const PixelFilter& filter,
+                     const std::vector<SurfaceEdge>& edges, size_t first, size_t last,
+                     std::vector<EdgeSegment>* out);
 
 }  // namespace hookeye

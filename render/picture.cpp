@@ -98,7 +98,7 @@ thread_local Tile::Store Tile::store_;
 const EdgeSegment* close_pixel(int pixel, size_t begin, const EdgeSegment* edge,
                                const EdgeSegment* end, ImageDerivative::Part* part) {
   for (; edge != end && edge->pixel == pixel; ++edge) {
-    if (!part->photo.empty()) part->photo.back().head<7>() += edge->d_camera.cast<float>();
+    if (!part->photo.empty()) part->photo.back().head<kSpecular>() += edge->d_photo.cast<float>();
     size_t s = begin;
     while (s < part->segments.size() && part->segments[s].triangle != edge->triangle) ++s;
     if (s == part->segments.size()) part->segments.emplace_back().triangle = edge->triangle;

@@ -50,6 +50,15 @@ void RayPacket::reset(float near, float far) {
   }
 }
 
+void RayPacket::set(int lane, const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+  org_x[lane] = static_cast<float>(from.x());
+  org_y[lane] = static_cast<float>(from.y());
+  org_z[lane] = static_cast<float>(from.z());
+  dir_x[lane] = static_cast<float>(direction.x());
+  dir_y[lane] = static_cast<float>(direction.y());
+  dir_z[lane] = static_cast<float>(direction.z());
+}
+
 struct RayScene::Impl {
   RTCScene scene = nullptr;
   RTCGeometry geometry = nullptr;

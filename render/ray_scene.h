@@ -23,6 +23,7 @@ struct alignas(64) RayPacket {
   static constexpr unsigned kNoTriangle = ~0u;
   /// All lanes empty with the given range; positions and directions are to be set by lane.
   void reset(float near, float far);
+  void set(int lane, const Eigen::Vector3d& from, const Eigen::Vector3d& direction);
 };
 
 /// Triangles that move: built once, refitted for every later set of positions.

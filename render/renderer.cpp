@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <deque>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -147,6 +148,31 @@ void set_blur_column(const Image& I, ImageDerivative::Part* part) {
   }
 }
 
+/// All in ascending order of pixels, otherwise as they come. Segments are large and may be many:
+/// each moves once, after references to them that are sorted row by row.
+std::vector<EdgeSegment> by_pixel(const std::vector<std::vector<EdgeSegment>>& parts, int width,
+                                  int height) {
+  struct Key {
+    int pixel;
+    const EdgeSegment* segment;
+  };
+  std::vector<size_t> end(height + 1, 0);
+  for (const auto& part : parts)
+    for (const EdgeSegment& e : part) ++end[e.pixel / width + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Key> keys(end.back());
+  std::vector<size_t> next(end.begin(), end.end());
+  for (const auto& part : parts)
+    for (const EdgeSegment& e : part) keys[next[e.pixel / width]++] = {e.pixel, &e};
+  std::vector<EdgeSegment> out;
+  out.reserve(keys.size());
+  for (int row = 0; row < height; ++row)
+    std::stable_sort(keys.data() + end[row], keys.data() + end[row + 1],
+                     [](const Key& a, const Key& b) { return a.pixel < b.pixel; });
+  for (const Key& key : keys) out.push_back(*key.segment);
+  return out;
+}
+
 /// By pixel in ascending order.
 std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
                                   const std::vector<SurfaceEdge>& edges, int threads) {
@@ -154,14 +180,11 @@ std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
   const int tasks = static_cast<int>((edges.size() + kEdges - 1) / kEdges);
   std::vector<std::vector<EdgeSegment>> part(tasks);
   for_each_task(tasks, threads, [&](int i) {
-    silhouette_segments(frame, filter, edges, i * kEdges, std::min(edges.size(), (i + 1) * kEdges),
-                        &part[i]);
+    const size_t first = i * kEdges, last = std::min(edges.size(), first + kEdges);
+    silhouette_segments(frame, filter, edges, first, last, &part[i]);
+    shadow_segments(frame, filter, edges, first, last, &part[i]);
   });
-  std::vector<EdgeSegment> out;
-  for (const auto& p : part) out.insert(out.end(), p.begin(), p.end());
-  std::stable_sort(out.begin(), out.end(),
-                   [](const EdgeSegment& a, const EdgeSegment& b) { return a.pixel < b.pixel; });
-  return out;
+  return by_pixel(part, frame.view.camera.width, frame.view.camera.height);
 }
 
 }  // namespace

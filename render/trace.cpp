@@ -12,15 +12,6 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-void set_lane(RayPacket& rays, int lane, const Vector3d& from, const Vector3d& direction) {
-  rays.org_x[lane] = float(from.x());
-  rays.org_y[lane] = float(from.y());
-  rays.org_z[lane] = float(from.z());
-  rays.dir_x[lane] = float(direction.x());
-  rays.dir_y[lane] = float(direction.y());
-  rays.dir_z[lane] = float(direction.z());
-}
-
 /// Perspective: from the eye along R^T (h,1). Orthographic: from R^T ((h,start) - t) along R^T z.
 void set_rays(const Frame& f, const Samples& s, RayPacket* rays) {
   const View& view = f.view;
@@ -81,7 +72,7 @@ void drop_unseen(const Frame& f, Samples* s) {
     const Vector3d to = view.perspective ? Vector3d(view.eye - scene.centre())
                                          : Vector3d(from + (p.z() - view.start) * back);
     const double length = (to - from).norm();
-    set_lane(rays, i, from, to - from);
+    rays.set(i, from, to - from);
     rays.tnear[i] = float(10 * scene.epsilon() / length);
     active[i] = -1;
     any = true;
@@ -163,7 +154,7 @@ std::vector<double> sky_visibility(const RayScene& scene, const Matrix3Xd& x,
       const int count = std::min(16, rays - first);
       for (int i = 0; i < count; ++i) {
         const Vector3d& d = directions[first + i];
-        set_lane(packet, i, from, d.x() * e1 + d.y() * e2 + d.z() * n);
+        packet.set(i, from, d.x() * e1 + d.y() * e2 + d.z() * n);
         active[i] = -1;
       }
       scene.occluded(packet, active, false);

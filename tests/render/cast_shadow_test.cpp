@@ -1,5 +1,5 @@
-// The sun's shadow of one ball on another: where it falls, and the derivatives on both of its
-// sides. The shadow's edge itself is held constant (render/README.md).
+// The sun's shadow of one ball on another: where it falls, and the derivatives on both of its sides
+// and at its edge.
 #include <algorithm>
 
 #include "render/renderer.h"
@@ -132,6 +132,123 @@ TEST_F(CastShadow, derivatives_on_both_sides) {
         pick(test::directional(renderer, r, surface.X, nullptr, nullptr,
                                VectorXd::Unit(kPhotoColumns, kSun + axis))),
         0.004, 1e-3, "sun " + std::to_string(axis));
+}
+
+/// A plate with a wall along one side of it, whose shadow falls on the plate: an L drawn out along
+/// y. The wall's free end, towards the camera, has the first four vertices.
+SurfaceMesh plate_with_wall() {
+  const std::vector<std::array<double, 2>> outline = {{-9, -4}, {-5, -4}, {-5, 4},
+                                                      {9, 4},   {9, 8},   {-9, 8}};
+  const int n = static_cast<int>(outline.size());
+  SurfaceMesh out;
+  out.X.resize(3, 2 * n);
+  for (int k = 0; k < n; ++k)
+    for (int end : {0, 1})
+      out.X.col(2 * k + end) = Vector3d(outline[k][0], end ? 8 : -8, outline[k][1]);
+  // Oblique to the rows and columns of pixels.
+  const Eigen::AngleAxisd turn(0.4, Vector3d(0.1, 0.2, 1).normalized());
+  out.X = (turn.toRotationMatrix() * out.X).eval();
+  const auto add = [&](int a, int b, int c) { out.triangles.push_back({a, b, c}); };
+  for (int k = 0; k < n; ++k) {
+    const int a = 2 * k, b = 2 * ((k + 1) % n);
+    add(a, a + 1, b), add(b, a + 1, b + 1);
+  }
+  const int corner = 2 * (n - 1);  // sees all others of its end
+  for (int k = 0; k + 2 < n; ++k) {
+    const int a = 2 * k, b = 2 * (k + 1);
+    add(corner, a, b), add(corner + 1, b + 1, a + 1);
+  }
+  return out;
+}
+
+/// Derivatives at the shadow's edge, by sums over blocks of pixels (block_sums): 16 x 16 rays a
+/// pixel and steps of up to a pixel leave 0.2 to 2.2 %. Without the edge's motion 75 % and more are
+/// missing at the ball's shadow, and of a derivative by the sun 41 to 100 % at the wall's.
+struct ShadowEdge : CastShadow {
+  ShadowEdge() {
+    state.specular = 0.0;
+    options.rays_per_axis = 16;
+  }
+
+  VectorXd blocks(const VectorXd& all) const {
+    const int width = state.camera.width;
+    VectorXd out = VectorXd::Zero(all.size());
+    for (int i = 0; i < all.size(); ++i)
+      if (everywhere || std::abs(beside_shadow(i % width, i / width)) < 2.0)  // false for NaN
+        out[i] = all[i];
+    return test::block_sums(out, width, state.camera.height);
+  }
+  void compare(const Matrix3Xd* u, const VectorXd& columns, double h,
+               const std::function<PhotoState(double)>& photo, const std::string& what) {
+    const auto f = [&](double step) {
+      const Matrix3Xd x = u ? Matrix3Xd(surface.X + step * *u) : surface.X;
+      const Image I = picture(x, photo(step));
+      return blocks(
+          VectorXd(Eigen::Map<const Eigen::VectorXf>(I.values.data(), Eigen::Index(I.pixels()))
+                       .cast<double>()));
+    };
+    const VectorXd numeric = (f(h) - f(-h)) / (2 * h);
+    const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+    const VectorXd ours = blocks(test::directional(renderer, r, surface.X, u, nullptr, columns));
+    ASSERT_GT(numeric.norm(), 0.0) << what;
+    EXPECT_LT((numeric - ours).norm(), 0.03 * numeric.norm())
+        << what << ": analytic " << ours.norm() << ", difference " << numeric.norm();
+  }
+  /// `casting`: the first vertices, which cast the shadow.
+  void compare_positions(Eigen::Index casting, const std::string& what) {
+    for (const bool receiving : {false, true}) {
+      Matrix3Xd u = test::field(surface.X, 0.3);
+      (receiving ? u.leftCols(casting) : u.rightCols(u.cols() - casting)).setZero();
+      compare(
+          &u, VectorXd::Zero(kPhotoColumns), 0.1, [&](double) { return state; },
+          what + (receiving ? ", receiving" : ", casting"));
+    }
+  }
+  void compare_sun_and_camera(const std::string& what) {
+    const bool orthographic = state.camera.projection == Camera::Projection::orthographic;
+    for (int column = 0; column < kSpecular; ++column) {
+      if (column == kLogGain || column == kAmbient) continue;  // move no edge
+      if (orthographic && column == kMove + 2) continue;  // along the line of sight: nothing moves
+      const double h = column < 2    ? 0.002
+                       : column == 2 ? 0.03
+                       : column < 5  ? 0.1
+                       : column == 5 ? 1.0
+                                     : 0.02;
+      compare(
+          nullptr, VectorXd::Unit(kPhotoColumns, column), h,
+          [&](double step) {
+            PhotoState s = state;
+            if (column < kLogGain) return test::with_camera(s, column, step);
+            s.sun[column - kSun] += step;
+            return s;
+          },
+          what + ", column " + std::to_string(column));
+    }
+  }
+
+  bool everywhere = false;  ///< false: pixels about the shadow's edge that see no rim
+};
+
+TEST_F(ShadowEdge, of_a_ball_on_another) {
+  compare_positions(test::sphere(small_centre, small_radius, 4).X.cols(), "balls");
+  compare_sun_and_camera("balls");
+}
+
+TEST_F(ShadowEdge, before_other_cameras) {
+  state.camera = test::camera(Camera::Projection::perspective, true);
+  compare_sun_and_camera("distorted");
+  state.camera = test::camera(Camera::Projection::orthographic, false);
+  compare_sun_and_camera("orthographic");
+}
+
+TEST_F(ShadowEdge, of_a_wall_on_its_plate) {
+  surface = plate_with_wall();
+  renderer = Renderer(surface);
+  options.smooth_normals = false;
+  state.sun = Vector3d(-0.5, 0.3, -0.6);
+  everywhere = true;
+  compare_positions(4, "wall");
+  compare_sun_and_camera("wall");
 }
 
 }  // namespace

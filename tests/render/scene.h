@@ -167,4 +167,16 @@ inline VectorXd directional(const Renderer& renderer, const Rendering& r, const 
   return out;
 }
 
+/// Sums over blocks of 8 x 8 pixels, for edges: a finite ray pattern counts coverage in steps,
+/// which sums along an edge even out. Values that are not finite count as zero.
+inline VectorXd block_sums(const VectorXd& pixels, int width, int height) {
+  constexpr int kBlockPx = 8;
+  const int columns = (width + kBlockPx - 1) / kBlockPx, rows = (height + kBlockPx - 1) / kBlockPx;
+  VectorXd out = VectorXd::Zero(columns * rows);
+  for (int i = 0; i < pixels.size(); ++i)
+    if (std::isfinite(pixels[i]))
+      out[i / width / kBlockPx * columns + i % width / kBlockPx] += pixels[i];
+  return out;
+}
+
 }  // namespace hookeye::test

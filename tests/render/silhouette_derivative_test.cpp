@@ -1,22 +1,11 @@
-// The contour term: sums over blocks of pixels along the edges, since a finite ray pattern counts
-// coverage in steps. 16 x 16 rays a pixel and steps of a good part of a pixel.
+// The contour term: sums over blocks of pixels along the edges (block_sums), 16 x 16 rays a pixel
+// and steps of a good part of a pixel.
 #include "render/renderer.h"
 #include "scene.h"
 #include "support/derivative.h"
 
 namespace hookeye {
 namespace {
-
-constexpr int kBlockPx = 8;
-
-VectorXd block_sums(const VectorXd& pixels, int width, int height) {
-  const int columns = (width + kBlockPx - 1) / kBlockPx, rows = (height + kBlockPx - 1) / kBlockPx;
-  VectorXd out = VectorXd::Zero(columns * rows);
-  for (int i = 0; i < pixels.size(); ++i)
-    if (std::isfinite(pixels[i]))
-      out[i / width / kBlockPx * columns + i % width / kBlockPx] += pixels[i];
-  return out;
-}
 
 struct Contours : testing::Test {
   // A small bright ball before a large dark one: outer contours and one within the body.
@@ -44,8 +33,8 @@ struct Contours : testing::Test {
   void compare(const VectorXd& analytic, const std::function<VectorXd(double)>& f, double h,
                const std::string& what) {
     const int w = state.camera.width, height = state.camera.height;
-    const VectorXd numeric = block_sums((f(h) - f(-h)) / (2 * h), w, height);
-    const VectorXd ours = block_sums(analytic, w, height);
+    const VectorXd numeric = test::block_sums((f(h) - f(-h)) / (2 * h), w, height);
+    const VectorXd ours = test::block_sums(analytic, w, height);
     ASSERT_GT(numeric.norm(), 0) << what;
     EXPECT_LT((numeric - ours).norm(), 0.02 * numeric.norm())
         << what << ": analytic " << ours.norm() << ", difference " << numeric.norm();
@@ -191,8 +180,7 @@ TEST_F(Contours, before_a_picture) {
 TEST_F(Contours, lit) {
   state.shaded = true;
   state.specular = 0.0;
-  // Held constant (render/README.md): where shadows fall, the jump of the sky's share at facets.
-  options.cast_shadows = false;
+  // Held constant (render/README.md): the jump of the sky's share at facets.
   const double ambient = std::exchange(state.ambient, 0.0);
   compare_positions("lit");
   // Light and exposure, at the rim too.
