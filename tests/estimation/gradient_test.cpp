@@ -90,7 +90,7 @@ TEST(Gradient, IsThatOfTheMisfitByEverythingLeftOpen) {
           return VectorXd::Constant(1, misfit(p + t * VectorXd::Unit(p.size(), i)));
         },
         // the sky's share of each vertex is held constant, and rims are passed ray by ray
-        VectorXd::Constant(1, 2.0 * sums.Jtr[i]), h, 0.1, one.name);
+        VectorXd::Constant(1, 2.0 * sums.Jtr[i]), h, 0.05, one.name);
     ++checked;
   }
   EXPECT_EQ(checked, 2 + 6 + 4 + 6);
