@@ -30,7 +30,7 @@ bool already_in(const ModelForm& form, const std::string& name) {
 
 std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisOptions& options,
                                           std::vector<EffectScore>& idle) {
-  const Model model = fitted.form.realise(fitted.p);
+  const Model model = realised(fitted);
   std::vector<Candidate> all;
   int column = fitted.form.size();
   std::vector<const Effect*> tested = catalogue();

@@ -25,6 +25,11 @@ std::shared_ptr<const Ingredient> Effect::smaller_form(const Model&, const Ingre
   return nullptr;
 }
 
+std::shared_ptr<const Ingredient> Effect::plainer_form(const Model&, const Ingredient&,
+                                                       Eigen::VectorXd&) const {
+  return nullptr;
+}
+
 std::shared_ptr<const Ingredient> Effect::refit_form(const Model&,
                                                      std::shared_ptr<const Ingredient> scored,
                                                      Eigen::VectorXd&) const {

@@ -49,6 +49,12 @@ class Effect {
   virtual std::shared_ptr<const Ingredient> smaller_form(const Model& model,
                                                          const Ingredient& refitted,
                                                          Eigen::VectorXd& values) const;
+  /// The same form without numbers that may turn out to be nothing: a tilt, a lamp's strength
+  /// beside its angles. `values` are moved to it. It is kept where they do not pay for themselves.
+  /// Null: none; the default.
+  virtual std::shared_ptr<const Ingredient> plainer_form(const Model& model,
+                                                         const Ingredient& refitted,
+                                                         Eigen::VectorXd& values) const;
   /// Whether the form of this variant lives on another mesh than the capture tells; then
   /// refit_scene() makes the scene to fit on, from the capture of `scene`.
   virtual bool remeshes(const std::string& variant) const;

@@ -248,6 +248,13 @@ std::variant<Fitted, NumericalFailure> fit_from(Workspace& workspace, const Mode
 
 }  // namespace
 
+Model realised(const Fitted& fitted) {
+  Model model = fitted.form.realise(fitted.p);
+  for (const auto& example : fitted.evaluation.examples)
+    if (!example.held_out) model.states.push_back(example.equilibrium);
+  return model;
+}
+
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");

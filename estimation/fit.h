@@ -64,6 +64,9 @@ struct Fitted {
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// The fitted model with the deformed states of its fitted examples.
+Model realised(const Fitted& fitted);
+
 /// Least squares over photos, forces, moments and positions of the fitted examples, from `start`.
 /// Where that ends pictures apart by more than their patterns span, or the start has no
 /// equilibrium, moduli that were told wrong by up to two orders of magnitude are looked for and it

@@ -36,6 +36,7 @@ struct ExampleModel {
 };
 
 class Ingredient;
+struct Equilibrium;
 
 /// The realised model: what equilibrium and rendering need. Ingredients write into it.
 struct Model {
@@ -50,6 +51,9 @@ struct Model {
   Vector3d gravity = Vector3d::Zero();
   /// What has been written into it, in order: enough to make the same model of another scene.
   std::vector<std::pair<std::shared_ptr<const Ingredient>, VectorXd>> applied;
+  /// Deformed states of the fitted examples, where they are known (realised() in fit.h): where
+  /// effects look for what the body reaches. Realising solves nothing and leaves it empty.
+  std::vector<std::shared_ptr<const Equilibrium>> states;
   /// Energy of example e: energy with all weights times examples[e].stiffness.
   EnergyModel energy_of(int example) const;
 };
@@ -66,7 +70,6 @@ struct MechanicsDerivative {
   VectorXd dR_dt;   ///< 3n
   VectorXd dqc_dt;  ///< by loading.prescribed
 };
-struct Equilibrium;
 
 /// A group of parameters with one meaning: the material, the light, an added effect. Immutable.
 class Ingredient {

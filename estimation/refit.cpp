@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "estimation/discover.h"
 
 namespace hookeye {
 
@@ -32,7 +35,7 @@ struct Extension {
     VectorXd nulls(score.values.size());
     for (int i = 0; i < nulls.size(); ++i) nulls[i] = scored[i].value;
     VectorXd values = nulls + share * (score.values - nulls);
-    const Model model = current.form.realise(current.p);
+    const Model model = realised(current);
     auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values);
     if (remeshed_by(*ingredient)) {  // what the other mesh changes, linear, stands for it here
       ingredient = score.best;
@@ -102,35 +105,85 @@ std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, con
   return fit(workspace, form, all, warm(options));
 }
 
+/// `fitted` with another form of its last effect, which `change` makes of the present one and the
+/// model before it. Empty: it makes none.
+std::optional<std::pair<ModelForm, VectorXd>> with_other_form(
+    const Fitted& fitted,
+    std::shared_ptr<const Ingredient> (Effect::*change)(const Model&, const Ingredient&,
+                                                        VectorXd& values) const) {
+  const Ingredient& last = *fitted.form.ingredients.back();
+  const auto own = static_cast<Eigen::Index>(last.parameters().size());
+  const VectorXd before = fitted.p.head(fitted.p.size() - own);
+  ModelForm other = fitted.form;
+  other.ingredients.pop_back();
+  VectorXd values = fitted.p.tail(own);
+  auto form = (find_effect(last.name())->*change)(other.realise(before), last, values);
+  if (!form) return std::nullopt;
+  const auto parameters = form->parameters();
+  for (int i = 0; i < values.size(); ++i)
+    values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
+  other.ingredients.push_back(std::move(form));
+  VectorXd there(before.size() + values.size());
+  there << before, values;
+  return std::pair{std::move(other), std::move(there)};
+}
+
+/// One of the last effect's numbers that `plainer` does without is off its null by more than five
+/// standard deviations: that is worth 25/2 of log-likelihood, and two numbers cost log N.
+bool pays_for_itself(const Fitted& fitted, const Ingredient& plainer) {
+  constexpr double kDeviations = 5.0;
+  const auto kept = plainer.parameters(), all = fitted.form.ingredients.back()->parameters();
+  const Eigen::Index first = fitted.p.size() - static_cast<Eigen::Index>(all.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (std::any_of(kept.begin(), kept.end(), [&](auto& p) { return p.name == all[i].name; }))
+      continue;
+    const Eigen::Index k = first + static_cast<Eigen::Index>(i);
+    const double deviation = 0.5 * (fitted.high[k] - fitted.low[k]) / kNormal95;
+    if (std::abs(fitted.p[k] - all[i].value) > kDeviations * deviation) return true;
+  }
+  return false;
+}
+
+/// The plainer form of the last effect where what it does without does not pay for itself
+/// (refit_score), else `fitted`.
+std::variant<Fitted, NumericalFailure> fit_plainest(Workspace& workspace, Fitted fitted,
+                                                    const FitOptions& options) {
+  const auto other = with_other_form(fitted, &Effect::plainer_form);
+  if (!other || pays_for_itself(fitted, *other->first.ingredients.back())) return fitted;
+  auto second = fit(workspace, other->first, other->second, warm(options));
+  if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
+    if (cancelled(*failure)) return *failure;
+    return fitted;
+  }
+  const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
+  const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
+  return refit_score(std::get<Fitted>(second), yardstick) >= refit_score(fitted, yardstick)
+             ? second
+             : fitted;
+}
+
 /// Fits; then the smaller form of the last effect, where it has one, from where the larger ended.
-/// The smaller one is kept where it misses no more.
+/// The smaller one is kept where it misses no more. The plainer form of either comes last.
 std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const ModelForm& form,
                                                     const VectorXd& start,
                                                     const FitOptions& options) {
   auto result = fit(workspace, form, start, warm(options));
-  const auto* larger = std::get_if<Fitted>(&result);
+  auto* larger = std::get_if<Fitted>(&result);
   if (!larger) return result;
-  const Ingredient& refitted = *form.ingredients.back();
-  const auto own = static_cast<Eigen::Index>(refitted.parameters().size());
-  const VectorXd before = larger->p.head(larger->p.size() - own);
-  ModelForm other = larger->form;
-  other.ingredients.pop_back();
-  VectorXd values = larger->p.tail(own);
-  const auto smaller =
-      find_effect(refitted.name())->smaller_form(other.realise(before), refitted, values);
-  if (!smaller) return result;
-  other.ingredients.push_back(smaller);
-  VectorXd there(before.size() + values.size());
-  there << before, values;
-  auto second = fit(workspace, other, there, options);  // far from there: coarse to fine
+  const auto other = with_other_form(*larger, &Effect::smaller_form);
+  if (!other) return fit_plainest(workspace, std::move(*larger), options);
+  // far from there: coarse to fine
+  auto second = fit(workspace, other->first, other->second, options);
   if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
     if (cancelled(*failure)) return *failure;
-    return result;
+    return fit_plainest(workspace, std::move(*larger), options);
   }
   const auto misfit = [](const Fitted& one) {
     return one.evaluation.chi(false) + one.evaluation.chi(true);
   };
-  return misfit(std::get<Fitted>(second)) <= misfit(*larger) ? second : result;
+  Fitted& smaller = std::get<Fitted>(second);
+  return fit_plainest(workspace, std::move(misfit(smaller) <= misfit(*larger) ? smaller : *larger),
+                      options);
 }
 
 /// After its second step, or where it stands if there is none.

@@ -1,5 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -9,26 +14,175 @@ namespace {
 /// Distances of the planes from the rest body, in parts of its size.
 const double kGaps[] = {0.005, 0.05, 0.15};
 const char* const kSides[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
+/// Part of the size that the body has to move outward before a plane between the axes is tried, half
+/// of it behind the plane: five times the depth over which its force sets in (smoothing).
+constexpr double kLeastTravel = 0.02;
+/// Half a step of the grid of directions [rad], 36 degrees at most: nearer to an axis than that, a
+/// fitted plane is asked whether it is normal to it.
+constexpr double kHalfStep = 0.314;
 
 /// Side of the body on which the floor stands: outward direction.
 Vector3d outward(int side) { return (side % 2 == 0 ? 1.0 : -1.0) * Vector3d::Unit(side / 2); }
 
-/// Distance of the body's outermost rest point along a side, from the origin.
-double reach(const Scene& scene, int side) {
-  const BodySize body = body_size(scene);
-  return side % 2 == 0 ? body.high[side / 2] : -body.low[side / 2];
+/// Distance of the body's outermost rest point along a direction, from the origin.
+double reach(const Scene& scene, const Vector3d& direction) {
+  return (direction.transpose() * scene.body->mesh.X).maxCoeff();
 }
 
 double smoothing(const Scene& scene) { return 0.002 * body_size(scene).size; }
 
-std::shared_ptr<const ForceTerm> plane(const Model& model, int side, double position, double k) {
-  return floor_contact(model.scene->body->mesh, position * outward(side), -outward(side), k,
+double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)) + 0.0; }
+
+/// Rounded to the fourth digit of `size`.
+Vector3d rounded(const Vector3d& x, double size) {
+  const double step = std::pow(10.0, std::floor(std::log10(size)) - 3.0);
+  Vector3d out;
+  for (int i = 0; i < 3; ++i) out[i] = rounded(std::round(x[i] / step) * step);
+  return out;
+}
+
+/// A half space that is not free, behind the plane through `through`; `out` points into it.
+struct Plane {
+  Vector3d out, through;
+};
+
+std::shared_ptr<const ForceTerm> force_of(const Model& model, const Plane& plane, double k) {
+  return floor_contact(model.scene->body->mesh, plane.through, -plane.out, k,
                        smoothing(*model.scene));
+}
+
+void stand(Model& model, const Plane& plane, double k) {
+  const auto force = force_of(model, plane, k);
+  for (auto& example : model.examples) example.loading.forces.push_back(force);
+}
+
+/// Directions between the axes: the other 36 of the 42 corners and middles of edges of an
+/// icosahedron that stands on a middle. Any direction is within 21 degrees of one or of an axis.
+std::vector<Vector3d> between_axes() {
+  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
+  std::vector<Vector3d> all;
+  const auto add = [&](const Vector3d& first) {
+    for (int turn = 0; turn < 3; ++turn)
+      for (int signs = 0; signs < 8; ++signs) {
+        Vector3d d(first[turn], first[(turn + 1) % 3], first[(turn + 2) % 3]);
+        bool twice = false;  // a zero has no sign
+        for (int i = 0; i < 3; ++i)
+          if (signs >> i & 1) twice = twice || d[i] == 0.0, d[i] = -d[i];
+        if (!twice) all.push_back(d);
+      }
+  };
+  add({0.0, 1.0, golden});
+  add({1.0, golden, golden * golden});
+  for (Vector3d& d : all) d = rounded(d.normalized(), 1.0);
+  return all;
+}
+
+/// "(0.851, 0.526, 0)".
+std::string digits(const Vector3d& v) {
+  return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
+}
+
+/// A plane of the scores: normal to an axis ("at +x side"), or to another direction.
+struct Scored {
+  Vector3d out;
+  double position;  ///< along `out` [length]
+  std::string text;
+};
+
+Scored on_side(int side, double position) {
+  position = rounded(position);
+  return {outward(side), position,
+          fmt::format("plane at {} side, position {:g}", kSides[side], position)};
+}
+
+Scored towards(const Vector3d& direction, double position) {
+  position = rounded(position);
+  return {direction.normalized(), position,
+          fmt::format("plane towards {}, position {:g}", digits(direction), position)};
+}
+
+std::optional<Scored> scored_in(const std::string& variant) {
+  const auto n = numbers_in(variant);
+  for (int side = 0; side < 6; ++side)
+    if (starts_with(variant, fmt::format("plane at {} side", kSides[side])) && n.size() == 1)
+      return on_side(side, n[0]);
+  if (!starts_with(variant, "plane towards") || n.size() != 4) return std::nullopt;
+  const Vector3d direction(n[0], n[1], n[2]);
+  return direction.norm() > 0.0 ? std::optional(towards(direction, n[3])) : std::nullopt;
+}
+
+/// A plane of the refits: it stands along `out` on the line through `about` and, where it may tilt,
+/// does so about that place. Normal to an axis it may also be told by its side, without tilt.
+struct Form {
+  bool hard = false, tilts = false;
+  int side = -1;  ///< -1: tilts
+  Vector3d out = Vector3d::Zero(), about = Vector3d::Zero();
+
+  std::string variant() const {
+    const char* kind = hard ? "hard plane" : "cushion";
+    if (!tilts) return fmt::format("{} on side {}", kind, kSides[side]);
+    return fmt::format("{} towards {}, tilting about {}", kind, digits(out), digits(about));
+  }
+  /// `values`: position, stiffness of a cushion, two tilts.
+  Plane plane(const VectorXd& values) const {
+    const Vector3d along = out.normalized();
+    const Vector3d there = about + (values[0] - along.dot(about)) * along;
+    if (!tilts) return {along, there};
+    const auto [a, b] = normal_axes(along);
+    const auto tilt = values.tail<2>();
+    return {rotation_of(tilt[0] * a + tilt[1] * b) * along, there};
+  }
+};
+
+std::optional<Form> form_in(const std::string& variant) {
+  for (const bool hard : {false, true}) {
+    Form form{.hard = hard};
+    for (form.side = 0; form.side < 6; ++form.side) {
+      form.out = outward(form.side);
+      if (variant == form.variant()) return form;
+    }
+    const auto n = numbers_in(variant);
+    if (n.size() != 6) continue;
+    form = {hard, true, -1, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (variant == form.variant() && form.out.norm() > 0.0) return form;
+  }
+  return std::nullopt;
+}
+
+/// How far outward the body moves along `direction` in each fitted example, the farthest first.
+std::vector<double> travels(const Model& model, const Vector3d& direction) {
+  const TetMesh& mesh = model.scene->body->mesh;
+  const double rest = reach(*model.scene, direction);
+  std::vector<double> all;
+  for (const auto& state : model.states)
+    if (state && state->q.size() == mesh.X.size())
+      all.push_back((direction.transpose() * state->q.reshaped(3, mesh.nodes())).maxCoeff() - rest);
+  std::sort(all.rbegin(), all.rend());
+  return all;
+}
+
+/// Where the known states press against the plane, in the mean weighted by depth; what is next to
+/// the plane of the rest body's middle, where none does.
+Vector3d pressed(const Model& model, const Scored& scored) {
+  const TetMesh& mesh = model.scene->body->mesh;
+  Vector3d sum = Vector3d::Zero();
+  double weight = 0.0;
+  for (const auto& state : model.states) {
+    if (!state || state->q.size() != mesh.X.size()) continue;
+    const auto x = state->q.reshaped(3, mesh.nodes());
+    for (int node = 0; node < mesh.nodes(); ++node) {
+      const double depth = scored.out.dot(x.col(node)) - scored.position;
+      if (depth > 0.0) sum += depth * x.col(node), weight += depth;
+    }
+  }
+  const BodySize body = body_size(*model.scene);
+  const Vector3d centre = weight > 0.0 ? Vector3d(sum / weight) : body.centre;
+  return rounded(centre - (scored.out.dot(centre) - scored.position) * scored.out, body.size);
 }
 
 /// Something flat that the deformed body touches and was not told. Scored by the contact stiffness
 /// (slope at 0 where the present equilibrium reaches through the plane), refitted with a cushion of
-/// free position and stiffness, and from there with a hard floor, which has one number less.
+/// free position, tilt and stiffness, and from there with a hard floor, which has one number less.
 class FloorContact final : public Effect {
  public:
   std::string name() const override { return "floor_contact"; }
@@ -37,8 +191,10 @@ class FloorContact final : public Effect {
   std::string manual() const override {
     return "The deformed body touches a table, a wall or a jaw that was not told. Easily taken "
            "for stiffening or for a misaligned load; it changes only the examples that reach "
-           "the plane. Refitted as a cushion of free position and stiffness, and as a hard floor, "
-           "which stays where it explains as much.";
+           "the plane. Beside planes normal to the axes, 36 directions between them are tried "
+           "where the deformed body moves outward. Refitted as a cushion of free position, tilt "
+           "and stiffness, and as a hard floor, which stays where it explains as much; so does a "
+           "plane normal to an axis.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -46,42 +202,61 @@ class FloorContact final : public Effect {
     Ingredients all;
     for (int side = 0; side < 6; ++side)
       for (double gap : kGaps)
-        all.push_back(soft(model, side, reach(*model.scene, side) + gap * size));
+        all.push_back(soft(model, on_side(side, reach(*model.scene, outward(side)) + gap * size)));
+    if (model.states.empty()) return all;
+    // Half-way to where each example moves, but for those that reach such a plane already.
+    for (const Vector3d& direction : between_axes()) {
+      const Vector3d unit = direction.normalized();
+      double gap = std::numeric_limits<double>::infinity();
+      for (const double travel : travels(model, unit)) {
+        if (travel < kLeastTravel * size) break;
+        if (travel > gap) continue;
+        gap = 0.5 * travel;
+        all.push_back(soft(model, towards(direction, reach(*model.scene, unit) + gap)));
+      }
+    }
     return all;
   }
 
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    for (int side = 0; side < 6; ++side) {
-      const std::string label = fmt::format("plane at {}", kSides[side]);
-      const auto n = numbers_in(variant);
-      if (starts_with(variant, label) && n.size() == 1) return soft(model, side, n[0]);
-      if (variant == cushion_on(side)) return cushion(model, side);
-      if (variant == hard_on(side)) return hard(model, side);
-    }
+    if (const auto scored = scored_in(variant)) return soft(model, *scored);
+    if (const auto form = form_in(variant)) return refitted(model, *form);
     return nullptr;
   }
 
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
-    const auto n = numbers_in(scored->variant());
-    for (int side = 0; side < 6; ++side)
-      if (starts_with(scored->variant(), fmt::format("plane at {}", kSides[side])) &&
-          n.size() == 1) {
-        values = Eigen::Vector2d(n[0], values[0]);
-        return cushion(model, side);
-      }
-    return scored;
+    const auto plane = scored_in(scored->variant());
+    if (!plane) return scored;
+    values = Eigen::Vector4d(plane->position, values[0], 0.0, 0.0);
+    const Vector3d out = rounded(plane->out, 1.0);
+    return refitted(model, {false, true, -1, out, pressed(model, *plane)});
   }
 
-  std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
+  std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& larger,
                                                  VectorXd& values) const override {
-    for (int side = 0; side < 6; ++side)
-      if (refitted.variant() == cushion_on(side)) {
-        values.conservativeResize(1);
-        return hard(model, side);
-      }
+    auto form = form_in(larger.variant());
+    if (!form || form->hard) return nullptr;
+    form->hard = true;
+    const VectorXd cushion = values;
+    values.resize(form->tilts ? 3 : 1);
+    values << cushion[0], cushion.tail(values.size() - 1);
+    return refitted(model, *form);
+  }
+
+  std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& larger,
+                                                 VectorXd& values) const override {
+    const auto form = form_in(larger.variant());
+    if (!form || !form->tilts) return nullptr;
+    const Plane plane = form->plane(values);
+    for (int side = 0; side < 6; ++side) {
+      if (plane.out.dot(outward(side)) < std::cos(kHalfStep)) continue;
+      values.conservativeResize(values.size() - 2);
+      values[0] = plane.through.dot(outward(side));
+      return refitted(model, {form->hard, false, side, outward(side)});
+    }
     return nullptr;
   }
 
@@ -89,96 +264,86 @@ class FloorContact final : public Effect {
                        const VectorXd& values) const override {
     const std::string length = model.scene->capture.units.length;
     const std::string unit = model.scene->capture.units.stress() + "/" + length;
-    for (int side = 0; side < 6; ++side) {
-      const bool soft = ingredient.variant() == cushion_on(side);
-      if (soft || ingredient.variant() == hard_on(side))
-        return fmt::format(
-            "the body touches a {} on its {} side, {} {} from where it ends at rest{}",
-            soft ? "cushion" : "plane", kSides[side], figure(values[0] - reach(*model.scene, side)),
-            length, soft ? fmt::format(" (stiffness {} {})", figure(values[1]), unit) : "");
-    }
-    return fmt::format("the body touches a {} (contact stiffness {} {})", ingredient.variant(),
-                       figure(values[0]), unit);
+    const auto form = form_in(ingredient.variant());
+    if (!form)
+      return fmt::format("the body touches a {} (contact stiffness {} {})", ingredient.variant(),
+                         figure(values[0]), unit);
+    const Plane plane = form->plane(values);
+    const double gap = plane.out.dot(plane.through) - reach(*model.scene, plane.out);
+    const std::string side = form->tilts
+                                 ? fmt::format("its side towards {}", vector_text(plane.out))
+                                 : fmt::format("its {} side", kSides[form->side]);
+    const std::string place =
+        form->tilts ? fmt::format(", around ({}, {}, {})", figure(plane.through.x()),
+                                  figure(plane.through.y()), figure(plane.through.z()))
+                    : "";
+    return fmt::format(
+        "the body touches a {} on {}, {} {} from where it ends at rest{}{}",
+        form->hard ? "plane" : "cushion", side, figure(gap), length, place,
+        form->hard ? "" : fmt::format(" (stiffness {} {})", figure(values[1]), unit));
   }
 
  private:
-  static std::string hard_on(int side) {
-    return fmt::format("hard plane on side {}", kSides[side]);
-  }
-  static std::string cushion_on(int side) {
-    return fmt::format("cushion on side {}", kSides[side]);
-  }
-
-  std::shared_ptr<const Ingredient> soft(const Model& model, int side, double position) const {
-    position = std::stod(fmt::format("{:.5g}", position));
+  std::shared_ptr<const Ingredient> soft(const Model& model, const Scored& scored) const {
     const double mu = initial_shear_modulus(model.energy);
     const double size = body_size(*model.scene).size;
     const Units& units = model.scene->capture.units;
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = fmt::format("plane at {} side, position {:g}", kSides[side], position);
+    spec.variant = scored.text;
     spec.parameters = {{"floor_contact.k", units.stress() + "/" + units.length, "contact stiffness",
                         0.0, 0.0, 1e4 * mu / size, 0.1 * mu / size, false}};
     spec.touches = {.loading = true};
-    spec.apply = [side, position](const VectorXd& k, Model& m) {
-      const auto force = plane(m, side, position, k[0]);
-      for (auto& example : m.examples) example.loading.forces.push_back(force);
-    };
-    spec.derivative = [side, position](const VectorXd&, const Model& m, int,
-                                       const Equilibrium& equilibrium, int,
-                                       MechanicsDerivative& out) {
+    const Plane plane{scored.out, scored.position * scored.out};
+    spec.apply = [plane](const VectorXd& k, Model& m) { stand(m, plane, k[0]); };
+    spec.derivative = [plane](const VectorXd&, const Model& m, int, const Equilibrium& equilibrium,
+                              int, MechanicsDerivative& out) {
       Loading alone;  // linear in k
-      alone.forces.push_back(plane(m, side, position, 1.0));
+      alone.forces.push_back(force_of(m, plane, 1.0));
       out.dR_dt = residual(m.scene->body->mesh, EnergyModel{}, alone, equilibrium.q);
       return true;
     };
     return make_ingredient(std::move(spec));
   }
 
-  static Parameter position(const Scene& scene, int side) {
-    const double size = body_size(scene).size, rest = reach(scene, side);
+  /// A plane that tilts may pass a fifth of the size inside the outermost point: as far as one
+  /// through the middle of a face does that is half a step of the grid off.
+  static Parameter position(const Scene& scene, const Form& form) {
+    const double size = body_size(scene).size, rest = reach(scene, form.out.normalized());
     return {"floor_contact.position",
             scene.capture.units.length,
-            fmt::format("where the plane stands along {}", kSides[side]),
+            fmt::format("where the plane stands along {}",
+                        form.tilts ? digits(form.out) : kSides[form.side]),
             rest + 0.05 * size,
-            rest - 0.02 * size,
+            rest - (form.tilts ? 0.2 : 0.02) * size,
             rest + size,
             0.01 * size,
             false};
   }
 
-  std::shared_ptr<const Ingredient> cushion(const Model& model, int side) const {
+  std::shared_ptr<const Ingredient> refitted(const Model& model, const Form& form) const {
     const Scene& scene = *model.scene;
     const Units& units = scene.capture.units;
     const double k = 0.1 * initial_shear_modulus(model.energy) / body_size(scene).size;
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = cushion_on(side);
+    spec.variant = form.variant();
     spec.has_null = false;
-    spec.parameters = {position(scene, side),
-                       {"floor_contact.k", units.stress() + "/" + units.length, "contact stiffness",
-                        k, 1e-4 * k, 1e5 * k, k, true}};
+    spec.parameters = {position(scene, form)};
+    if (!form.hard)
+      spec.parameters.push_back({"floor_contact.k", units.stress() + "/" + units.length,
+                                 "contact stiffness", k, 1e-4 * k, 1e5 * k, k, true});
+    for (int i = 0; form.tilts && i < 2; ++i) {
+      const auto axes = normal_axes(form.out);
+      spec.parameters.push_back(
+          {fmt::format("floor_contact.tilt{}", i + 1), "rad",
+           fmt::format("turn of the plane about {}", vector_text(i ? axes.second : axes.first)),
+           0.0, -0.8, 0.8, 0.05, false});
+    }
     spec.touches = {.loading = true};
-    spec.apply = [side](const VectorXd& values, Model& m) {
-      const auto force = plane(m, side, values[0], values[1]);
-      for (auto& example : m.examples) example.loading.forces.push_back(force);
-    };
-    return make_ingredient(std::move(spec));
-  }
-
-  std::shared_ptr<const Ingredient> hard(const Model& model, int side) const {
-    const Scene& scene = *model.scene;
-    // A traction of mu/5 sinks in by 0.2 % of the size.
-    const double k = 100.0 * initial_shear_modulus(model.energy) / body_size(scene).size;
-    IngredientSpec spec;
-    spec.name = name();
-    spec.variant = hard_on(side);
-    spec.has_null = false;
-    spec.parameters = {position(scene, side)};
-    spec.touches = {.loading = true};
-    spec.apply = [side, k](const VectorXd& values, Model& m) {
-      const auto force = plane(m, side, values[0], k);
-      for (auto& example : m.examples) example.loading.forces.push_back(force);
+    // A traction of mu/5 sinks into a hard one by 0.2 % of the size.
+    spec.apply = [form, hard = 1e3 * k](const VectorXd& values, Model& m) {
+      stand(m, form.plane(values), form.hard ? hard : values[1]);
     };
     return make_ingredient(std::move(spec));
   }

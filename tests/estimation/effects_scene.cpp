@@ -198,6 +198,16 @@ VectorXd signature(const Model& model, const VectorXd& q) {
   return Eigen::Map<VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
+Model with_states(Model model) {
+  for (size_t e = 0; e < model.examples.size(); ++e) {
+    if (model.scene->capture.examples[e].validate) continue;
+    auto solved = solve_equilibrium(model.scene->body->mesh, model.energy_of(static_cast<int>(e)),
+                                    model.examples[e].loading);
+    model.states.push_back(std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved))));
+  }
+  return model;
+}
+
 ModelForm extended(const ModelForm& base, std::shared_ptr<const Ingredient> ingredient) {
   ModelForm form = base;
   form.ingredients.push_back(std::move(ingredient));

@@ -22,6 +22,9 @@ VectorXd deformed_state(const Scene& scene);
 /// told motions, photo numbers, sensor offsets, placement.
 VectorXd signature(const Model& model, const VectorXd& q);
 
+/// The model with the equilibria of its fitted examples, as a diagnosis shows it to the catalogue.
+Model with_states(Model model);
+
 /// Base model of the scene with one more ingredient at the end.
 ModelForm extended(const ModelForm& base, std::shared_ptr<const Ingredient> ingredient);
 /// Values of `form`: base at its start, the last ingredient at `values`.
