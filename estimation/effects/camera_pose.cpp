@@ -43,10 +43,11 @@ class CameraPose final : public Effect {
     for (int i = 0; i < 6; ++i) {
       const bool turn = i < 3;
       spec.parameters.push_back(
-          {fmt::format("camera_pose.{}.{}{}", camera.name, turn ? "r" : "t", "xyz"[i % 3]),
+          {fmt::format("{}{}{}", parameter_prefix(name(), camera.name, first.text),
+                       turn ? "r" : "t", "xyz"[i % 3]),
            turn ? "rad" : model.scene->capture.units.length,
-           fmt::format("{} of camera '{}' {} its {} axis", turn ? "rotation" : "motion",
-                       camera.name, turn ? "about" : "along", "xyz"[i % 3]),
+           fmt::format("{} of camera '{}' {} its {} axis, {}", turn ? "rotation" : "motion",
+                       camera.name, turn ? "about" : "along", "xyz"[i % 3], first.text),
            0.0, turn ? -1.0 : -10.0 * size, turn ? 1.0 : 10.0 * size, turn ? 0.002 : 0.01 * size,
            false});
     }

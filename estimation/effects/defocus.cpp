@@ -38,9 +38,10 @@ class Defocus final : public Effect {
     IngredientSpec spec;
     spec.name = name();
     spec.variant = camera + " " + first.text;
-    spec.parameters = {{fmt::format("defocus.{}", camera), "px^2",
-                        fmt::format("blur variance of '{}' {}", camera, first.text), 0.0, 0.0,
-                        400.0, 0.5, false}};
+    std::string own = parameter_prefix(name(), camera, first.text);
+    own.pop_back();  // the dot: one number
+    spec.parameters = {{own, "px^2", fmt::format("blur variance of '{}' {}", camera, first.text),
+                        0.0, 0.0, 400.0, 0.5, false}};
     spec.touches = {.photos = true};
     const int k = first.index;
     spec.apply = [camera, k](const VectorXd& values, Model& m) {

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -33,8 +36,17 @@ std::vector<Stretch> stretches(const Scene& scene, const std::function<bool(int)
   return out;
 }
 
-/// The sun's direction turned about two axes normal to it, or the ambient level raised, from some
-/// example on or in one.
+/// The forms, as variants begin: the lamp's direction turned about two axes normal to it, its
+/// strength alone, both at once (of the refit), and the ambient level raised.
+const char* const kSun = "sun ";
+const char* const kStrength = "strength ";
+const char* const kLamp = "lamp ";
+const char* const kAmbient = "ambient ";
+
+/// What follows one of them in a variant: "from twist on".
+std::string when(const std::string& variant) { return variant.substr(variant.find(' ') + 1); }
+
+/// Light that is other than told from some example on or in one.
 class LightDirection final : public Effect {
  public:
   std::string name() const override { return "light_direction"; }
@@ -42,52 +54,105 @@ class LightDirection final : public Effect {
   std::string title() const override { return "the light changed"; }
   bool several() const override { return true; }
   std::string manual() const override {
-    return "The lamp stands elsewhere than told, or it was moved, or the room grew brighter, from "
-           "some example on or in one alone. Easily taken for exposure; it follows the surface's "
-           "normals, so that "
-           "bending and twisting of the body are weakly like it.";
+    return "The lamp stands elsewhere than told, is stronger or weaker, or it was moved, or the "
+           "room grew brighter, from some example on or in one alone. Refitted with direction and "
+           "strength together, of which what is nothing is dropped. Easily taken for exposure; it "
+           "follows the surface's normals, so that bending and twisting of the body are weakly "
+           "like it.";
   }
 
   Ingredients candidates(const Model& model, std::string* why_not) const override {
-    const Scene& scene = *model.scene;
     Ingredients all;
-    for (const auto& where : stretches(scene, [&](int e) { return any_sun(model.examples[e]); }))
-      all.push_back(turned_sun(where));
+    const auto lit = sun_stretches(model);
+    for (const auto& where : lit) all.push_back(lamp(kSun, where));
     auto shaded = [&](int e) {
       const auto& photos = model.examples[e].photos;
       return !photos.empty() && photos.front().shaded;
     };
-    for (const auto& where : stretches(scene, shaded)) all.push_back(raised_ambient(where));
+    for (const auto& where : stretches(*model.scene, shaded)) all.push_back(raised_ambient(where));
+    for (const auto& where : lit) all.push_back(lamp(kStrength, where));
     if (all.empty() && why_not) *why_not = "no photo is shaded by a light of the model";
     return all;
   }
 
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
+                                            const std::string& variant) const override {
+    for (const char* kind : {kSun, kStrength, kLamp})
+      if (starts_with(variant, kind))
+        for (const auto& where : sun_stretches(model))
+          if (where.text == when(variant)) return lamp(kind, where);
+    return nullptr;
+  }
+
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
+                                               std::shared_ptr<const Ingredient> scored,
+                                               VectorXd& values) const override {
+    const bool turned = starts_with(scored->variant(), kSun);
+    if (!turned && !starts_with(scored->variant(), kStrength)) return scored;
+    auto form = rebuild(model, kLamp + when(scored->variant()));
+    if (!form) return scored;
+    values = turned ? Vector3d(values[0], values[1], 0.0) : Vector3d(0.0, 0.0, values[0]);
+    return form;
+  }
+
+  /// Without what is nearer to nothing, in units of what counts as large.
+  std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& refitted,
+                                                 VectorXd& values) const override {
+    if (!starts_with(refitted.variant(), kLamp)) return nullptr;
+    const auto parameters = refitted.parameters();
+    const bool turned = values.head<2>().norm() / parameters[0].typical >=
+                        std::abs(values[2]) / parameters[2].typical;
+    values = turned ? VectorXd(values.head<2>()) : VectorXd(values.tail<1>());
+    return rebuild(model, (turned ? kSun : kStrength) + when(refitted.variant()));
+  }
+
   std::string sentence(const Model&, const Ingredient& ingredient,
                        const VectorXd& values) const override {
-    if (values.size() == 1)
-      return fmt::format("{} the ambient light is {} by {}", ingredient.variant().substr(8),
+    const std::string variant = ingredient.variant();
+    if (starts_with(variant, kAmbient))
+      return fmt::format("{} the ambient light is {} by {}", when(variant),
                          values[0] >= 0 ? "higher" : "lower", figure(std::abs(values[0])));
-    return fmt::format("{} the light comes from {} degrees beside the told direction",
-                       ingredient.variant().substr(4), figure(values.norm() * 180.0 / EIGEN_PI));
+    const std::string degrees =
+        figure(values.head(std::min<Eigen::Index>(2, values.size())).norm() * 180.0 / EIGEN_PI);
+    const double log_gain = values[values.size() - 1];
+    const std::string gain = fmt::format("{} % {}", figure(100.0 * std::abs(std::expm1(log_gain))),
+                                         log_gain >= 0 ? "stronger" : "weaker");
+    if (starts_with(variant, kStrength))
+      return fmt::format("{} the lamp is {} than told", when(variant), gain);
+    return fmt::format("{} the light comes from {} degrees beside the told direction{}",
+                       when(variant), degrees,
+                       starts_with(variant, kLamp) ? " and is " + gain : "");
   }
 
  private:
-  std::shared_ptr<const Ingredient> turned_sun(const Stretch& where) const {
+  static std::vector<Stretch> sun_stretches(const Model& model) {
+    return stretches(*model.scene, [&](int e) { return any_sun(model.examples[e]); });
+  }
+
+  std::shared_ptr<const Ingredient> lamp(const std::string& kind, const Stretch& where) const {
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = "sun " + where.text;
-    for (int i : {1, 2})
-      spec.parameters.push_back({fmt::format("light_direction.angle{}", i), "rad",
+    spec.variant = kind + where.text;
+    const std::string prefix = parameter_prefix(name(), "", where.text);
+    const bool turns = kind != kStrength, grows = kind != kSun;
+    for (int i = 1; turns && i <= 2; ++i)
+      spec.parameters.push_back({fmt::format("{}angle{}", prefix, i), "rad",
                                  fmt::format("turn of the light {}, angle {}", where.text, i), 0.0,
                                  -3.0, 3.0, 0.05, false});
+    if (grows)
+      spec.parameters.push_back({prefix + "strength", "",
+                                 "log of the factor on the lamp's strength " + where.text, 0.0,
+                                 -3.0, 3.0, 0.05, false});
     spec.touches = {.photos = true};
-    spec.apply = [first = where.first, end = where.end](const VectorXd& values, Model& m) {
+    spec.apply = [first = where.first, end = where.end, turns, grows](const VectorXd& values,
+                                                                      Model& m) {
       for (int e = first; e < end; ++e)
         for (auto& photo : m.examples[e].photos) {
           if (!shaded_by_sun(photo)) continue;
           // the same axes for all photos: the sun is that of the set-up
           const auto [a, b] = normal_axes(photo.sun);
-          photo.sun = rotation_of(values[0] * a + values[1] * b) * photo.sun;
+          if (turns) photo.sun = rotation_of(values[0] * a + values[1] * b) * photo.sun;
+          if (grows) photo.sun *= std::exp(values[values.size() - 1]);
         }
     };
     return make_ingredient(std::move(spec));
@@ -96,9 +161,9 @@ class LightDirection final : public Effect {
   std::shared_ptr<const Ingredient> raised_ambient(const Stretch& where) const {
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = "ambient " + where.text;
-    spec.parameters = {{"light_direction.ambient", "", "ambient light added " + where.text, 0.0,
-                        -10.0, 10.0, 0.05, false}};
+    spec.variant = kAmbient + where.text;
+    spec.parameters = {{parameter_prefix(name(), "", where.text) + "ambient", "",
+                        "ambient light added " + where.text, 0.0, -10.0, 10.0, 0.05, false}};
     spec.touches = {.photos = true};
     spec.apply = [first = where.first, end = where.end](const VectorXd& values, Model& m) {
       for (int e = first; e < end; ++e)

@@ -267,6 +267,13 @@ std::string vector_text(const Vector3d& v, int digits) {
 
 std::string figure(double value) { return fmt::format("{:.3g}", value); }
 
+std::string parameter_prefix(const std::string& effect, const std::string& what,
+                             const std::string& when) {
+  const std::string added = when == "from the start" ? "" : when;
+  const std::string name = what + (what.empty() || added.empty() ? "" : " ") + added;
+  return effect + "." + (name.empty() ? "" : name + ".");
+}
+
 bool starts_with(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
 }

@@ -62,6 +62,11 @@ std::vector<double> ramp_in(const std::string& variant);
 /// The same function of one control point with another in its middle; `values` become those of
 /// both. Of more points: as it is.
 std::vector<double> refined_ramp(const std::vector<double>& at, VectorXd& values);
+/// "EFFECT.WHAT.", before the names of parameters; what is wrong from some example on, or in one,
+/// says so behind WHAT ("camera_pose.front from twist on."), so that it may stand in a model beside
+/// what was wrong from another. "from the start" stays plain.
+std::string parameter_prefix(const std::string& effect, const std::string& what,
+                             const std::string& when);
 /// Two unit axes normal to `direction` and to each other.
 std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction);
 Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector);

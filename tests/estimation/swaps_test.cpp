@@ -24,8 +24,9 @@ TEST(Swaps, ADoubleThatHeldOutPhotosRefuseGivesItsPlace) {
   explained(
       {.hidden =
            "hidden:\n  - {effect: camera_pose, variant: cam0 from twist on, values: "
-           "{camera_pose.cam0.rx: -0.00264, camera_pose.cam0.ry: 0.00162, camera_pose.cam0.tx: "
-           "-0.43, camera_pose.cam0.ty: 0.36, camera_pose.cam0.tz: -0.464}}\n"
+           "{camera_pose.cam0 from twist on.rx: -0.00264, camera_pose.cam0 from twist on.ry: "
+           "0.00162, camera_pose.cam0 from twist on.tx: -0.43, camera_pose.cam0 from twist on.ty: "
+           "0.36, camera_pose.cam0 from twist on.tz: -0.464}}\n"
            "  - {effect: creep, variant: steadily with the order, values: {creep.c: 0.812}}\n",
        .seed = 3},
       {"camera_pose", "creep"});

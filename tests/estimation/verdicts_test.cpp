@@ -165,9 +165,10 @@ TEST(Discover, WhoTiesInEvidenceIsRefittedHoweverSlow) {
 /// The same effect twice, each with numbers of its own: two cameras, one of them later.
 TEST(Discover, BothCamerasWereKnocked) {
   const SmallScene small(
-      {.hidden = "hidden:\n  - {effect: camera_pose, variant: cam0 from side on, values: "
-                 "{camera_pose.cam0.ry: 0.004}}\n  - {effect: camera_pose, variant: cam1 from the "
-                 "start, values: {camera_pose.cam1.tx: 0.4}}\n"});
+      {.hidden =
+           "hidden:\n  - {effect: camera_pose, variant: cam0 from side on, values: "
+           "{\"camera_pose.cam0 from side on.ry\": 0.004}}\n  - {effect: camera_pose, variant: "
+           "cam1 from the start, values: {camera_pose.cam1.tx: 0.4}}\n"});
   const Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, ElementsAre("camera_pose"));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
@@ -179,7 +180,7 @@ TEST(Discover, BothCamerasWereKnocked) {
       if (parameters[i].name == name) return last.p[static_cast<Eigen::Index>(i)];
     return 0.0;
   };
-  EXPECT_NEAR(value("camera_pose.cam0.ry"), 0.004, 4e-4);
+  EXPECT_NEAR(value("camera_pose.cam0 from side on.ry"), 0.004, 4e-4);
   EXPECT_NEAR(value("camera_pose.cam1.tx"), 0.4, 0.05);
 }
 
