@@ -39,10 +39,12 @@ class Creep final : public Effect {
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
+    const auto& examples = model.scene->capture.examples;
     return fmt::format(
-        "the body creeps: in the last example ('{}') it gives {} % more than in "
-        "the first, growing {}",
-        model.scene->capture.examples.back().name, figure(100.0 * values[0]), ingredient.variant());
+        "the body creeps from '{}' on, the first example: in the last ('{}') it gives {} % more, "
+        "growing {}",
+        examples.front().name, examples.back().name, figure(100.0 * values[0]),
+        ingredient.variant());
   }
 
  private:

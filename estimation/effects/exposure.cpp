@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
 
 namespace {
 
+const char* const kGainOf = "log gain of ";
 const char* const kEachPhoto = "each photo";
 const char* const kWithHeldOut = "each photo, held-out ones too";
 
@@ -67,19 +72,38 @@ class Exposure final : public Effect {
   std::string sentence(const Model&, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     if (values.size() != 1)
-      return fmt::format("each photo has its own exposure, between {} and {} % of the told one",
-                         figure(100.0 * std::exp(values.minCoeff())),
-                         figure(100.0 * std::exp(values.maxCoeff())));
-    return fmt::format("exposure of {} is {} % {}", ingredient.variant(),
-                       figure(100.0 * std::abs(std::expm1(values[0]))),
-                       values[0] >= 0 ? "brighter" : "darker");
+      return "each photo has its own exposure: " + farthest(ingredient.parameters(), values);
+    return fmt::format("exposure of {} is {}", ingredient.variant(), change(values[0]));
   }
 
  private:
   using Slots = std::vector<std::pair<int, int>>;  ///< example, photo
 
+  static std::string change(double log_gain) {
+    return fmt::format("{} % {}", figure(100.0 * std::abs(std::expm1(log_gain))),
+                       log_gain >= 0 ? "brighter" : "darker");
+  }
+
+  /// The three photos that are farthest off, and how far the others are.
+  static std::string farthest(const std::vector<Parameter>& photos, const VectorXd& values) {
+    constexpr size_t kNamed = 3;
+    std::vector<Eigen::Index> order(photos.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](auto a, auto b) { return std::abs(values[a]) > std::abs(values[b]); });
+    std::string text;
+    for (size_t i = 0; i < order.size() && i < kNamed; ++i)
+      text += fmt::format("{}{} is {}", i ? ", " : "",
+                          photos[order[i]].long_name.substr(std::string(kGainOf).size()),
+                          change(values[order[i]]));
+    if (order.size() > kNamed)
+      text += fmt::format(", the others by {} % at most",
+                          figure(100.0 * std::expm1(std::abs(values[order[kNamed]]))));
+    return text;
+  }
+
   static Parameter gain(const std::string& label, const std::string& of) {
-    return {"exposure." + label, "", "log gain of " + of, 0.0, -3.0, 3.0, 0.05, false};
+    return {"exposure." + label, "", kGainOf + of, 0.0, -3.0, 3.0, 0.05, false};
   }
 
   template <class Chosen>

@@ -51,6 +51,27 @@ TEST(Catalogue, NamesTellTheExample) {
   EXPECT_EQ(first_name("defocus", "side from pull on"), "defocus.side from pull on");
 }
 
+TEST(Catalogue, SentencesTellWhichAndWhen) {
+  const auto said = [](const char* effect, const char* variant, const VectorXd& values) {
+    const Effect& one = *find_effect(effect);
+    return one.sentence(base_model(), *one.candidate(base_model(), variant), values);
+  };
+  VectorXd gains = VectorXd::Zero(8);
+  gains[2] = 0.10, gains[5] = -0.20, gains[7] = 0.05, gains[0] = -0.01;
+  EXPECT_EQ(said("exposure", "each photo", gains),
+            "each photo has its own exposure: the photo of 'twist' by 'side' is 18.1 % darker, the "
+            "photo of 'pull' by 'front' is 10.5 % brighter, the photo of 'bend' by 'side' is "
+            "5.13 % brighter, the others by 1.01 % at most");
+  EXPECT_EQ(said("creep", "steadily with the order", VectorXd::Constant(1, 0.25)),
+            "the body creeps from 'rest' on, the first example: in the last ('press') it gives 25 "
+            "% more, growing steadily with the order");
+  EXPECT_EQ(said("camera_pose", "side from bend on", VectorXd::Zero(6)),
+            "camera side from bend on stands elsewhere, turned by 0 degrees and moved by 0 mm");
+  EXPECT_EQ(said("light_direction", "lamp from bend on", Vector3d(0.03, 0.04, -0.1)),
+            "from bend on the light comes from 2.86 degrees beside the told direction and is 9.52 "
+            "% weaker");
+}
+
 /// What a plainer form does without is nothing at its null.
 TEST(Catalogue, PlainerFormsSayTheSameWithoutTheirNumbers) {
   const VectorXd q = deformed_state(*block_scene());
