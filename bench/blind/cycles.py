@@ -44,8 +44,9 @@ def body(path, material):
     return bpy.data.objects.new("body", mesh)
 
 
-def matte(albedo):
-    material = bpy.data.materials.new("matte")
+def skin(albedo, glossy=None):
+    """Matte; where it is glossy, a share of the light goes to a GGX lobe."""
+    material = bpy.data.materials.new("skin")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
@@ -56,6 +57,15 @@ def matte(albedo):
     output = nodes.new("ShaderNodeOutputMaterial")
     links.new(image.outputs["Color"], diffuse.inputs["Color"])
     links.new(diffuse.outputs["BSDF"], output.inputs["Surface"])
+    if glossy:
+        lobe, mix = nodes.new("ShaderNodeBsdfGlossy"), nodes.new("ShaderNodeMixShader")
+        lobe.distribution = "GGX"
+        lobe.inputs["Color"].default_value = (1, 1, 1, 1)
+        lobe.inputs["Roughness"].default_value = glossy["roughness"]
+        mix.inputs["Fac"].default_value = glossy["share"]
+        links.new(diffuse.outputs["BSDF"], mix.inputs[1])
+        links.new(lobe.outputs["BSDF"], mix.inputs[2])
+        links.new(mix.outputs["Shader"], output.inputs["Surface"])
     return material
 
 
@@ -97,6 +107,10 @@ def camera(photo):
     data.shift_x = -(photo["cx"] - (width - 1) / 2) / width
     data.shift_y = (photo["cy"] - (height - 1) / 2) / width * photo["fx"] / photo["fy"]
     data.clip_start, data.clip_end = 0.1, 1e5
+    if "lens" in photo:  # of finite aperture (its diameter), focused at a distance
+        data.dof.use_dof = True
+        data.dof.focus_distance = photo["lens"]["focus"]
+        data.dof.aperture_fstop = data.lens / 1000 / photo["lens"]["aperture"]
     turn = Matrix(photo["R"])
     place = -(turn.transposed() @ Vector(photo["t"]))
     # Blender's camera looks along -z, y up
@@ -142,9 +156,8 @@ def main():
     folder = sys.argv[sys.argv.index("--") + 1]
     with open(os.path.join(folder, "scene.json")) as file:
         told = json.load(file)
-    material = matte(told["albedo"])
     for photo in told["photos"]:
-        photograph(photo, folder, material)
+        photograph(photo, folder, skin(told["albedo"], photo.get("glossy")))
 
 
 main()
