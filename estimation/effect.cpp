@@ -30,6 +30,11 @@ std::shared_ptr<const Ingredient> Effect::plainer_form(const Model&, const Ingre
   return nullptr;
 }
 
+std::vector<Effect::Further> Effect::further_forms(const Model&, const Ingredient&,
+                                                   const Eigen::VectorXd&) const {
+  return {};
+}
+
 std::shared_ptr<const Ingredient> Effect::refit_form(const Model&,
                                                      std::shared_ptr<const Ingredient> scored,
                                                      Eigen::VectorXd&) const {

@@ -55,6 +55,15 @@ class Effect {
   virtual std::shared_ptr<const Ingredient> plainer_form(const Model& model,
                                                          const Ingredient& refitted,
                                                          Eigen::VectorXd& values) const;
+  /// Forms to try once the refitted one leaves more than noise, likeliest first: other functions of
+  /// the same meaning (fibres that only pull, creep that levels off), none of which the score asks
+  /// for. `model` is without the effect. Each starts where it is most like `refitted`.
+  struct Further {
+    std::shared_ptr<const Ingredient> form;
+    Eigen::VectorXd values;
+  };
+  virtual std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
+                                             const Eigen::VectorXd& values) const;
   /// Whether the form of this variant lives on another mesh than the capture tells; then
   /// refit_scene() makes the scene to fit on, from the capture of `scene`.
   virtual bool remeshes(const std::string& variant) const;
