@@ -81,5 +81,22 @@ struct HolzapfelValues {
 std::shared_ptr<const EnergyTerm> holzapfel(const HolzapfelValues& values);
 /// Fibre term stiffness/2 (I4bar - 1)^2, I4bar = J^(-2/3) a.C a, a unit, along a (all strains).
 std::shared_ptr<const EnergyTerm> fibre(double stiffness, const Eigen::Vector3d& direction);
+/// Fibres that only pull and stiffen exponentially: k1/(2 k2) (exp(k2 (I4bar - 1)^2) - 1) in
+/// tension, of I4 itself where the volume counts.
+struct PullingFibreValues {
+  double k1 = 0, k2 = 0;
+  Eigen::Vector3d direction{1, 0, 0};
+  bool volume_counts = false;
+  double toe = 0.01;
+};
+std::shared_ptr<const EnergyTerm> pulling_fibre(const PullingFibreValues& values);
+/// 1/2 sum c_ij E_ii E_jj + 2 sum_{i<j} g_ij E_ij^2 of the Green strain in `frame` (columns: axes).
+struct OrthotropicValues {
+  Matrix3d c = Matrix3d::Zero(), g = Matrix3d::Zero();  ///< symmetric; the diagonal of g is 0
+  Matrix3d frame = Matrix3d::Identity();
+};
+std::shared_ptr<const EnergyTerm> orthotropic(const OrthotropicValues& values);
+/// Of c11 c22 c33 c12 c13 c23 g12 g13 g23.
+OrthotropicValues orthotropic_values(const Eigen::VectorXd& stiffnesses, const Matrix3d& frame);
 
 }  // namespace hookeye

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "estimation/effects/toolbox.h"
+#include "estimation/effects/fibre_forms.h"
 
 namespace hookeye {
 
@@ -17,11 +17,6 @@ Vector3d hemisphere_direction(int i) {
   Vector3d a(r * std::cos(angle), r * std::sin(angle), z);
   for (double& x : a) x = std::round(1000.0 * x) / 1000.0;
   return a;
-}
-
-Vector3d turned(const Vector3d& a, double t1, double t2) {
-  const auto [first, second] = normal_axes(a);
-  return rotation_of(t1 * first + t2 * second) * a.normalized();
 }
 
 /// E_jj, E_kk and E_jk of the two axes across `axis` with one modulus: W = k/2 (E_jj^2 + E_kk^2 +
@@ -45,7 +40,8 @@ AdditiveModel fibres_along(const AdditiveModel& base, const Vector3d& a, double 
   return out;
 }
 
-/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike. Of an
+/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike; the refit
+/// may go on to fibres that only pull or to stiffnesses of their own (fibre_forms.h). Of an
 /// additive material a function of the fibres' stretch, k/2 (lambda - 1)^2 with k >= 0, or one
 /// modulus in the plane across an axis of its frame, which makes that axis the softer one.
 class Anisotropy final : public Effect {
@@ -56,7 +52,10 @@ class Anisotropy final : public Effect {
   std::string manual() const override {
     return "The material is stiffer (or softer) along one direction of the rest state: fibres, "
            "print lines, rolling. Easily taken for a soft clamp or a misaligned load; pulls along "
-           "two directions tell.";
+           "two directions tell. Where fibres that pull and push alike leave more than noise, the "
+           "refit goes on to fibres that only pull and stiffen, and to stiffnesses of their own "
+           "along "
+           "and across (transverse isotropy, orthotropy).";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -74,6 +73,8 @@ class Anisotropy final : public Effect {
       if (additive_base(model) && variant == fmt::format("across axis {}", axis + 1))
         return across(model, axis);
     if (numbers.size() != 3) return nullptr;
+    if (!additive_base(model))
+      if (auto form = fibre_form(model, variant)) return form;
     const Vector3d a(numbers[0], numbers[1], numbers[2]);
     if (starts_with(variant, "along")) return along(model, a);
     return starts_with(variant, "free around") ? free_around(model, a) : nullptr;
@@ -89,8 +90,14 @@ class Anisotropy final : public Effect {
     return free_around(model, Vector3d(numbers[0], numbers[1], numbers[2]));
   }
 
+  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
+                                     const VectorXd& values) const override {
+    return further_fibres(model, refitted, values);
+  }
+
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
+    if (const auto said = fibre_sentence(model, ingredient, values); !said.empty()) return said;
     const auto n = numbers_in(ingredient.variant());
     const double mu = initial_shear_modulus(model.energy);
     const std::string stress = model.scene->capture.units.stress();

@@ -23,14 +23,6 @@ using laws::Vector9d;
 
 const double kDegree = EIGEN_PI / 180.0;
 
-/// u, u', u'' by E.
-Eigen::Vector3d taken_up(double E, double toe) {
-  if (E <= 0) return Eigen::Vector3d::Zero();
-  if (E >= toe) return {E * E - toe * toe / 6, 2 * E, 2};
-  const double t = E / toe;
-  return {toe * toe * t * t * t * (4.0 / 3 - t / 2), toe * t * t * (4 - 2 * t), t * (8 - 6 * t)};
-}
-
 class Holzapfel final : public EnergyTerm {
  public:
   explicit Holzapfel(HolzapfelValues v) : v_(std::move(v)) {
@@ -68,7 +60,7 @@ class Holzapfel final : public EnergyTerm {
     const Isochoric i1 = laws::i1bar(d);
     double W = 0.5 * v_.mu * (i1.value() - 3) + 0.5 * v_.kappa * (d.J - 1) * (d.J - 1);
     for (const Eigen::Vector3d& a : v_.directions) {
-      const double u = taken_up(Family(*this, d, i1, a).E, v_.toe)[0];
+      const double u = laws::taken_up(Family(*this, d, i1, a).E, v_.toe)[0];
       W += 0.5 * v_.k1 / v_.k2 * std::expm1(v_.k2 * u);
     }
     return W;
@@ -114,7 +106,7 @@ class Holzapfel final : public EnergyTerm {
     for (const Eigen::Vector3d& a : v_.directions) {
       const Family f(*this, d, i1, a);
       if (k == 1) out += f.w1 / v_.k1 * f.dE;
-      if (k == 2) out += f.w1 * taken_up(f.E, v_.toe)[0] * f.dE;
+      if (k == 2) out += f.w1 * laws::taken_up(f.E, v_.toe)[0] * f.dE;
       if (k == 3)
         out += f.w2 * (i1.value() - 3 - 3 * (f.i4.value() - 1)) * f.dE +
                f.w1 * (i1.gradient(d) - 3 * f.i4.gradient(d));
@@ -132,7 +124,7 @@ class Holzapfel final : public EnergyTerm {
       const double along = 1 - 3 * v.dispersion;
       E = v.dispersion * (i1.value() - 3) + along * (i4.value() - 1);
       dE = v.dispersion * i1.gradient(d) + along * i4.gradient(d);
-      const Eigen::Vector3d u = taken_up(E, v.toe);
+      const Eigen::Vector3d u = laws::taken_up(E, v.toe);
       const double k = 0.5 * v.k1 * std::exp(v.k2 * u[0]);
       w1 = k * u[1];
       w2 = k * (u[2] + v.k2 * u[1] * u[1]);

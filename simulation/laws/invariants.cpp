@@ -46,6 +46,13 @@ Isochoric i4bar(const Deformation& d, const Eigen::Vector3d& a) {
   return {2.0 / 3.0, Fa.squaredNorm(), 1.0 / std::cbrt(d.J * d.J), 2.0 * Fa * a.transpose()};
 }
 
+Eigen::Vector3d taken_up(double E, double toe) {
+  if (E <= 0) return Eigen::Vector3d::Zero();
+  if (E >= toe) return {E * E - toe * toe / 6, 2 * E, 2};
+  const double t = E / toe;
+  return {toe * toe * t * t * t * (4.0 / 3 - t / 2), toe * t * t * (4 - 2 * t), t * (8 - 6 * t)};
+}
+
 void add_d2I1(double scale, Matrix9d& D) { D.diagonal().array() += 2.0 * scale; }
 
 void add_d2I2(double scale, const Matrix3d& F, Matrix9d& D) {

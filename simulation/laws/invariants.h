@@ -55,6 +55,10 @@ void add_d2I1(double scale, Matrix9d& D);
 void add_d2I2(double scale, const Matrix3d& F, Matrix9d& D);
 void add_d2I4(double scale, const Eigen::Vector3d& a, Matrix9d& D);
 
+/// u, u', u'' of fibres that only pull, by E: the quartic that joins 0 to E^2 - toe^2/6 over
+/// 0 < E < toe with two derivatives (holzapfel.cpp).
+Eigen::Vector3d taken_up(double E, double toe);
+
 /// W = f(I1bar) + g(I2bar) + h(J) with first and second derivatives by each.
 struct Response {
   double W = 0;
