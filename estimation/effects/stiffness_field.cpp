@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "estimation/effects/toolbox.h"
+#include "estimation/effects/graded_stiffness.h"
 
 namespace hookeye {
 
@@ -25,13 +25,9 @@ struct ScaledForces {
   }};
 };
 
-void scale_energy(Model& model, const VectorXd& log_factor) {
-  const VectorXd factor = log_factor.array().exp();
-  for (auto& part : model.energy.parts)
-    part.weight = part.weight.size() == 0 ? factor : VectorXd(part.weight.cwiseProduct(factor));
-}
-
 /// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
+/// The refit may go on to one that changes along a direction, or in two layers
+/// (graded_stiffness.h).
 class StiffnessField final : public Effect {
  public:
   std::string name() const override { return "stiffness_field"; }
@@ -40,7 +36,8 @@ class StiffnessField final : public Effect {
   std::string manual() const override {
     return "Some part of the body is stiffer or softer than the rest: an inclusion, a void, "
            "uneven cure. A field can imitate much else (soft clamps, wrong loads), so it is "
-           "believed only where one blob, or held-out examples, say the same.";
+           "believed only where one blob, or held-out examples, say the same. The refit goes on to "
+           "a stiffness that changes along a direction and to two layers.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -48,7 +45,7 @@ class StiffnessField final : public Effect {
     const double size = body_size(scene).size;
     auto forces = std::make_shared<ScaledForces>();
     Ingredients all = {
-        field(model, spread_centres(scene, kFieldBumps), field_radius(scene), forces)};
+        field(model, spread_centres(scene, kFieldBumps), bump_radius(scene, kFieldBumps), forces)};
     for (const Vector3d& c : spread_centres(scene, kBlobs))
       all.push_back(blob(model, c, 0.12 * size, forces));
     return all;
@@ -57,6 +54,7 @@ class StiffnessField final : public Effect {
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
     if (variant == "free blob") return free_blob(model);
+    if (auto graded = graded_form(model, variant)) return graded;
     if (const auto place = blob_in(variant))
       return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>());
     const auto n = numbers_in(variant);
@@ -89,11 +87,26 @@ class StiffnessField final : public Effect {
     return free_blob(model);
   }
 
+  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
+                                     const VectorXd& values) const override {
+    if (is_graded(refitted.variant())) return {};
+    Model one = model, with = model;
+    one.energy.parts.resize(1);
+    with.energy.parts.resize(1);
+    refitted.apply(values, with);
+    VectorXd factor = with.energy.parts[0].weight;
+    if (const VectorXd& before = one.energy.parts[0].weight; before.size() > 0)
+      factor = factor.cwiseQuotient(before);
+    if (factor.size() == 0) factor = VectorXd::Ones(model.scene->body->mesh.size());
+    return further_grades(model, factor.array().log());
+  }
+
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     if (starts_with(ingredient.variant(), "field"))
       return fmt::format("stiffness varies over the body by factors from {} to {}",
                          figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
+    if (is_graded(ingredient.variant())) return graded_sentence(model, ingredient, values);
     const Blob place = blob_of(ingredient, values);
     return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
                        values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
@@ -102,12 +115,6 @@ class StiffnessField final : public Effect {
   }
 
  private:
-  /// Neighbouring bumps overlap: the radius is that of equal shares of the volume.
-  static double field_radius(const Scene& scene) {
-    const double volume = element_volumes(scene.body->mesh).sum();
-    return std::stod(fmt::format("{:.3g}", 0.75 * std::cbrt(volume / kFieldBumps)));
-  }
-
   static std::string place_text(const Vector3d& c) {
     return fmt::format("({:g}, {:g}, {:g})", c.x(), c.y(), c.z());
   }

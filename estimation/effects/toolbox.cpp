@@ -150,6 +150,11 @@ VectorXd gaussian_bump(const TetMesh& mesh, const Vector3d& centre, double radiu
       .exp();
 }
 
+double bump_radius(const Scene& scene, int count) {
+  const double volume = element_volumes(scene.body->mesh).sum();
+  return std::stod(fmt::format("{:.3g}", 0.75 * std::cbrt(volume / count)));
+}
+
 double initial_shear_modulus(const EnergyModel& energy) {
   if (energy.parts.empty()) return 1.0;
   // Parts that share elements add up; parts of different regions do not, so the first tells.

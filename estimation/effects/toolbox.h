@@ -47,6 +47,10 @@ Region whole_boundary(const TetMesh& mesh);
 /// exp(-|X - centre|^2 / (2 radius^2)) at the element centroids.
 VectorXd gaussian_bump(const TetMesh& mesh, const Vector3d& centre, double radius);
 
+/// Radius of `count` bumps that overlap with their neighbours: that of equal shares of the volume,
+/// rounded to 3 digits.
+double bump_radius(const Scene& scene, int count);
+
 /// Initial shear modulus of the first material (mean over parts that act everywhere): P_xy by F_xy
 /// at F = I [stress].
 double initial_shear_modulus(const EnergyModel& energy);

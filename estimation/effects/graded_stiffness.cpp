@@ -1,0 +1,185 @@
+#include "estimation/effects/graded_stiffness.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <numeric>
+
+namespace hookeye {
+
+namespace {
+
+const char* const kGradient = "free gradient";
+const char* const kLayers = "free layers across";
+/// Divisions of an element's edges whose nodes stand for its inside.
+const int kDivisions = 4;
+
+/// Barycentric, 4 x n.
+Eigen::Matrix4Xd points_inside() {
+  std::vector<Eigen::Vector4d> all;
+  for (int i = 0; i <= kDivisions; ++i)
+    for (int j = 0; i + j <= kDivisions; ++j)
+      for (int k = 0; i + j + k <= kDivisions; ++k)
+        all.emplace_back(i, j, k, kDivisions - i - j - k);
+  Eigen::Matrix4Xd out(4, all.size());
+  for (size_t i = 0; i < all.size(); ++i) out.col(i) = (all[i].array() + 0.25) / (kDivisions + 1.0);
+  return out;
+}
+
+/// u + bend u^2, u = g.(X - centre) / size at the element centroids; values g, bend.
+VectorXd gradient_field(const Scene& scene, const VectorXd& values) {
+  const BodySize body = body_size(scene);
+  const Vector3d g = values.head(3);
+  const VectorXd u =
+      (element_centres(scene.body->mesh).colwise() - body.centre).transpose() * g / body.size;
+  return u.array() * (1.0 + values[3] * u.array());
+}
+
+/// Log of the mean over every element of exp(a s), s rising from 0 to 1 through the plane as the
+/// logistic function; values a, angle1, angle2, offset, thickness.
+VectorXd layers_field(const Scene& scene, const Vector3d& across, const VectorXd& values) {
+  static const Eigen::Matrix4Xd inside = points_inside();
+  const TetMesh& mesh = scene.body->mesh;
+  const Vector3d centre = body_size(scene).centre;
+  const auto [first, second] = normal_axes(across);
+  const Vector3d n = rotation_of(values[1] * first + values[2] * second) * across.normalized();
+  VectorXd log_factor(mesh.size());
+  for (int e = 0; e < mesh.size(); ++e) {
+    Eigen::RowVector4d t;
+    for (int k = 0; k < 4; ++k)
+      t[k] = (n.dot(mesh.X.col(mesh.elements(k, e)) - centre) - values[3]) / values[4];
+    const Eigen::ArrayXd s = 1.0 / (1.0 + (-(t * inside).array()).exp());
+    log_factor[e] = std::log((values[0] * s).exp().mean());
+  }
+  return log_factor;
+}
+
+std::shared_ptr<const Ingredient> gradient() {
+  IngredientSpec spec;
+  spec.name = "stiffness_field";
+  spec.variant = kGradient;
+  for (char axis : {'x', 'y', 'z'})
+    spec.parameters.push_back(
+        {fmt::format("stiffness_field.g{}", axis), "",
+         fmt::format("log of the stiffness over the body's size along {}", axis), 0.0, -10.0, 10.0,
+         0.5, false});
+  spec.parameters.push_back(
+      {"stiffness_field.bend", "", "bend of that logarithm", 0.0, -2.0, 2.0, 0.3, false});
+  spec.touches = {.energy = true};
+  spec.apply = [](const VectorXd& v, Model& m) {
+    if (!v.head(3).isZero(0.0)) scale_energy(m, gradient_field(*m.scene, v));
+  };
+  return make_ingredient(std::move(spec));
+}
+
+std::shared_ptr<const Ingredient> layers(const Model& model, const Vector3d& across) {
+  const BodySize body = body_size(*model.scene);
+  const std::string length = model.scene->capture.units.length;
+  IngredientSpec spec;
+  spec.name = "stiffness_field";
+  spec.variant = fmt::format("{} {}", kLayers, vector_text(across, 3));
+  spec.parameters = {
+      {"stiffness_field.a", "", "log of the stiffness factor", 0.0, -4.0, 4.0, 0.3, false},
+      {"stiffness_field.angle1", "rad", "first angle of the plane", 0.0, -3.2, 3.2, 0.2, false},
+      {"stiffness_field.angle2", "rad", "second angle of the plane", 0.0, -3.2, 3.2, 0.2, false},
+      {"stiffness_field.offset", length, "place of the plane from the body's middle", 0.0,
+       -0.5 * body.size, 0.5 * body.size, 0.1 * body.size, false},
+      // thinner than that is a jump to every mesh; thicker than the body a gradient
+      {"stiffness_field.thickness", length, "over which the stiffness changes", 0.05 * body.size,
+       0.01 * body.size, body.size, 0.05 * body.size, true}};
+  spec.touches = {.energy = true};
+  spec.apply = [across](const VectorXd& v, Model& m) {
+    if (v[0] != 0.0) scale_energy(m, layers_field(*m.scene, across, v));
+  };
+  return make_ingredient(std::move(spec));
+}
+
+/// Mean slope of `field` by X, as volumes count.
+Vector3d slope_of(const TetMesh& mesh, const VectorXd& field) {
+  const VectorXd w = element_volumes(mesh) / element_volumes(mesh).sum();
+  const Matrix3Xd X = element_centres(mesh);
+  const Matrix3Xd off = X.colwise() - Vector3d(X * w);
+  const Eigen::Matrix3d spread = off * w.asDiagonal() * off.transpose();
+  return spread.inverse() * (off * w.asDiagonal() * field);
+}
+
+/// The plane t = offset that parts `field` best in two means, and how far they are apart.
+struct Split {
+  double offset = 0.0, step = 0.0;
+};
+Split best_split(const VectorXd& t, const VectorXd& field, const VectorXd& volume) {
+  std::vector<int> order(static_cast<size_t>(t.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return t[a] < t[b]; });
+  const double all = volume.sum(), sum = volume.dot(field);
+  double below = 0.0, sum_below = 0.0, most = -1.0;
+  Split best;
+  for (size_t i = 0; i + 1 < order.size(); ++i) {
+    below += volume[order[i]], sum_below += volume[order[i]] * field[order[i]];
+    const double step = (sum - sum_below) / (all - below) - sum_below / below;
+    const double between = below * (all - below) * step * step;
+    if (between <= most) continue;
+    most = between;
+    best = {0.5 * (t[order[i]] + t[order[i + 1]]), step};
+  }
+  return best;
+}
+
+}  // namespace
+
+void scale_energy(Model& model, const VectorXd& log_factor) {
+  const VectorXd factor = log_factor.array().exp();
+  for (auto& part : model.energy.parts)
+    part.weight = part.weight.size() == 0 ? factor : VectorXd(part.weight.cwiseProduct(factor));
+}
+
+bool is_graded(const std::string& variant) {
+  return variant == kGradient || starts_with(variant, kLayers);
+}
+
+std::shared_ptr<const Ingredient> graded_form(const Model& model, const std::string& variant) {
+  if (variant == kGradient) return gradient();
+  const auto n = numbers_in(variant);
+  if (!starts_with(variant, kLayers) || n.size() != 3) return nullptr;
+  return layers(model, Vector3d(n[0], n[1], n[2]));
+}
+
+std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& log_factor) {
+  const Scene& scene = *model.scene;
+  const TetMesh& mesh = scene.body->mesh;
+  const BodySize body = body_size(scene);
+  const Vector3d slope = slope_of(mesh, log_factor);
+  Vector3d across = slope.norm() > 0.0 ? Vector3d(slope.normalized()) : Vector3d::UnitZ();
+  for (double& x : across) x = std::round(1000.0 * x) / 1000.0;  // as it is written
+  const VectorXd t = (element_centres(mesh).colwise() - body.centre).transpose() * across;
+  const Split split = best_split(t / across.norm(), log_factor, element_volumes(mesh));
+  VectorXd in_layers(5);
+  in_layers << split.step, 0.0, 0.0, split.offset, 0.05 * body.size;
+  const Vector3d g = slope * body.size;
+  return {{gradient(), Eigen::Vector4d(g.x(), g.y(), g.z(), 0.0)},
+          {layers(model, across), in_layers}};
+}
+
+std::string graded_sentence(const Model& model, const Ingredient& ingredient,
+                            const VectorXd& values) {
+  const std::string length = model.scene->capture.units.length;
+  if (ingredient.variant() == kGradient) {
+    const VectorXd field = gradient_field(*model.scene, values).array().exp();
+    const Vector3d g = values.head(3);
+    return fmt::format("stiffness changes along {} by factors from {} to {}",
+                       vector_text(g.norm() > 0.0 ? Vector3d(g.normalized()) : g),
+                       figure(field.minCoeff()), figure(field.maxCoeff()));
+  }
+  const auto n = numbers_in(ingredient.variant());
+  const Vector3d across(n.at(0), n.at(1), n.at(2));
+  const auto [first, second] = normal_axes(across);
+  const Vector3d normal = rotation_of(values[1] * first + values[2] * second) * across.normalized();
+  return fmt::format(
+      "two layers: {} times as stiff beyond the plane through {} {} across {} as before it",
+      figure(std::exp(values[0])),
+      vector_text(body_size(*model.scene).centre + values[3] * normal, 1), length,
+      vector_text(normal));
+}
+
+}  // namespace hookeye
