@@ -224,7 +224,7 @@ std::vector<Effect::Further> further_fibres(const Model& model, const Ingredient
   VectorXd start = VectorXd::Zero(11);
   start.head(8) = x.head(8);
   start.segment(8, 2) = values.tail(2);
-  return {{orthotropic_around(model, base_axis(refitted)), start}};
+  return {{orthotropic_around(model, rounded(base_axis(refitted))), start}};
 }
 
 std::string fibre_sentence(const Model& model, const Ingredient& ingredient,

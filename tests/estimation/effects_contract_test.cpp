@@ -30,7 +30,21 @@ const Model& base_model() {
   return model;
 }
 
-/// Candidates and, after them, the forms that they are refitted with.
+/// Adds the further forms of `refitted`, and theirs; one a kind: those around other directions are
+/// alike.
+void add_further(const Effect& effect, const Ingredient& refitted, std::set<std::string>& kinds,
+                 std::vector<Case>& all) {
+  for (const auto& further : effect.further_forms(base_model(), refitted, some_values(refitted))) {
+    EXPECT_EQ(further.values.size(), static_cast<int>(further.form->parameters().size()));
+    const std::string variant = further.form->variant();
+    if (!kinds.insert(variant.substr(0, variant.find('('))).second) continue;
+    all.push_back({&effect, further.form});
+    add_further(effect, *further.form, kinds, all);
+  }
+}
+
+/// Candidates and, after each, the forms that it is refitted with; of an effect's first, the
+/// further ones.
 std::vector<Case> all_cases(bool refit_forms) {
   std::vector<Case> all;
   for (const Effect* effect : catalogue()) {
@@ -41,7 +55,10 @@ std::vector<Case> all_cases(bool refit_forms) {
       VectorXd values = some_values(*one);
       const auto larger = effect->refit_form(base_model(), one, values);
       EXPECT_EQ(values.size(), static_cast<int>(larger->parameters().size()));
-      if (larger != one && seen.insert(larger->variant()).second) all.push_back({effect, larger});
+      const bool first = seen.empty();
+      std::set<std::string> kinds;
+      if (seen.insert(larger->variant()).second && larger != one) all.push_back({effect, larger});
+      if (first) add_further(*effect, *larger, kinds, all);
     }
   }
   return all;
@@ -213,7 +230,9 @@ TEST(Catalogue, DerivativesAreThereAndConvergeWithSecondOrder) {
       const double coarse = (d1 - d2).norm(), fine = (d2 - d4).norm();
       const double rounding =
           std::max(1e-9 * d4.norm(), 1e-13 * signature(base_model(), q).norm() / h);
-      EXPECT_LT(fine, std::max(0.35 * coarse, rounding))
+      // Where fibres begin to pull the third derivative jumps: better than first order, not second.
+      const bool jumps = c.ingredient->variant().rfind("free pulling", 0) == 0;
+      EXPECT_LT(fine, std::max((jumps ? 0.5 : 0.35) * coarse, rounding))
           << c.label() << " " << parameters[i].name << ": " << coarse << " then " << fine;
     }
   }

@@ -5,87 +5,13 @@
 #include <fstream>
 #include <set>
 
-#include "estimation/effects_scene.h"
-#include "estimation/evaluation.h"
+#include "estimation/solved_sensitivity.h"
 #include "meshing/interpolation.h"
 #include "support/temporary_folder.h"
 
 namespace hookeye::test {
 
 namespace {
-
-using States = std::vector<VectorXd>;
-
-States solve(const ModelForm& form, const VectorXd& p, const States& start) {
-  const Model model = form.realise(p);
-  EquilibriumOptions options;
-  options.tolerance = 1e-10;
-  States q;
-  for (size_t e = 0; e < model.examples.size(); ++e) {
-    EquilibriumSolver solver(model.scene->mesh());
-    auto solved = solver.solve(model.energy_of(static_cast<int>(e)), model.examples[e].loading,
-                               options, start.empty() ? nullptr : &start[e]);
-    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
-      ADD_FAILURE() << model.scene->capture.examples[e].name << ": " << failure->reason;
-      return {};
-    }
-    q.push_back(std::get<Equilibrium>(solved).q);
-  }
-  return q;
-}
-
-/// S by differences of solved equilibria, one-sided where the bound leaves no room.
-States solved_sensitivity(const ModelForm& form, const VectorXd& p, int k, double h, bool one_sided,
-                          const States& start) {
-  auto at = [&](double shift) {
-    VectorXd moved = p;
-    moved[k] += shift;
-    return solve(form, moved, start);
-  };
-  const States a = at(one_sided ? 2 * h : -h), b = at(h);
-  States S;
-  for (size_t e = 0; e < a.size() && e < b.size(); ++e)
-    S.push_back(one_sided ? VectorXd((-1.5 * start[e] + 2.0 * b[e] - 0.5 * a[e]) / h)
-                          : VectorXd((b[e] - a[e]) / (2.0 * h)));
-  return S;
-}
-
-Workspace& workspace() {
-  static Workspace one(block_scene());
-  return one;
-}
-
-/// S of `form` at p, and of candidates at their nulls beyond it.
-Evaluation evaluated(const ModelForm& form, const VectorXd& p,
-                     const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
-  EvaluationOptions options;
-  options.held_out = true;
-  auto result = workspace().evaluate(form, p, options, candidates);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-    ADD_FAILURE() << failure->example << ": " << failure->reason;
-    return {};
-  }
-  return std::get<Evaluation>(std::move(result));
-}
-
-/// Largest over the examples of |S - S_solved| against the largest |S_solved|. False where the
-/// parameter moves nothing (a plane out of reach): S is zero and the differences of positions are
-/// rounding.
-bool expect_same(const Evaluation& evaluation, int column, const States& solved, double h,
-                 double relative, const std::string& label) {
-  double predicted = 0.0, scale = 0.0, error = 0.0;
-  for (const auto& example : evaluation.examples) {
-    predicted = std::max(predicted, example.S.col(column).norm());
-    scale = std::max(scale, solved[example.example].norm());
-    error = std::max(error, (example.S.col(column) - solved[example.example]).norm());
-  }
-  if (predicted == 0.0) {
-    EXPECT_LT(scale * h, 1e-6) << label << ": S is zero but positions [mm] move";
-    return false;
-  }
-  EXPECT_LT(error, relative * scale) << label;
-  return true;
-}
 
 /// Step that moves the nodes by 1e-4 mm (root of the sum of squares): what moves them less is lost
 /// in the rounding of solved positions. 0: nothing moves.
@@ -316,48 +242,6 @@ TEST(Sensitivity, TheFinerMeshReachesForTheLimit) {
   EXPECT_GT(along * along / length, 0.3 * before) << along / length;
 }
 
-/// A form of the refit at values away from the null, as part of the model. How many of its
-/// parameters move something.
-int check_form(const std::shared_ptr<const Ingredient>& ingredient, const VectorXd& values) {
-  const ModelForm form = extended(base_form(block_scene()), ingredient);
-  const VectorXd p = with_values(form, values);
-  const States start = solve(form, p, {});
-  if (::testing::Test::HasFailure()) return 0;
-  const Evaluation evaluation = evaluated(form, p, {});
-  const auto parameters = ingredient->parameters();
-  const int first = form.size() - static_cast<int>(parameters.size());
-  int moving = 0;
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    const int k = first + static_cast<int>(i);
-    const double h = 1e-3 * (parameters[i].positive ? p[k] : parameters[i].typical);
-    moving +=
-        expect_same(evaluation, k, solved_sensitivity(form, p, k, h, false, start), h, 1e-3,
-                    ingredient->name() + " [" + ingredient->variant() + "] " + parameters[i].name);
-  }
-  return moving;
-}
-
-TEST(Sensitivity, RefitForms) {
-  const ModelForm base = base_form(block_scene());
-  const Model model = with_states(base.realise(base.initial()));
-  int tried = 0;
-  for (const Effect* effect : catalogue()) {
-    std::set<std::string> seen;
-    for (const auto& scored : effect->candidates(model, nullptr)) {
-      VectorXd values = some_values(*scored);
-      const auto larger = effect->refit_form(model, scored, values);
-      if (effect->remeshes(larger->variant())) continue;  // lives on another mesh: below
-      // one free form a kind: the fibre's 24 bases are alike
-      if (larger == scored || !seen.insert(larger->variant().substr(0, 12)).second) continue;
-      tried += check_form(larger, values);
-      if (const auto smaller = effect->smaller_form(model, *larger, values))
-        tried += check_form(smaller, values);
-      if (::testing::Test::HasFailure()) return;
-    }
-  }
-  EXPECT_GT(tried, 15);
-}
-
 /// A set-up that is turned hangs otherwise; one that is moved, or turned about its weight, does
 /// not.
 TEST(Sensitivity, PlacementTurnsTheBodyAgainstItsWeight) {
@@ -378,23 +262,6 @@ TEST(Sensitivity, PlacementTurnsTheBodyAgainstItsWeight) {
     EXPECT_EQ(expect_same(evaluation, base.size() + i, solved, h, 1e-3, parameters[i].name), i < 3)
         << parameters[i].name;
   }
-}
-
-/// A wall oblique to all axes that the bent block leans on, soft or hard: place, stiffness and both
-/// tilts, away from no tilt.
-TEST(Sensitivity, AnObliqueWallInAllItsNumbers) {
-  const ModelForm base = base_form(block_scene());
-  const Model model = with_states(base.realise(base.initial()));
-  const Effect& effect = *find_effect("floor_contact");
-  VectorXd values = VectorXd::Constant(1, 2e-4);
-  const auto scored = effect.candidate(model, "plane towards (0.8, 0.53, 0.29), position 25");
-  ASSERT_NE(scored, nullptr);
-  const auto cushion = effect.refit_form(model, scored, values);
-  ASSERT_EQ(values.size(), 4);
-  values.tail<2>() << 0.06, -0.04;
-  EXPECT_EQ(check_form(cushion, values), 4);
-  const auto hard = effect.smaller_form(model, *cushion, values);
-  EXPECT_EQ(check_form(hard, values), 3);
 }
 
 /// Effects of the photo and the sensor move no equilibrium.

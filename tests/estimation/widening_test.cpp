@@ -1,0 +1,111 @@
+// Effects in forms that the score does not ask for: the refit goes on to them.
+#include "estimation/widening.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "tests/estimation/small_capture.h"
+
+namespace hookeye {
+namespace {
+
+using testing::ElementsAre;
+
+/// Loads that pull, bend and press; one held out.
+std::string recipe(const std::string& hidden, const char* more) {
+  return fmt::format(R"(hookeye_recipe: 1
+seed: 5
+title: small block
+body:
+  shape: block
+  size: [20, 16, 34]
+  bumps: 0.05
+  facet: 7
+  mesh: {{edge: 8}}
+  density: 1.07e-9
+  texture: {{texel: 0.12, speckle: 1.4}}
+material:
+  law: neo-hookean
+  true: {{mu: 0.02, kappa_over_mu: 10}}
+  told: {{mu: 0.02}}
+  fit: [mu]
+cameras: {{count: 2, size: [200, 260], distance: 6, focal: 950}}
+examples:
+  rest: {{}}
+  pull: {{force: [0, 0, 0.3]}}
+  side: {{force: [0.012, 0.006, 0]}}
+  {}
+  poke: {{use: validate, force: [-0.008, 0.01, 0.12]}}
+hidden:
+  - {}
+truth: {{edge_factor: 1, rays_per_axis: 4, visibility_rays: 256}}
+)",
+                     more, hidden);
+}
+
+const char* const kPressAndTwist = "press: {move: [0, 0, -0.06]}\n  twist: {rotate: 20}";
+const char* const kMoreForces =
+    "lift: {force: [0, 0, 0.2]}\n  bend: {force: [-0.01, 0.004, 0.1]}\n  twist: {rotate: 20}";
+
+/// The whole search names `effect` alone, in the form `variant`, and comes to the floor.
+Fitted found(const std::string& hidden, const std::string& effect, const std::string& variant,
+             const char* more = kPressAndTwist) {
+  const test::SmallScene small({.recipe = recipe(hidden, more)});
+  const Discovery discovery = test::discover(small);
+  EXPECT_THAT(discovery.missing, ElementsAre(effect));
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+  const Fitted& last = discovery.steps.back().fitted;
+  EXPECT_TRUE(at_floor(last, discovery.floor));
+  EXPECT_THAT(last.form.ingredients.back()->variant(), testing::StartsWith(variant));
+  return last;
+}
+
+TEST(Widening, FibresThatOnlyPullAndStiffen) {
+  const Fitted fitted = found(
+      "{effect: anisotropy, variant: \"free pulling around (0.300, 0.200, 0.933)\", values: "
+      "{anisotropy.k: 0.01, anisotropy.k2: 5}}",
+      "anisotropy", "free pulling");
+  EXPECT_NEAR(fitted.p[1], 0.01, 3e-4);
+  EXPECT_NEAR(fitted.p[2], 5.0, 0.5);
+}
+
+TEST(Widening, CreepThatLevelsOff) {
+  const Fitted fitted = found(
+      "{effect: creep, variant: free levelling off of the stiffness, values: {creep.c: 0.6, "
+      "creep.tau: 1.2}}",
+      "creep", "free levelling off of the stiffness", kMoreForces);
+  EXPECT_NEAR(fitted.p[1], 0.6, 0.01);
+  EXPECT_NEAR(fitted.p[2], 1.2, 0.05);
+}
+
+TEST(Widening, SwellingFromOneSide) {
+  const Fitted fitted = found(
+      "{effect: swelling, variant: free gradient, values: {swelling.s: 0.01, swelling.gx: 0.04, "
+      "swelling.gz: -0.03}}",
+      "swelling", "free gradient");
+  EXPECT_NEAR(fitted.p[2], 0.04, 1e-3);
+  EXPECT_NEAR(fitted.p[3], 0.0, 1e-3);
+  EXPECT_NEAR(fitted.p[4], -0.03, 1e-3);
+}
+
+TEST(Widening, TwoLayers) {
+  const Fitted fitted = found(
+      "{effect: stiffness_field, variant: \"free layers across (0.300, 0.200, 0.933)\", values: "
+      "{stiffness_field.a: 0.9, stiffness_field.offset: 2, stiffness_field.thickness: 0.5}}",
+      "stiffness_field", "free layers");
+  EXPECT_NEAR(fitted.p[1], 0.9, 0.03);
+  EXPECT_NEAR(fitted.p[4], 2.0, 0.2);
+}
+
+/// A stiffness that is linear along a direction: its logarithm bends.
+TEST(Widening, GradedStiffness) {
+  const Fitted fitted = found(
+      "{effect: stiffness_field, variant: free gradient, values: {stiffness_field.gx: 0.8, "
+      "stiffness_field.gz: 1.2, stiffness_field.bend: -0.5}}",
+      "stiffness_field", "free gradient");
+  EXPECT_NEAR(fitted.p[1], 0.8, 0.02);
+  EXPECT_NEAR(fitted.p[3], 1.2, 0.02);
+}
+
+}  // namespace
+}  // namespace hookeye
