@@ -6,12 +6,12 @@ namespace hookeye {
 
 namespace {
 
-const int kDirections = 24;
+const int kDirections = 24, kPullingDirections = 12;
 
-/// Directions spread over the upper half sphere by the golden angle; three digits, because they
-/// are written into variants.
-Vector3d hemisphere_direction(int i) {
-  const double z = (i + 0.5) / kDirections;
+/// `count` directions spread over the upper half sphere by the golden angle; three digits, because
+/// they are written into variants.
+Vector3d hemisphere_direction(int i, int count) {
+  const double z = (i + 0.5) / count;
   const double angle = i * EIGEN_PI * (3.0 - std::sqrt(5.0));
   const double r = std::sqrt(1.0 - z * z);
   Vector3d a(r * std::cos(angle), r * std::sin(angle), z);
@@ -40,8 +40,8 @@ AdditiveModel fibres_along(const AdditiveModel& base, const Vector3d& a, double 
   return out;
 }
 
-/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike; the refit
-/// may go on to fibres that only pull or to stiffnesses of their own (fibre_forms.h). Of an
+/// W += k/2 (I4bar - 1)^2: one family of fibres, acting in tension and compression alike or in
+/// tension only; the refit may go on to stiffnesses of their own (fibre_forms.h). Of an
 /// additive material a function of the fibres' stretch, k/2 (lambda - 1)^2 with k >= 0, or one
 /// modulus in the plane across an axis of its frame, which makes that axis the softer one.
 class Anisotropy final : public Effect {
@@ -52,17 +52,21 @@ class Anisotropy final : public Effect {
   std::string manual() const override {
     return "The material is stiffer (or softer) along one direction of the rest state: fibres, "
            "print lines, rolling. Easily taken for a soft clamp or a misaligned load; pulls along "
-           "two directions tell. Where fibres that pull and push alike leave more than noise, the "
-           "refit goes on to fibres that only pull and stiffen, and to stiffnesses of their own "
-           "along "
-           "and across (transverse isotropy, orthotropy).";
+           "two directions tell. Fibres may pull and push alike, or only pull; where both leave "
+           "more than noise, the refit goes on to stiffnesses of their own along and across "
+           "(transverse isotropy, orthotropy).";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
     Ingredients all;
-    for (int i = 0; i < kDirections; ++i) all.push_back(along(model, hemisphere_direction(i)));
-    if (additive_base(model))
+    for (int i = 0; i < kDirections; ++i)
+      all.push_back(along(model, hemisphere_direction(i, kDirections)));
+    if (additive_base(model)) {
       for (int axis = 0; axis < 3; ++axis) all.push_back(across(model, axis));
+      return all;
+    }
+    for (int i = 0; i < kPullingDirections; ++i)
+      all.push_back(pulling_along(model, hemisphere_direction(i, kPullingDirections)));
     return all;
   }
 
@@ -83,6 +87,8 @@ class Anisotropy final : public Effect {
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
+    if (!additive_base(model))
+      if (auto pulling = refit_of_pulling(model, *scored, values)) return pulling;
     const auto numbers = numbers_in(scored->variant());
     if (!starts_with(scored->variant(), "along") || numbers.size() != 3) return scored;
     const double k = values[0];

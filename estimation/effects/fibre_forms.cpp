@@ -8,6 +8,7 @@ namespace hookeye {
 
 namespace {
 
+const char* const kPullingAlong = "pulling along";
 const char* const kPulling = "free pulling around";
 const char* const kPullingVolume = "free pulling, volume counted, around";
 const char* const kTransverse = "free stiffnesses around";
@@ -118,19 +119,23 @@ Vector3d base_axis(const Ingredient& ingredient) {
   return Vector3d(n.at(0), n.at(1), n.at(2)).normalized();
 }
 
+/// A fibre's energy at rest in the Green strain, but for a part of the volume alone.
+VectorXd fibre_at_rest(double k) {
+  VectorXd constants(5);
+  constants << 4.0 / 3.0 * k, 0.0, -4.0 / 3.0 * k, 0.0, 0.0;
+  return constants;
+}
+
 std::vector<Effect::Further> after_fibre(const Model& model, const VectorXd& values,
                                          const Vector3d& a) {
   const double k = values[0];
-  // The fibre's energy at rest in the Green strain, but for a part of the volume alone.
-  VectorXd constants(5);
-  constants << 4.0 / 3.0 * k, 0.0, -4.0 / 3.0 * k, 0.0, 0.0;
   std::vector<Effect::Further> all;
   if (k > 0.0) {
     const Eigen::Vector4d pulling(k, 0.0, 0.0, 0.0);
     all.push_back({pulling_around(model, a, false), pulling});
     all.push_back({pulling_around(model, a, true), pulling});
   }
-  all.push_back({transverse_around(model, a), constants});
+  all.push_back({transverse_around(model, a), fibre_at_rest(k)});
   return all;
 }
 
@@ -154,6 +159,36 @@ std::vector<Effect::Further> after_orthotropic(const Model& model, const VectorX
 Vector3d turned(const Vector3d& a, double t1, double t2) {
   const auto [first, second] = normal_axes(a);
   return rotation_of(t1 * first + t2 * second) * a.normalized();
+}
+
+std::shared_ptr<const Ingredient> pulling_along(const Model& model, const Vector3d& a) {
+  const auto term = [a](double k) {
+    PullingFibreValues values;
+    values.k1 = k, values.direction = a;
+    return pulling_fibre(values);
+  };
+  IngredientSpec spec;
+  spec.name = "anisotropy";
+  spec.variant = fmt::format("{} {}", kPullingAlong, vector_text(a, 3));
+  spec.parameters = {modulus_of(model, "k", "fibre modulus", 0.0)};
+  spec.touches = {.energy = true};
+  spec.apply = [term](const VectorXd& v, Model& m) {
+    if (v[0] != 0.0) add_part(m.energy, term(v[0]));
+  };
+  spec.derivative = [term](const VectorXd& v, const Model& m, int example,
+                           const Equilibrium& equilibrium, int, MechanicsDerivative& out) {
+    if (v[0] != 0.0) return false;
+    out.dR_dt = part_force(m, example, equilibrium.q, term(1.0));
+    return true;
+  };
+  return make_ingredient(std::move(spec));
+}
+
+std::shared_ptr<const Ingredient> refit_of_pulling(const Model& model, const Ingredient& scored,
+                                                   VectorXd& values) {
+  if (!starts_with(scored.variant(), kPullingAlong)) return nullptr;
+  values = Eigen::Vector4d(values[0], 0.0, 0.0, 0.0);
+  return pulling_around(model, rounded(base_axis(scored)), false);
 }
 
 std::shared_ptr<const Ingredient> pulling_around(const Model& model, const Vector3d& a,
@@ -205,6 +240,7 @@ std::shared_ptr<const Ingredient> fibre_form(const Model& model, const std::stri
   const auto n = numbers_in(variant);
   if (n.size() != 3) return nullptr;
   const Vector3d a(n[0], n[1], n[2]);
+  if (starts_with(variant, kPullingAlong)) return pulling_along(model, a);
   if (starts_with(variant, kPulling) || starts_with(variant, kPullingVolume))
     return pulling_around(model, a, starts_with(variant, kPullingVolume));
   if (starts_with(variant, kTransverse)) return transverse_around(model, a);
@@ -216,6 +252,9 @@ std::vector<Effect::Further> further_fibres(const Model& model, const Ingredient
   if (additive_base(model)) return {};
   if (starts_with(refitted.variant(), "free around"))
     return after_fibre(model, values, rounded(turned(base_axis(refitted), values[1], values[2])));
+  if (starts_with(refitted.variant(), kPulling))
+    return {{pulling_around(model, rounded(base_axis(refitted)), true), values},
+            {transverse_around(model, rounded(base_axis(refitted))), fibre_at_rest(values[0])}};
   if (starts_with(refitted.variant(), kOrthotropic))
     return after_orthotropic(model, values, base_axis(refitted));
   if (!starts_with(refitted.variant(), kTransverse)) return {};
@@ -231,15 +270,18 @@ std::string fibre_sentence(const Model& model, const Ingredient& ingredient,
                            const VectorXd& values) {
   const std::string variant = ingredient.variant();
   const std::string stress = model.scene->capture.units.stress();
-  if (starts_with(variant, kPulling) || starts_with(variant, kPullingVolume)) {
-    Vector3d a = turned(base_axis(ingredient), values[2], values[3]);
+  if (variant.find("pulling") != std::string::npos) {
+    const bool free = values.size() == 4;
+    Vector3d a = base_axis(ingredient);
+    if (free) a = turned(a, values[2], values[3]);
     if (a.z() < 0.0) a = -a;
     // as a fibre's: 4 k1 against 3 mu, once it pulls
     const double change = 4.0 * values[0] / (3.0 * initial_shear_modulus(model.energy));
     return fmt::format(
         "fibres along {} that only pull: {} % stiffer there than across when stretched (fibre "
-        "modulus {} {}, exponent {})",
-        vector_text(a), figure(100.0 * change), figure(values[0]), stress, figure(values[1]));
+        "modulus {} {}{})",
+        vector_text(a), figure(100.0 * change), figure(values[0]), stress,
+        free ? ", exponent " + figure(values[1]) : "");
   }
   if (starts_with(variant, kTransverse))
     return constants_text(model, transverse_stiffnesses(values),

@@ -1,4 +1,5 @@
-// Forms of anisotropy that its refit goes on to: fibres that only pull, stiffnesses of their own.
+// Forms of anisotropy beside fibres that pull and push alike: those that only pull, stiffnesses of
+// their own.
 #pragma once
 
 #include "estimation/effects/toolbox.h"
@@ -8,6 +9,11 @@ namespace hookeye {
 /// The axis turned by small angles about two axes normal to it.
 Vector3d turned(const Vector3d& a, double t1, double t2);
 
+/// As scored: W += k/2 (I4 - 1)^2 in tension, isochoric, 0 in compression, along `a`.
+std::shared_ptr<const Ingredient> pulling_along(const Model& model, const Vector3d& a);
+/// Its refit, pulling_around(), with `values` moved to it; null: `scored` is none.
+std::shared_ptr<const Ingredient> refit_of_pulling(const Model& model, const Ingredient& scored,
+                                                   VectorXd& values);
 /// W += k1/(2 k2) (exp(k2 (I4 - 1)^2) - 1) in tension, 0 in compression, the fibre's direction free
 /// around `a`; I4 isochoric or with the volume.
 std::shared_ptr<const Ingredient> pulling_around(const Model& model, const Vector3d& a,

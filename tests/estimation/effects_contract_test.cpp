@@ -141,9 +141,9 @@ TEST(Catalogue, ParametersAreDeclaredWhole) {
 }
 
 TEST(Catalogue, OneSidedEffectsSaySo) {
-  const std::set<std::string> expected = {"soft_clamp", "grip_slip",      "floor_contact",
-                                          "creep",      "softening",      "defocus",
-                                          "specular",   "mesh_resolution"};
+  const std::set<std::string> expected = {"anisotropy",    "soft_clamp", "grip_slip",
+                                          "floor_contact", "creep",      "softening",
+                                          "defocus",       "specular",   "mesh_resolution"};
   std::set<std::string> one_sided;
   for (const Case& c : all_cases(false))
     for (const Parameter& p : c.ingredient->parameters())
@@ -267,7 +267,8 @@ bool turn_case(const Case& c, std::string& variant, VectorXd& values) {
     turn_vector();
   } else if (name == "load_direction" || name == "floor_contact") {
     return false;  // axes and sides are chosen anew
-  } else if (variant.rfind("along", 0) == 0 || variant.rfind("blob", 0) == 0) {
+  } else if (variant.rfind("along", 0) == 0 || variant.rfind("pulling along", 0) == 0 ||
+             variant.rfind("blob", 0) == 0) {
     if (!std::regex_search(variant, match, triple)) return false;
     variant = match.prefix().str() + "(-" + match[2].str() + ", " + match[1].str() + ", " +
               match[3].str() + ")" + match.suffix().str();
