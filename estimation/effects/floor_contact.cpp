@@ -14,8 +14,8 @@ namespace {
 /// Distances of the planes from the rest body, in parts of its size.
 const double kGaps[] = {0.005, 0.05, 0.15};
 const char* const kSides[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
-/// Part of the size that the body has to move outward before a plane between the axes is tried, half
-/// of it behind the plane: five times the depth over which its force sets in (smoothing).
+/// Part of the size that the body has to move outward before a plane between the axes is tried,
+/// half of it behind the plane: five times the depth over which its force sets in (smoothing).
 constexpr double kLeastTravel = 0.02;
 /// Half a step of the grid of directions [rad], 36 degrees at most: nearer to an axis than that, a
 /// fitted plane is asked whether it is normal to it.
@@ -192,9 +192,9 @@ class FloorContact final : public Effect {
     return "The deformed body touches a table, a wall or a jaw that was not told. Easily taken "
            "for stiffening or for a misaligned load; it changes only the examples that reach "
            "the plane. Beside planes normal to the axes, 36 directions between them are tried "
-           "where the deformed body moves outward. Refitted as a cushion of free position, tilt "
-           "and stiffness, and as a hard floor, which stays where it explains as much; so does a "
-           "plane normal to an axis.";
+           "where the deformed body moves outward. Refitted as a cushion of free position and "
+           "stiffness, which between the axes may tilt, and as a hard floor, which stays where it "
+           "explains as much; so does a plane normal to an axis.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -230,6 +230,13 @@ class FloorContact final : public Effect {
                                                VectorXd& values) const override {
     const auto plane = scored_in(scored->variant());
     if (!plane) return scored;
+    // Tilt is freed where the score asks for it: free at an axis as well, a cushion at the body's
+    // end imitates softening and outruns it.
+    for (int side = 0; side < 6; ++side)
+      if (plane->out == outward(side)) {
+        values = Eigen::Vector2d(plane->position, values[0]);
+        return refitted(model, {false, false, side, plane->out});
+      }
     values = Eigen::Vector4d(plane->position, values[0], 0.0, 0.0);
     const Vector3d out = rounded(plane->out, 1.0);
     return refitted(model, {false, true, -1, out, pressed(model, *plane)});

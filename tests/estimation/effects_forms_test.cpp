@@ -79,7 +79,10 @@ TEST(Catalogue, PlainerFormsSayTheSameWithoutTheirNumbers) {
   for (const Effect* effect : catalogue())
     for (const auto& one : effect->candidates(base_model(), nullptr)) {
       VectorXd values = some_values(*one);
-      const auto larger = effect->refit_form(base_model(), one, values);
+      auto larger = effect->refit_form(base_model(), one, values);
+      if (effect->name() == "floor_contact")  // one that without its tilt is normal to an axis
+        larger =
+            effect->candidate(base_model(), "cushion towards (0, 0, 1), tilting about (1, 2, 41)");
       values = some_values(*larger);
       VectorXd fewer = values;
       const auto found = effect->plainer_form(base_model(), *larger, fewer);
