@@ -105,7 +105,7 @@ TEST(Catalogue, EveryEffectAppliesToTheBlockAndStaysSmall) {
     }
   }
   RecordProperty("columns", columns);
-  EXPECT_LT(columns, 260);
+  EXPECT_LT(columns, 280);
 }
 
 TEST(Catalogue, WordsAreThere) {
