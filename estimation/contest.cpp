@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/widening.h"
-
 namespace hookeye {
 
 bool numerical(const std::string& effect) {
@@ -183,8 +181,6 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
   }
   if (refits.empty()) return out;
-  if (auto failure = widen(workspace, refits, step.diagnosis.floor, options, events))
-    return *failure;
   auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
   const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
     return total_chi(a.fitted) < total_chi(b.fitted);

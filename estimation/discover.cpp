@@ -8,6 +8,7 @@
 
 #include "estimation/contest.h"
 #include "estimation/swaps.h"
+#include "estimation/widening.h"
 
 namespace hookeye {
 
@@ -106,7 +107,10 @@ class Search {
       if (std::get<bool>(went_on)) continue;
       auto settled = settled_mesh(room);
       if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
-      if (!std::get<bool>(settled) && !dropped_unsupported() && !reopened()) break;
+      if (std::get<bool>(settled)) continue;
+      auto widened = widened_form(true);
+      if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
+      if (!std::get<bool>(widened) && !dropped_unsupported() && !reopened()) break;
     }
     return finish();
   }
@@ -131,6 +135,9 @@ class Search {
   /// `room`: for how many effects more.
   WentOn next_step(int room) {
     mesh_refitted_ = false;
+    auto widened = widened_form(false);
+    if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
+    if (std::get<bool>(widened)) return true;
     Step& step = newest();
     if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis)) return false;
     if (auto better =
@@ -154,6 +161,34 @@ class Search {
     if (!refused_.empty()) return add_pair(contest, room);
     add_winner(contest);
     return true;
+  }
+
+  /// Before another effect is asked for those that stand are asked for a wider form, the newest
+  /// first; a mesh that stands out is settled before them, or has been asked. Each form once beside
+  /// as many others.
+  WentOn widened_form(bool mesh_was_asked) {
+    const Step& step = newest();
+    const auto& all = step.fitted.form.ingredients;
+    for (const EffectScore& score : step.diagnosis.effects)
+      if (!mesh_was_asked && numerical(score.effect) && nameable(score, step.diagnosis))
+        return false;
+    for (size_t at = all.size(); at-- > base_;) {
+      const std::string name = all[at]->name();
+      if (numerical(name) || at_floor(step.fitted, out_.floor, kLeftByRenderers) ||
+          !widened_.insert({name + all[at]->variant(), all.size()}).second)
+        continue;
+      auto result = widened(workspace_, step.fitted, at, out_.floor, options_.fit, events_);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+      Fitted& wide = std::get<Fitted>(result);
+      if (wide.form.ingredients[at]->variant() == all[at]->variant()) continue;
+      Step next;
+      next.name = next.added = name;
+      next.dropped = {name};
+      next.fitted = std::move(wide);
+      out_.steps.push_back(std::move(next));
+      return true;
+    }
+    return false;
   }
 
   void add_two(const Refit& first, std::vector<Raced> raced, Step second) {
@@ -306,6 +341,7 @@ class Search {
   bool mesh_refitted_ = false;         ///< in the last contest
   std::optional<Step> together_;       ///< second of a pair, once the first is written
   std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays
+  std::set<std::pair<std::string, size_t>> widened_;     ///< forms that were asked, beside so many
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
 };
 

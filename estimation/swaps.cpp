@@ -5,14 +5,14 @@
 
 namespace hookeye {
 
-namespace {
-
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
   Eigen::Index offset = 0;
   for (size_t k = 0; k < ingredient; ++k)
     offset += static_cast<Eigen::Index>(form.ingredients[k]->parameters().size());
   return offset;
 }
+
+namespace {
 
 bool remeshes(const Ingredient& ingredient) {
   const Effect* effect = find_effect(ingredient.name());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include "estimation/swaps.h"
+
 namespace hookeye {
 
 namespace {
@@ -13,26 +15,42 @@ double misfit(const Fitted& fitted) {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// The further forms of the last effect of `fitted`.
-std::vector<Effect::Further> further_forms(const Fitted& fitted) {
-  const Ingredient& last = *fitted.form.ingredients.back();
-  const Effect* effect = find_effect(last.name());
-  if (!effect) return {};
-  const auto own = static_cast<Eigen::Index>(last.parameters().size());
-  ModelForm before = fitted.form;
-  before.ingredients.pop_back();
-  const auto rest = fitted.p.size() - own;
-  return effect->further_forms(before.realise(fitted.p.head(rest)), last, fitted.p.tail(own));
+/// The values of an ingredient, and those before and after it.
+struct Parted {
+  VectorXd before, own, after;
+};
+
+Parted parted(const Fitted& fitted, size_t at) {
+  const Eigen::Index first = offset_of(fitted.form, at);
+  const auto own = static_cast<Eigen::Index>(fitted.form.ingredients[at]->parameters().size());
+  return {fitted.p.head(first), fitted.p.segment(first, own),
+          fitted.p.tail(fitted.p.size() - first - own)};
 }
 
-std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow,
+VectorXd joined(const VectorXd& before, const VectorXd& own, const VectorXd& after) {
+  VectorXd out(before.size() + own.size() + after.size());
+  out << before, own, after;
+  return out;
+}
+
+std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
+  const Ingredient& narrow = *fitted.form.ingredients[at];
+  const Effect* effect = find_effect(narrow.name());
+  if (!effect) return {};
+  const Parted values = parted(fitted, at);
+  ModelForm without = fitted.form;
+  without.ingredients.erase(without.ingredients.begin() + static_cast<std::ptrdiff_t>(at));
+  return effect->further_forms(without.realise(joined(values.before, VectorXd(), values.after)),
+                               narrow, values.own);
+}
+
+std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow, size_t at,
                                               const Effect::Further& further,
                                               const FitOptions& options) {
-  const auto own = static_cast<Eigen::Index>(narrow.form.ingredients.back()->parameters().size());
   ModelForm form = narrow.form;
-  form.ingredients.back() = further.form;
-  VectorXd start(narrow.p.size() - own + further.values.size());
-  start << narrow.p.head(narrow.p.size() - own), further.values;
+  form.ingredients[at] = further.form;
+  const Parted values = parted(narrow, at);
+  VectorXd start = joined(values.before, further.values, values.after);
   const auto parameters = form.parameters();
   for (Eigen::Index i = 0; i < start.size(); ++i)
     start[i] = std::clamp(start[i], parameters[i].low, parameters[i].high);
@@ -44,29 +62,42 @@ std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted
   return fit(workspace, form, start, from_there);
 }
 
+/// What photos have over the floor, of fitted and held-out ones together.
+double excess(const Fitted& fitted, const Floor& floor) {
+  double sum = 0.0;
+  for (const bool held_out : {false, true}) {
+    const double chi = fitted.evaluation.chi(held_out);
+    sum += std::max(0.0, chi * chi - floor.chi * floor.chi);
+  }
+  return sum;
+}
+
+/// Most of what was left goes with the form; where another effect is missing, a little more than
+/// its values cost goes with any.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
   const Fitted& reference = misfit(wide) < misfit(narrow) ? wide : narrow;
   const double noise2 = std::min(measured_noise2(wide), measured_noise2(narrow));
   const Yardstick yardstick{&reference, &floor, noise2};
-  return refit_score(wide, yardstick) > refit_score(narrow, yardstick) + kTie &&
+  return excess(wide, floor) < 0.5 * excess(narrow, floor) &&
+         refit_score(wide, yardstick) > refit_score(narrow, yardstick) + kTie &&
          held_out_allows(wide, narrow, floor);
 }
 
 }  // namespace
 
-std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow,
+std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
                                                const Floor& floor, const FitOptions& options,
                                                const DiscoverEvents& events) {
-  std::set<std::string> tried = {narrow.form.ingredients.back()->variant()};
+  std::set<std::string> tried = {narrow.form.ingredients[at]->variant()};
   for (bool better = true; better && !at_floor(narrow, floor, kLeftByRenderers);) {
     better = false;
     Fitted best = narrow;
-    for (const auto& further : further_forms(narrow)) {
+    for (const auto& further : further_forms(narrow, at)) {
       if (!tried.insert(further.form->variant()).second) continue;
       if (better && at_floor(best, floor, kLeftByRenderers)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
       if (events.refitting) events.refitting(words);
-      auto result = fit_in(workspace, narrow, further, options);
+      auto result = fit_in(workspace, narrow, at, further, options);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;
@@ -80,29 +111,6 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
     narrow = std::move(best);
   }
   return narrow;
-}
-
-std::optional<NumericalFailure> widen(Workspace& workspace, std::vector<Refit>& refits,
-                                      const Floor& floor, const DiscoverOptions& options,
-                                      const DiscoverEvents& events) {
-  std::vector<Refit*> order;
-  for (Refit& refit : refits) order.push_back(&refit);
-  std::stable_sort(order.begin(), order.end(), [](const Refit* a, const Refit* b) {
-    return misfit(a->fitted) < misfit(b->fitted);
-  });
-  if (order.empty()) return {};
-  const double most = 3.0 * misfit(order.front()->fitted);
-  for (Refit* refit : order) {
-    if (std::any_of(refits.begin(), refits.end(), [&](const Refit& one) {
-          return at_floor(one.fitted, floor, kLeftByRenderers);
-        }))
-      break;
-    if (misfit(refit->fitted) > most) continue;
-    auto wide = widened(workspace, refit->fitted, floor, options.fit, events);
-    if (auto* failure = std::get_if<NumericalFailure>(&wide)) return *failure;
-    refit->fitted = std::get<Fitted>(std::move(wide));
-  }
-  return {};
 }
 
 }  // namespace hookeye

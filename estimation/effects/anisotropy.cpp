@@ -6,12 +6,12 @@ namespace hookeye {
 
 namespace {
 
-const int kDirections = 24, kPullingDirections = 12;
+const int kDirections = 24;
 
-/// `count` directions spread over the upper half sphere by the golden angle; three digits, because
-/// they are written into variants.
-Vector3d hemisphere_direction(int i, int count) {
-  const double z = (i + 0.5) / count;
+/// Directions spread over the upper half sphere by the golden angle; three digits, because they
+/// are written into variants.
+Vector3d hemisphere_direction(int i) {
+  const double z = (i + 0.5) / kDirections;
   const double angle = i * EIGEN_PI * (3.0 - std::sqrt(5.0));
   const double r = std::sqrt(1.0 - z * z);
   Vector3d a(r * std::cos(angle), r * std::sin(angle), z);
@@ -59,14 +59,13 @@ class Anisotropy final : public Effect {
 
   Ingredients candidates(const Model& model, std::string*) const override {
     Ingredients all;
-    for (int i = 0; i < kDirections; ++i)
-      all.push_back(along(model, hemisphere_direction(i, kDirections)));
+    for (int i = 0; i < kDirections; ++i) all.push_back(along(model, hemisphere_direction(i)));
     if (additive_base(model)) {
       for (int axis = 0; axis < 3; ++axis) all.push_back(across(model, axis));
       return all;
     }
-    for (int i = 0; i < kPullingDirections; ++i)
-      all.push_back(pulling_along(model, hemisphere_direction(i, kPullingDirections)));
+    for (int i = 0; i < kDirections; ++i)
+      all.push_back(pulling_along(model, hemisphere_direction(i)));
     return all;
   }
 

@@ -105,7 +105,7 @@ TEST(Catalogue, EveryEffectAppliesToTheBlockAndStaysSmall) {
     }
   }
   RecordProperty("columns", columns);
-  EXPECT_LT(columns, 280);
+  EXPECT_LT(columns, 300);
 }
 
 TEST(Catalogue, WordsAreThere) {
@@ -224,8 +224,9 @@ TEST(Catalogue, DerivativesAreThereAndConvergeWithSecondOrder) {
       const VectorXd d1 = difference(form, p, k, h, one_sided, q);
       const VectorXd d2 = difference(form, p, k, h / 2, one_sided, q);
       const VectorXd d4 = difference(form, p, k, h / 4, one_sided, q);
-      // a plane that this state does not reach has no derivative here
-      if (c.effect->name() == "floor_contact" && d4.norm() == 0.0) continue;
+      // a plane that this state does not reach, or fibres that it does not stretch, have none here
+      const bool pulls = c.ingredient->variant().find("pulling") != std::string::npos;
+      if ((c.effect->name() == "floor_contact" || pulls) && d4.norm() == 0.0) continue;
       EXPECT_GT(d4.norm(), 0.0) << c.label() << " " << parameters[i].name;
       const double coarse = (d1 - d2).norm(), fine = (d2 - d4).norm();
       const double rounding =
