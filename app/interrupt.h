@@ -12,6 +12,4 @@ const std::atomic<bool>& interrupted();
 /// Before any other thread is there: they all inherit that the signals are blocked.
 void watch_interrupts();
 
-/// Thrown by commands when they stopped because of it; exit status 130.
-
 }  // namespace hookeye

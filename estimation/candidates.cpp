@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
+
+#include "estimation/gram.h"
 
 namespace hookeye {
 
@@ -84,6 +87,29 @@ std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates
   for (const auto& [name, list] : lists)
     out[name] = log_mean_exp(Eigen::Map<const VectorXd>(list.data(), list.size()));
   return out;
+}
+
+std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
+                                  const std::vector<ProjectedHypothesis>& projected,
+                                  const DiagnosisSums& sums, const DiagnosisOptions& options) {
+  const Eigen::MatrixXd root = square_root(sums.null_noise);
+  const double r2 = sums.effective.count * sums.effective.floor2;
+  std::mt19937 engine(options.seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> largest;
+  for (int b = 0; b < options.null_simulations; ++b) {
+    VectorXd white(root.cols());
+    for (double& x : white) x = normal(engine);
+    const VectorXd s = root * white;
+    VectorXd evidence(candidates.size());
+    for (size_t i = 0; i < candidates.size(); ++i)
+      evidence[i] = log_evidence(projected[i], s, r2, sums.effective.count, sums.effective.floor2);
+    double most = 0.0;
+    for (const auto& [name, value] : by_effect(candidates, evidence)) most = std::max(most, value);
+    largest.push_back(most);
+  }
+  std::sort(largest.begin(), largest.end());
+  return largest;
 }
 
 void find_confusions(const Eigen::MatrixXd& H, const std::vector<ProjectedHypothesis>& projected,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimation/diagnosis.h"
+#include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 
 namespace hookeye {
@@ -25,6 +26,12 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
 /// Evidence of every effect from its candidates' evidence: the mean over them.
 std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates,
                                         const VectorXd& evidence);
+
+/// Largest evidence over the catalogue when nothing is missing, sorted: scores drawn as the floor's
+/// errors (their variance and their correlation from cell to cell, rest photos) would give them.
+std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
+                                  const std::vector<ProjectedHypothesis>& projected,
+                                  const DiagnosisSums& sums, const DiagnosisOptions& options);
 
 /// Share of each effect's signature that the others can imitate beside the base columns.
 /// `projected` from H, `best`: each effect's candidate.

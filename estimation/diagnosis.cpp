@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 
 #include "estimation/candidates.h"
 #include "estimation/diagnosis_sums.h"
@@ -17,31 +16,6 @@
 namespace hookeye {
 
 namespace {
-
-/// Largest evidence over the catalogue when nothing is missing, sorted: scores drawn as the floor's
-/// errors (their variance and their correlation from cell to cell, rest photos) would give them.
-std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
-                                  const std::vector<ProjectedHypothesis>& projected,
-                                  const DiagnosisSums& sums, const DiagnosisOptions& options) {
-  const Eigen::MatrixXd root = square_root(sums.null_noise);
-  const double r2 = sums.effective.count * sums.effective.floor2;
-  std::mt19937 engine(options.seed);
-  std::normal_distribution<double> normal;
-  std::vector<double> largest;
-  for (int b = 0; b < options.null_simulations; ++b) {
-    VectorXd white(root.cols());
-    for (double& x : white) x = normal(engine);
-    const VectorXd s = root * white;
-    VectorXd evidence(candidates.size());
-    for (size_t i = 0; i < candidates.size(); ++i)
-      evidence[i] = log_evidence(projected[i], s, r2, sums.effective.count, sums.effective.floor2);
-    double most = 0.0;
-    for (const auto& [name, value] : by_effect(candidates, evidence)) most = std::max(most, value);
-    largest.push_back(most);
-  }
-  std::sort(largest.begin(), largest.end());
-  return largest;
-}
 
 /// Change of the sum of squares by a joint step.
 double change(const Eigen::MatrixXd& H, const VectorXd& s, const VectorXd& step) {

@@ -20,16 +20,6 @@ struct Case {
   std::string label() const { return effect->name() + " [" + ingredient->variant() + "]"; }
 };
 
-const ModelForm& base() {
-  static const ModelForm form = base_form(block_scene());
-  return form;
-}
-
-const Model& base_model() {
-  static const Model model = with_states(base().realise(base().initial()));
-  return model;
-}
-
 /// Adds the further forms of `refitted`, and theirs; one a kind: those around other directions are
 /// alike.
 void add_further(const Effect& effect, const Ingredient& refitted, std::set<std::string>& kinds,

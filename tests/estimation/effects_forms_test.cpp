@@ -11,16 +11,6 @@ namespace hookeye::test {
 
 namespace {
 
-const ModelForm& base() {
-  static const ModelForm form = base_form(block_scene());
-  return form;
-}
-
-const Model& base_model() {
-  static const Model model = with_states(base().realise(base().initial()));
-  return model;
-}
-
 /// What may stand in a model more than once has numbers of its own each time: where it was wrong
 /// from one example on and again from another, no name stands twice.
 TEST(Catalogue, FormsThatMayStandTogetherShareNoName) {

@@ -208,6 +208,16 @@ Model with_states(Model model) {
   return model;
 }
 
+const ModelForm& base() {
+  static const ModelForm form = base_form(block_scene());
+  return form;
+}
+
+const Model& base_model() {
+  static const Model model = with_states(base().realise(base().initial()));
+  return model;
+}
+
 ModelForm extended(const ModelForm& base, std::shared_ptr<const Ingredient> ingredient) {
   ModelForm form = base;
   form.ingredients.push_back(std::move(ingredient));

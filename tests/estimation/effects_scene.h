@@ -25,6 +25,10 @@ VectorXd signature(const Model& model, const VectorXd& q);
 /// The model with the equilibria of its fitted examples, as a diagnosis shows it to the catalogue.
 Model with_states(Model model);
 
+/// The base model of block_scene() at its start, with those states.
+const ModelForm& base();
+const Model& base_model();
+
 /// Base model of the scene with one more ingredient at the end.
 ModelForm extended(const ModelForm& base, std::shared_ptr<const Ingredient> ingredient);
 /// Values of `form`: base at its start, the last ingredient at `values`.

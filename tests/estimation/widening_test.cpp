@@ -1,4 +1,5 @@
-// Effects in forms that the score does not ask for: the refit goes on to them.
+// Effects in forms that the first refit does not have: fibres that stiffen are reached from those
+// that the score asks for, the others by the forms that a standing effect goes on to.
 #include "estimation/widening.h"
 
 #include <fmt/format.h>
