@@ -21,7 +21,8 @@ class Interrupted : public Cli {
   /// Ctrl-C (or another signal) once `sign` stands in what the program has said.
   Result interrupt_at(const std::string& sign, const std::string& arguments,
                       const std::string& signal = "INT") const {
-    const std::string command = "cd '" + folder_.string() + "' && { '" HOOKEYE_PROGRAM "' " +
+    const std::string command = "cd '" + folder_.string() +
+                                "' && rm -f out.txt err.txt && { '" HOOKEYE_PROGRAM "' " +
                                 arguments +
                                 " >out.txt 2>err.txt </dev/null & } && program=$! && "
                                 "while kill -0 $program 2>/dev/null && ! grep -qs '" +
