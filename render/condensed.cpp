@@ -213,42 +213,66 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   return out;
 }
 
+namespace {
+
+/// Parameters that move a seen vertex: those of cameras, of light and of other examples move none.
+std::vector<int> moving_columns(const VertexSensitivity& S, const NodeNormalEquations::Impl& m) {
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(S.position.cols());
+  const auto look = [&](const RowMatrix& of, int vertex) {
+    for (int i = 0; i < 3; ++i) sum += of.row(3 * vertex + i).cwiseAbs();
+  };
+  for (const int vertex : m.seen) {
+    look(S.position, vertex);
+    if (m.columns.second) look(S.second, vertex);
+  }
+  std::vector<int> moving;
+  for (int j = 0; j < sum.size(); ++j)
+    if (sum[j] != 0.0) moving.push_back(j);
+  return moving;
+}
+
+}  // namespace
+
 CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
   const Impl& m = *impl_;
   const Eigen::Index params = S.position.cols(), n = m.numbers();
-  if (params == 0) return {MatrixXd(0, 0), VectorXd(0), m.r2, m.count};  // no product for BLAS
+  CondensedPhoto out{MatrixXd::Zero(params, params), VectorXd::Zero(params), m.r2, m.count};
+  const std::vector<int> moving = moving_columns(S, m);
+  const auto columns = static_cast<Eigen::Index>(moving.size());
   const Eigen::Index rows = n * static_cast<Eigen::Index>(m.seen.size());
-  RowMatrix Z(rows, params), with_photo(m.columns.photo ? rows : 0, kPhotoColumns);
+  RowMatrix Z(rows, columns), with_photo(m.columns.photo ? rows : 0, kPhotoColumns);
   VectorXd b(rows);
   for (size_t i = 0; i < m.seen.size(); ++i) {
     const Eigen::Index at = n * static_cast<Eigen::Index>(i), v = 3 * m.seen[i];
-    Z.middleRows(at, 3) = S.position.middleRows(v, 3);
-    if (m.columns.second) Z.middleRows(at + 3, 3) = S.second.middleRows(v, 3);
+    Z.middleRows(at, 3) = S.position.middleRows(v, 3)(Eigen::all, moving);
+    if (m.columns.second) Z.middleRows(at + 3, 3) = S.second.middleRows(v, 3)(Eigen::all, moving);
     for (Eigen::Index c = 0; c < n; ++c) {
       b[at + c] = m.sums.vertex[i].b[c];
       for (int k = 0; k < kPhotoColumns && m.columns.photo; ++k)
         with_photo(at + c, k) = m.sums.vertex[i].photo[c][k];
     }
   }
-  // J^T J = Z^T M Z with M = U + U^T - D: Y = (U - D/2) Z, then Z^T Y + Y^T Z.
-  RowMatrix Y = RowMatrix::Zero(rows, params);
-  for (size_t i = 0; i < m.seen.size(); ++i)
-    for (const Impl::Neighbour& j : m.row[i])
-      add_product(m.sums.block[j.block], j.slot == int(i) ? 0.5 : 1.0,
-                  {static_cast<int>(n), static_cast<int>(params)}, Z.row(n * j.slot).data(),
-                  Y.row(n * static_cast<Eigen::Index>(i)).data());
-  if (m.columns.photo) Y.noalias() += with_photo * S.photo;
-  const MatrixXd ZtY = Z.transpose() * Y;
-  CondensedPhoto out;
-  out.JtJ = ZtY + ZtY.transpose();
-  out.Jtr = Z.transpose() * b;
-  if (m.columns.photo) {
-    const auto photo = m.photo.topLeftCorner<kPhotoColumns, kPhotoColumns>();
-    out.JtJ += S.photo.transpose() * photo * S.photo;
-    out.Jtr += S.photo.transpose() * m.b_photo.head<kPhotoColumns>();
+  if (columns > 0) {  // no empty product for BLAS
+    // J^T J = Z^T M Z with M = U + U^T - D: Y = (U - D/2) Z, then Z^T Y + Y^T Z.
+    RowMatrix Y = RowMatrix::Zero(rows, columns);
+    for (size_t i = 0; i < m.seen.size(); ++i)
+      for (const Impl::Neighbour& j : m.row[i])
+        add_product(m.sums.block[j.block], j.slot == int(i) ? 0.5 : 1.0,
+                    {static_cast<int>(n), static_cast<int>(columns)}, Z.row(n * j.slot).data(),
+                    Y.row(n * static_cast<Eigen::Index>(i)).data());
+    const MatrixXd ZtY = Z.transpose() * Y;
+    out.JtJ(moving, moving) = ZtY + ZtY.transpose();
+    out.Jtr(moving) = Z.transpose() * b;
   }
-  out.r2 = m.r2;
-  out.count = m.count;
+  if (!m.columns.photo) return out;
+  if (columns > 0) {
+    const MatrixXd ZtP = (Z.transpose() * with_photo) * S.photo;
+    out.JtJ(moving, Eigen::all) += ZtP;
+    out.JtJ(Eigen::all, moving) += ZtP.transpose();
+  }
+  const auto photo = m.photo.topLeftCorner<kPhotoColumns, kPhotoColumns>();
+  out.JtJ += S.photo.transpose() * photo * S.photo;
+  out.Jtr += S.photo.transpose() * m.b_photo.head<kPhotoColumns>();
   return out;
 }
 

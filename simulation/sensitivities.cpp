@@ -49,17 +49,22 @@ MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
                        const MatrixXd& dR_dp, const MatrixXd& dqc_dp) {
   const std::vector<int>& free = equilibrium.factor->free();
   MatrixXd S = MatrixXd::Zero(dR_dp.rows(), dR_dp.cols());
-  MatrixXd rhs = dR_dp;
-  if (dqc_dp.size()) {
-    for (size_t i = 0; i < loading.prescribed.size(); ++i)
-      S.row(loading.prescribed[i]) = dqc_dp.row(static_cast<Eigen::Index>(i));
-    for (Eigen::Index j = 0; j < S.cols(); ++j)  // few parameters move a support
-      if (!dqc_dp.col(j).isZero(0.0)) rhs.col(j) += equilibrium.K * S.col(j);
-  }
-  const MatrixXd B = -rhs(free, Eigen::all);
+  const auto moves_support = [&](Eigen::Index j) {
+    return dqc_dp.size() != 0 && !dqc_dp.col(j).isZero(0.0);
+  };
+  std::vector<Eigen::Index> moving;  // cameras and other examples' parameters move nothing here
+  for (Eigen::Index j = 0; j < S.cols(); ++j)
+    if (moves_support(j) || !dR_dp.col(j).isZero(0.0)) moving.push_back(j);
+  if (moving.empty()) return S;
+  for (size_t i = 0; i < loading.prescribed.size() && dqc_dp.size(); ++i)
+    S.row(loading.prescribed[i]) = dqc_dp.row(static_cast<Eigen::Index>(i));
+  MatrixXd rhs = dR_dp(Eigen::all, moving);
+  for (size_t k = 0; k < moving.size(); ++k)
+    if (moves_support(moving[k]))
+      rhs.col(static_cast<Eigen::Index>(k)) += equilibrium.K * S.col(moving[k]);
   MatrixXd X;
-  solve(equilibrium, B, X);
-  S(free, Eigen::all) = X;
+  solve(equilibrium, -rhs(free, Eigen::all), X);
+  S(free, moving) = X;
   return S;
 }
 
@@ -79,11 +84,20 @@ Vector3d support_moment(const Equilibrium& equilibrium, const Region& region,
 
 namespace {
 
-/// W^T (dR/dp + K S), without the whole of K S.
-MatrixXd of_reactions(const Equilibrium& equilibrium, const MatrixXd& W, const MatrixXd& dR_dp,
-                      const MatrixXd& S) {
-  const MatrixXd KtW = equilibrium.K.transpose() * W;
-  return W.transpose() * dR_dp + KtW.transpose() * S;
+/// W^T (dR/dp + K S) + by_q^T S, of the few rows that W and by_q have.
+MatrixXd of_reactions(const Equilibrium& equilibrium, const Region& region, const MatrixXd& W,
+                      const MatrixXd& by_q, const MatrixXd& dR_dp, const MatrixXd& S) {
+  const auto summed = [](const MatrixXd& weights, const MatrixXd& of,
+                         const std::vector<int>& rows) {
+    return (weights(rows, Eigen::all).transpose() * of(rows, Eigen::all)).eval();
+  };
+  std::vector<int> own, near;
+  for (int a : region.nodes)
+    for (int i = 0; i < 3; ++i) own.push_back(3 * a + i);
+  const MatrixXd by_S = equilibrium.K.transpose() * W + by_q;
+  for (int i = 0; i < by_S.rows(); ++i)
+    if (!by_S.row(i).isZero(0.0)) near.push_back(i);
+  return summed(W, dR_dp, own) + summed(by_S, S, near);
 }
 
 }  // namespace
@@ -92,7 +106,7 @@ MatrixXd d_support_force(const Equilibrium& equilibrium, const Region& region,
                          const MatrixXd& dR_dp, const MatrixXd& S) {
   MatrixXd W = MatrixXd::Zero(S.rows(), 3);
   for (int a : region.nodes) W.middleRows<3>(3 * a).setIdentity();
-  return of_reactions(equilibrium, W, dR_dp, S);
+  return of_reactions(equilibrium, region, W, MatrixXd::Zero(S.rows(), 3), dR_dp, S);
 }
 
 MatrixXd d_support_moment(const Equilibrium& equilibrium, const Region& region,
@@ -107,7 +121,7 @@ MatrixXd d_support_moment(const Equilibrium& equilibrium, const Region& region,
     W.middleRows<3>(3 * a) = crossed(equilibrium.q.segment<3>(3 * a) - about);
     by_q.middleRows<3>(3 * a) = -crossed(equilibrium.R.segment<3>(3 * a));
   }
-  return of_reactions(equilibrium, W, dR_dp, S) + by_q.transpose() * S;
+  return of_reactions(equilibrium, region, W, by_q, dR_dp, S);
 }
 
 }  // namespace hookeye

@@ -31,6 +31,8 @@ TEST(condensed, equals_explicit_rows) {
     S.position = Eigen::MatrixXd::Random(nv, m);
     S.second = Eigen::MatrixXd::Random(nv, m);
     S.photo = Eigen::MatrixXd::Random(kPhotoColumns, m);
+    S.position.col(2).setZero(), S.second.col(2).setZero();  // the photo's numbers alone
+    S.position.col(4).setZero(), S.photo.col(5).setZero();
     const VectorXd r = VectorXd::Random(n), w = VectorXd::Random(n).array() + 1.5;
     const VectorXd Bt_r = w.cwiseProduct(r);
     Eigen::MatrixXd J = dI.d_photo.cast<double>().transpose() * S.photo;
@@ -50,6 +52,12 @@ TEST(condensed, equals_explicit_rows) {
     EXPECT_LT((c.Jtr - J.transpose() * r).norm(), 1e-5 * c.Jtr.norm());
     EXPECT_NEAR(c.r2, r.squaredNorm(), 1e-9 * c.r2);
     EXPECT_EQ(c.count, size_t(n));
+    VertexSensitivity still = S;
+    still.position.setZero(), still.second.setZero();
+    const Eigen::MatrixXd by_photo =
+        w.asDiagonal() * (dI.d_photo.cast<double>().transpose() * S.photo);
+    EXPECT_LT((sums.reduce(still).JtJ - by_photo.transpose() * by_photo).norm(),
+              1e-5 * by_photo.squaredNorm());
     // What is told to be zero is not summed.
     VertexSensitivity motion = S;
     motion.photo.setZero();
