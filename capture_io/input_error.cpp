@@ -40,6 +40,20 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+/// "neohooke" of "Neo-Hooke".
+std::string letters(const std::string& text) {
+  std::string out;
+  for (const char c : lower_case(text))
+    if (std::isalnum(static_cast<unsigned char>(c))) out += c;
+  return out;
+}
+
+/// One is the other's start: "fixed" of "fix", "neohooke" of "neohookean".
+bool is_start(const std::string& one, const std::string& other) {
+  return std::min(one.size(), other.size()) >= 3 &&
+         (one.starts_with(other) || other.starts_with(one));
+}
+
 }  // namespace
 
 InputError told_at(const Place& named, const InputError& error) {
@@ -74,7 +88,8 @@ std::string nearest_name_of(const std::string& word, const std::string* begin,
   size_t best_distance = word.size() / 3 + 1;
   for (const std::string* name = begin; name != end; ++name) {
     if (name->size() > 200) continue;
-    const size_t distance = edit_distance(lower_case(word), lower_case(*name));
+    size_t distance = edit_distance(lower_case(word), lower_case(*name));
+    if (is_start(letters(word), letters(*name))) distance = std::min<size_t>(distance, 1);
     if (distance < best_distance) {
       best_distance = distance;
       best = name;

@@ -38,7 +38,7 @@ InputError told_at(const Place& named, const InputError& error);
 InputError cannot_write(const std::string& file, const std::string& why = "");
 
 /// The entry of `known` nearest to `word` (edit distance without regard to case, at most a third of
-/// its length), or "".
+/// its length, or one is the other's start), or "".
 template <class Strings>
 std::string nearest_name(const std::string& word, const Strings& known);
 std::string nearest_name_of(const std::string& word, const std::string* begin,

@@ -35,13 +35,21 @@ std::optional<double> number_of(const std::string& text) {
   return value;
 }
 
+/// pull_1.png and pull_2.png are two of a series, no slip of the pen.
+std::string without_digits(std::string name) {
+  std::erase_if(name, [](unsigned char c) { return std::isdigit(c); });
+  return name;
+}
+
 /// "; did you mean `rest.obj`?" where the folder holds a file of nearly that name.
 std::string nearest_file(const fs::path& missing) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(missing.parent_path(), error), end; !error && it != end;
        it.increment(error)) {
-    names.push_back(it->path().filename().string());
+    if (const std::string name = it->path().filename().string();
+        without_digits(name) != without_digits(missing.filename().string()))
+      names.push_back(name);
     if (names.size() > 1000) break;
   }
   std::sort(names.begin(), names.end());

@@ -64,14 +64,23 @@ void colour_bar(cv::Mat& panel) {
   label(panel, text, {x0 + width + 8, y0 + height}, scale);
 }
 
-/// Arrow scale: a round number of times such that the median arrow spans about a cell.
+double quantile(std::vector<double>& values, double share) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size()));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// Arrow scale: a round number of times such that the longer arrows span about a cell. Noise does
+/// not: they stand for ten standard deviations of a cell's motion at least.
 double arrow_gain(const FlowField& flow) {
-  std::vector<double> lengths;
-  for (const auto& cell : flow.cells)
-    if (cell.reliable) lengths.push_back(cell.estimate.head<2>().norm());
+  std::vector<double> lengths, deviations;
+  for (const auto& cell : flow.cells) {
+    if (!cell.reliable) continue;
+    lengths.push_back(cell.estimate.head<2>().norm());
+    deviations.push_back(std::sqrt(0.5 * cell.information.inverse().topLeftCorner<2, 2>().trace()));
+  }
   if (lengths.empty()) return 1.0;
-  std::nth_element(lengths.begin(), lengths.begin() + lengths.size() * 9 / 10, lengths.end());
-  const double large = std::max(lengths[lengths.size() * 9 / 10], 1e-3);
+  const double large = std::max({quantile(lengths, 0.9), 10.0 * quantile(deviations, 0.5), 1e-3});
   const double wanted = 1.5 * flow.cell_px / large;
   const double decade = std::pow(10.0, std::floor(std::log10(wanted)));
   for (double step : {5.0, 2.0, 1.0})

@@ -157,7 +157,8 @@ std::string summary(const Plan& plan) {
       return known + "; none of the further loads and views would separate them";
     return known + "; best: " + best.sentence;
   }
-  if (plan.untestable.empty()) return "nothing is confused: no further load or view is needed";
+  if (plan.untestable.empty())
+    return "these photos tell what leads from all else: no further load or view is needed";
   const bool helps = !plan.ratings.empty() && !plan.ratings.front().makes_testable.empty();
   return fmt::format("nothing is confused; {} cannot be tested with these photos{}",
                      fmt::join(plan.untestable, ", "),

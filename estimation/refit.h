@@ -36,6 +36,7 @@ struct Racer {
 struct Raced {
   std::string effect;
   double chi_fit = 0.0, chi_validate = 0.0;
+  double floor = 0.0;  ///< Trial::floor
 };
 
 /// All nameable effects, each given one Gauss-Newton step from its linear step and the first four

@@ -68,7 +68,10 @@ json timeline_entry(const Step& step) {
             {"chi_fit", one.chi_fit},
             {"chi_validate", one.chi_validate > 0.0 ? json(one.chi_validate) : json()}};
   };
-  for (const Raced& raced : step.raced) entry["raced"].push_back(left(raced));
+  for (const Raced& raced : step.raced) {
+    entry["raced"].push_back(left(raced));
+    entry["raced"].back()["floor"] = raced.floor;  // of half-size photos
+  }
   for (const Rival& rival : step.rivals) {
     entry["rivals"].push_back(left(rival));
     entry["rivals"].back()["score"] = rival.score;

@@ -1,4 +1,5 @@
 // hookeye add: refit with an effect (or without it again); the next step of the run.
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
 #include "app/text.h"
+#include "estimation/effect.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -28,7 +30,8 @@ std::string outcome(const Step& before, const Step& after, const Floor& floor, b
       was * was > f2 ? (was * was - std::max(is * is, f2)) / (was * was - f2) : 0.0;
   return fmt::format("{} on the {} photos (chi {:.3f} -> {:.3f})",
                      was * was <= f2 ? std::string("nothing to remove")
-                     : share >= 0.0  ? fmt::format("removed {:.0f} %", 100.0 * share)
+                     : share >= 0.0  ? fmt::format("removed {:.{}f} % of what was over the floor",
+                                                   100.0 * share, share > 0.99 ? 1 : 0)
                                      : fmt::format("misfit {:.2g} times as large", 1.0 - share),
                      held_out ? "held-out" : "fitted", was, is);
 }
@@ -84,6 +87,9 @@ void add_add(CLI::App& app, CommandBody& chosen) {
   command->add_option("RUN", arguments->run, "Run folder")->required();
   command->add_option("EFFECT", arguments->request.effect, "Name of the effect")->required();
   command->add_flag("--take-back", arguments->request.take_back, "Refit without the effect again");
+  std::vector<std::string> names;
+  for (const Effect* effect : catalogue()) names.push_back(effect->name());
+  command->footer(wrapped(fmt::format("Effects: {}", fmt::join(names, ", "))));
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_add(*arguments, session); };
   });

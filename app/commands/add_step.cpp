@@ -17,8 +17,9 @@ namespace {
 }
 
 [[noreturn]] void there_already(const std::string& wanted) {
-  throw InputError({wanted}, "the newest step has this effect already",
-                   "add another one, or take this one back");
+  throw InputError(
+      {wanted}, "the newest step has this effect already",
+      "add another one, or take this one back: `hookeye add RUN " + wanted + " --take-back`");
 }
 
 [[noreturn]] void not_there(const std::string& wanted, const std::vector<std::string>& effects) {

@@ -220,6 +220,12 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
   session.say("\nparameters of the base model\n{}", table(rows));
   if (capture.gravity)
     session.say("  gravity {} {}\n", vector_text(*capture.gravity), capture.units.acceleration());
+  else
+    session.say("{}", wrapped(capture.body.density > 0.0
+                                  ? "gravity is not told: the body is taken to weigh nothing"
+                                  : "neither gravity nor `density` is told: the body is taken to "
+                                    "weigh nothing; a weight found missing is told by volume",
+                              2));
   rows = {{"camera", "size", "projection", "fx", "centre [" + capture.units.length + "]"}};
   for (const auto& camera : capture.cameras)
     rows.push_back(

@@ -68,7 +68,9 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
   session.say("{}", steps_table(run.timeline()));
-  for (size_t i = 1; i < steps.size(); ++i) session.say("{}", choice_table(steps[i - 1], steps[i]));
+  for (size_t i = 1; i < steps.size(); ++i)
+    session.say("{}", choice_table(steps[i - 1], steps[i],
+                                   run.timeline().at("floor").at("chi").get<double>()));
   const Fitted& last = found.steps.back().fitted;
   session.say("\n{}", parameter_table(last));
   if (const auto said = not_converged(last.converged, last.iterations); !said.empty())

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/text.h"
 #include "estimation/verdict.h"
@@ -29,6 +30,12 @@ std::string few(const std::vector<Confusion>& confused) {
 /// 0: null, or left out.
 double number_in(const nlohmann::json& object, const char* key) {
   return object.contains(key) && object[key].is_number() ? object[key].get<double>() : 0.0;
+}
+
+/// The least that the simulated null can tell is an upper bound.
+std::string p_text(double p) {
+  const double least = 1.0 / (1.0 + DiagnosisOptions().null_simulations);
+  return p < 1.001 * least ? fmt::format("<{:.3f}", p + 0.0005) : fmt::format("{:.3f}", p);
 }
 
 }  // namespace
@@ -58,13 +65,16 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
     }
     if (rows.size() > most) continue;
     rows.push_back({effect.effect, bar(effect.explains, 7), fmt::format("{:.1f}", effect.evidence),
-                    fmt::format("{:.3f}", effect.p_value), fmt::format("{}", effect.dof),
+                    p_text(effect.p_value), fmt::format("{}", effect.dof),
                     few(effect.confused_with)});
     if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += wrapped(effect.why, 2);
   }
   return table(rows) +
          fmt::format(
-             "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
+             "  evidence: log odds of the effect against chance, in this step's residual alone (5 "
+             "is "
+             "150 to 1)\n  named only above evidence {:.1f} (chance alone reaches it in 5 % of "
+             "runs)\n",
              std::max(diagnosis.gate, kNameable)) +
          sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
 }
@@ -100,46 +110,115 @@ std::string steps_table(const nlohmann::json& timeline) {
   return table(rows);
 }
 
-std::string choice_table(const nlohmann::json& before, const nlohmann::json& step) {
+namespace {
+
+using nlohmann::json;
+
+/// The entry of an effect in a list of them; null: none.
+json entry_of(const json& list, const std::string& effect) {
+  for (const auto& one : list)
+    if (one.at("effect") == effect) return one;
+  return {};
+}
+
+/// What was tried and refitted, in multiples of the floor.
+std::string choice_rows(const json& before, const json& step, double floor) {
   constexpr size_t kMost = 6;
-  const nlohmann::json none = nlohmann::json::array();
-  const auto raced = step.value("raced", none), rivals = step.value("rivals", none);
-  if (raced.size() < 2) return "";
+  const json none = json::array();
   const std::string added = step.at("added");
-  std::vector<std::vector<std::string>> rows = {{"effect", "evidence", "tried: chi fitted",
-                                                 "held out", "refitted: chi fitted", "held out",
-                                                 "behind"}};
-  const auto chi = [](const nlohmann::json& one, const char* key) {
+  const auto rivals = step.value("rivals", none), scores = before.value("diagnosis", none);
+  std::vector<std::vector<std::string>> rows = {{"effect", "evidence", "tried: fitted", "held out",
+                                                 "refitted: fitted", "held out", "behind"}};
+  const auto over = [](const json& one, const char* key, double least) {
     const double value = number_in(one, key);
-    return value > 0.0 ? fmt::format("{:.2f}", value) : "-";
+    return value > 0.0 ? fmt::format("{:.2f}", least > 0.0 ? value / least : value) : "-";
   };
-  const auto of = [](const nlohmann::json& list, const std::string& effect) {
-    for (const auto& one : list)
-      if (one.at("effect") == effect) return one;
-    return nlohmann::json();
-  };
-  const auto scores = before.value("diagnosis", none);
-  for (const auto& one : raced) {
+  size_t left_out = 0;
+  for (const auto& one : step.at("raced")) {
     const std::string effect = one.at("effect");
-    const nlohmann::json score = of(scores, effect);
-    const nlohmann::json refit = effect == added ? step : of(rivals, effect);
-    if (rows.size() > kMost && refit.is_null()) continue;
+    const json score = entry_of(scores, effect);
+    const json refit = effect == added ? step : entry_of(rivals, effect);
+    if (rows.size() > kMost && refit.is_null()) {
+      ++left_out;
+      continue;
+    }
+    const double half = number_in(one, "floor");
     rows.push_back({effect,
                     score.is_null() ? "-" : fmt::format("{:.1f}", number_in(score, "evidence")),
-                    chi(one, "chi_fit"), chi(one, "chi_validate"),
-                    refit.is_null() ? "" : chi(refit, "chi_fit"),
-                    refit.is_null() ? "" : chi(refit, "chi_validate"),
+                    over(one, "chi_fit", half), over(one, "chi_validate", half),
+                    refit.is_null() ? "" : over(refit, "chi_fit", floor),
+                    refit.is_null() ? "" : over(refit, "chi_validate", floor),
                     refit.is_null()   ? ""
                     : effect == added ? "-"
                                       : fmt::format("{:.1f}", -number_in(refit, "score"))});
   }
+  return table(rows) +
+         (left_out ? fmt::format("  and {} that got less far in the trial\n", left_out) : "");
+}
+
+/// How far ahead of the next one: "how sure".
+std::string sureness(const json& step) {
+  const std::string added = step.at("added");
+  std::string nearest;
+  double behind = 0.0;
+  for (const auto& rival : step.value("rivals", json::array())) {
+    const double by = -number_in(rival, "score");
+    if (rival.at("effect") == added || (!nearest.empty() && by >= behind)) continue;
+    nearest = rival.at("effect"), behind = by;
+  }
+  if (nearest.empty())
+    return fmt::format("how sure: no other got near enough to {} in the trial to be refitted",
+                       added);
+  if (behind < kTie)
+    return fmt::format(
+        "how sure: {} does as well (behind by {:.1f}); `hookeye plan` tells which "
+        "photos would separate the two",
+        nearest, behind);
+  return fmt::format("how sure: {}, the next, is behind by {:.1f}: odds of 10^{:.0f} to one",
+                     nearest, behind, behind / std::log(10.0));
+}
+
+/// What changes the photos much as the added effect does, by the diagnosis before it.
+std::string resemblance(const json& before, const std::string& added) {
+  std::vector<std::string> names;
+  for (const auto& score : before.value("diagnosis", json::array()))
+    for (const auto& other : score.value("confusion", json::array())) {
+      const std::string a = score.at("effect"), b = other.at("effect");
+      if (a != added && b != added) continue;
+      const std::string name =
+          fmt::format("{} (cosine {:.3f})", a == added ? b : a, number_in(other, "cosine"));
+      if (names.size() < 4 && std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+    }
+  return names.empty() ? ""
+                       : fmt::format("; most alike in these photos: {}", fmt::join(names, ", "));
+}
+
+bool by_hand(const json& step) {
+  const std::string command = step.value("command", "");
+  return command.find("hookeye add ") != std::string::npos ||
+         command.find("hookeye studio ") != std::string::npos;
+}
+
+}  // namespace
+
+std::string choice_table(const json& before, const json& step, double floor) {
+  if (step.at("added").is_null()) return "";
+  const std::string added = step.at("added");
+  if (by_hand(step))
+    return "\n" + wrapped(fmt::format(
+                      "{} was added by hand and not raced against others: `hookeye discover "
+                      "CAPTURE -o NEW_RUN` tells what else it could have been{}",
+                      added, resemblance(before, added)));
+  const auto raced = step.value("raced", json::array());
+  if (raced.size() < 2) return "";
   return "\n" +
-         wrapped(
-             fmt::format("why {}: what each of the {} effects that stood out leaves (tried: after "
-                         "two steps of its refit, half-size photos; behind: in the refits' log "
-                         "likelihood less the price of their parameters, below {:.0f} is a tie)",
-                         added, raced.size(), kTie)) +
-         table(rows);
+         wrapped(fmt::format(
+             "why {}: what each of the {} effects that stood out leaves, in multiples of the noise "
+             "floor (tried: after two steps of its refit, in half-size photos; behind: in the "
+             "refits' log likelihood less the price of their parameters, below {:.0f} is a tie)",
+             added, raced.size(), kTie)) +
+         choice_rows(before, step, floor) + wrapped(sureness(step) + resemblance(before, added), 2);
 }
 
 }  // namespace hookeye

@@ -14,9 +14,9 @@ std::string parameter_table(const Fitted& fitted);
 std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
 /// How the error fell over the steps of `run.json`, this run's and those it went on from.
 std::string steps_table(const nlohmann::json& timeline);
-/// What the effect that `step` of `run.json` added to `before` was chosen from. Empty: nothing else
-/// stood out.
-std::string choice_table(const nlohmann::json& before, const nlohmann::json& step);
+/// What the effect that `step` of `run.json` added to `before` was chosen from, in multiples of the
+/// floor, and how sure the choice is. Empty: nothing else stood out.
+std::string choice_table(const nlohmann::json& before, const nlohmann::json& step, double floor);
 
 /// "gravity", "strain_stiffening, without softening".
 std::string name_of(const Step& step);

@@ -116,7 +116,7 @@ export interface TimelineStep {
   diagnosis: EffectScore[];
   gate?: number;
   /** What the added effect was chosen from, best first: left after two steps of a refit, at half size. */
-  raced?: {effect: string; chi_fit: number; chi_validate: number | null}[];
+  raced?: {effect: string; chi_fit: number; chi_validate: number | null; floor?: number}[];
   /** Those of them that were refitted to the end: their score less the winner's. */
   rivals?: {effect: string; score: number; chi_fit?: number; chi_validate?: number | null}[];
   command?: string;

@@ -88,7 +88,7 @@ export const isNumerical = (effect: string): boolean => effect === 'mesh_resolut
 /** What was added to a step, and by how much its refit beat the best of the others that were refitted. */
 export interface Decision {
   added: string;
-  /** All that were tried, best first: chi of fitted and held-out photos, at half size, after two steps of a refit. */
+  /** All that were tried, best first: chi of fitted and held-out photos over the floor, at half size, after two steps of a refit. */
   tried: {effect: string; fitted: number; heldOut: number | null}[];
   refitted: string[];
   margin?: number;
@@ -98,7 +98,8 @@ export function decisionAfter(entry: StepEntry | undefined): Decision | undefine
   const next = told && run.value.timeline.steps[run.value.timeline.steps.indexOf(told) + 1];
   if (!next?.added || next.name.startsWith('without-')) return undefined;
   const others = (next.rivals ?? []).filter((r) => r.effect !== next.added).sort((a, b) => b.score - a.score);
-  const tried = (next.raced ?? []).map((r) => ({effect: r.effect, fitted: r.chi_fit, heldOut: r.chi_validate}));
+  const tried = (next.raced ?? []).map(({effect, chi_fit, chi_validate, floor}) => ({effect, fitted: chi_fit / (floor || 1),
+    heldOut: chi_validate === null ? null : chi_validate / (floor || 1)}));
   return {added: next.added, tried, refitted: others.map((r) => r.effect), margin: others.length ? -others[0].score : undefined};
 }
 export function figuresOf(entry: StepEntry | undefined, photo: PhotoEntry): PhotoFigures | undefined {

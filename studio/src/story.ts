@@ -172,9 +172,11 @@ export function provisional(): Told {
   const effects = now.effects?.length ? `with ${listed(now.effects.map(spaced))}, ` : '';
   const tested = effectsOf(newest).filter(wasTested);
   if (!tested.length) return {headline: 'not judged yet', sentence: effects + left};
-  const standing = tested.filter((e) => isNamed(e, newest) && !isNumerical(e.effect)).map((e) => spaced(e.effect));
+  const named = tested.filter((e) => isNamed(e, newest));
+  const standing = named.filter((e) => !isNumerical(e.effect)).map((e) => spaced(e.effect));
   const reached = Math.max(now.chi_fit, now.chi_validate ?? 0) <= atFloor * floor.value.chi;
-  const rest = standing.length === 0 ? 'nothing else stands out'
+  const rest = named.length > 0 && isNumerical(named[0].effect) ? `${spaced(named[0].effect)} leads: a finer mesh comes before any other effect`
+    : standing.length === 0 ? 'nothing else stands out'
     : `${listed(standing.slice(0, 2))}${standing.length > 2 ? ` and ${standing.length - 2} more` : ''} stand${standing.length === 1 ? 's' : ''} out`;
   return {headline: reached ? 'at the floor' : 'above the floor', sentence: `${effects}${left}; ${rest}`};
 }
