@@ -157,6 +157,7 @@ class Search {
       add_two(*found->first, std::move(contest.raced), swapped_step(std::move(found->second)));
       return true;
     }
+    if (auto failure = widen_what_spoils(step, contest)) return *failure;
     refused_ = why_refused(step, contest.before, contest.refits.front());
     if (!refused_.empty()) return add_pair(contest, room);
     add_winner(contest);
@@ -189,6 +190,26 @@ class Search {
       return true;
     }
     return false;
+  }
+
+  /// Where all that explain the fitted photos miss the held-out ones, a wider form of a loser may
+  /// miss them least: creep that levels off loses to softening while it may only grow.
+  std::optional<NumericalFailure> widen_what_spoils(const Step& step, Contest& contest) {
+    if (std::any_of(contest.refits.begin(), contest.refits.end(),
+                    [&](const Refit& refit) { return at_floor(refit.fitted, out_.floor); }))
+      return {};
+    bool wider = false;
+    for (Refit& refit : contest.refits) {
+      if (numerical(refit.effect) || !spoils_held_out(refit.fitted, out_.floor)) continue;
+      const size_t at = refit.fitted.form.ingredients.size() - 1;
+      const std::string narrow = refit.fitted.form.ingredients[at]->variant();
+      auto result = widened(workspace_, refit.fitted, at, out_.floor, options_.fit, events_);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+      refit.fitted = std::get<Fitted>(std::move(result));
+      wider = wider || refit.fitted.form.ingredients[at]->variant() != narrow;
+    }
+    if (wider) score_refits(step, contest);
+    return {};
   }
 
   void add_two(const Refit& first, std::vector<Raced> raced, Step second) {

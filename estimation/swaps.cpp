@@ -97,13 +97,12 @@ bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& 
   return false;
 }
 
-namespace {
-
-/// The effects explain the fitted photos and not the held-out ones.
 bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
   return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
          fitted.evaluation.chi(true) > kAtFloor * floor.chi;
 }
+
+namespace {
 
 bool same_form(const Ingredient& one, const Ingredient& other) {
   return one.name() == other.name() && one.variant() == other.variant();

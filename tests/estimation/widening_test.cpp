@@ -79,6 +79,19 @@ TEST(Widening, CreepThatLevelsOff) {
   EXPECT_NEAR(fitted.p[2], 1.2, 0.05);
 }
 
+/// Two loads tell one ratio of stiffnesses: softening, creep that only grows and creep that levels
+/// off explain them alike. The held-out photos tell which came nearest.
+TEST(Widening, CreepOfTwoLoadsIsNotLeftToSoftening) {
+  const test::SmallScene small(
+      {.recipe = recipe("{effect: creep, variant: free levelling off of the compliance, values: "
+                        "{creep.c: 0.2, creep.tau: 1.2}}",
+                        kPressAndTwist)});
+  const Discovery discovery = test::discover(small);
+  EXPECT_THAT(discovery.missing, ElementsAre("creep"));
+  EXPECT_THAT(discovery.steps.back().fitted.form.ingredients.back()->variant(),
+              testing::StartsWith("free levelling off"));
+}
+
 TEST(Widening, SwellingFromOneSide) {
   const Fitted fitted = found(
       "{effect: swelling, variant: free gradient, values: {swelling.s: 0.01, swelling.gx: 0.04, "
