@@ -328,6 +328,25 @@ TEST(Additive, UniaxialBiaxialShearAndVolumetricCurves) {
   }
 }
 
+/// Energy, slope and curvature of an addend along its strain, on both sides of rest.
+TEST(Additive, CurvesHaveTheirDerivatives) {
+  const AdditiveModel model = every_kind();
+  int even = 0;
+  for (size_t i = 0; i < model.addends.size(); ++i) {
+    const Addend& a = model.addends[i];
+    if (a.second >= 0) continue;
+    even += a.even;
+    const auto at = [&](double e) { return addend_curve(model, static_cast<int>(i), e); };
+    for (double e : {-0.37, -0.16, 0.17, 0.38}) {
+      if (at(e).isZero(0.0)) continue;  // short of a wall
+      const std::string label = a.name + " at " + std::to_string(e);
+      test::expect_derivative([&](double h) { return VectorXd(at(e + h).head<2>()); },
+                              at(e).tail<2>(), 1e-3, 1e-9, label);
+    }
+  }
+  EXPECT_EQ(even, 3);
+}
+
 TEST(Additive, RefinementLeavesTheFunctionAlone) {
   const AdditiveModel model = every_kind();
   AdditiveModel fine = model;

@@ -176,6 +176,33 @@ TEST_P(Forces, Foundation) {
             3 * static_cast<int>(top(mesh).nodes.size()));
 }
 
+/// The rim of a patch may cross faces: of such a face its share counts, in force and tangent alike.
+TEST_P(Forces, SharesOfFacesCount) {
+  const TetMesh mesh = small(GetParam());
+  const VectorXd q = deformed(mesh), d = test::noise(q.size(), 12), X = mesh.X.reshaped();
+  const Region whole = top(mesh);
+  Region part = whole, rest = whole;
+  ASSERT_GE(whole.faces.size(), 8u);
+  for (size_t i = 0; i < whole.faces.size(); ++i) {
+    part.faces[i].second = 0.1 + 0.1 * static_cast<double>(i % 8);
+    rest.faces[i].second = 1.0 - part.faces[i].second;
+  }
+  const auto pressure = [](const Region& patch) { return follower_pressure(patch, 0.3); };
+  const auto springs = [&](const Region& patch) { return elastic_foundation(patch, 4.0, 0.7, X); };
+  const auto check = [&](const auto& on, const std::string& what) {
+    const auto force = on(part);
+    const VectorXd R = residual_of(*on(whole), mesh, q, 0.7);
+    const VectorXd both = residual_of(*force, mesh, q, 0.7) + residual_of(*on(rest), mesh, q, 0.7);
+    EXPECT_LE((both - R).norm(), 1e-13 * R.norm()) << what;
+    const MatrixXd K = dense_tangent(*force, mesh, q, 0.7), W = dense_skew(*force, mesh, q, 0.7);
+    test::expect_derivative([&](double t) { return residual_of(*force, mesh, q + t * d, 0.7); },
+                            (K + W) * d, 1e-4, 1e-7, what);
+  };
+  check(pressure, "pressure");
+  check(springs, "foundation");
+  check_potential(*springs(part), mesh, q, "foundation");
+}
+
 TEST_P(Forces, Floor) {
   const TetMesh mesh = small(GetParam());
   const VectorXd q = deformed(mesh);
@@ -234,8 +261,11 @@ TEST_P(Forces, ParameterDerivativeOfForces) {
   const EnergyModel energy = mixed(mesh);
   const VectorXd q = deformed(mesh, 0.02);
   const VectorXd base[2] = {Eigen::Vector2d(0.05, 0.6), Eigen::Vector4d(0.03, 1, 1, 0)};
-  for (int part = 0; part < 2; ++part)
-    for (int k = 0; k < base[part].size(); ++k)
+  for (int part = 0; part < 2; ++part) {
+    const MatrixXd all = all_dR_dtheta(mesh, energy, q, part);
+    ASSERT_EQ(all.cols(), base[part].size());
+    for (int k = 0; k < base[part].size(); ++k) {
+      const VectorXd one = dR_dtheta(mesh, energy, q, part, k);
       test::expect_derivative(
           [&](double h) {
             EnergyModel other = energy;
@@ -244,8 +274,10 @@ TEST_P(Forces, ParameterDerivativeOfForces) {
             other.parts[part].term = energy.parts[part].term->with(v);
             return residual(mesh, other, Loading{}, q);
           },
-          dR_dtheta(mesh, energy, q, part, k), 1e-4, 1e-8,
-          fmt::format("part {} parameter {}", part, k));
+          one, 1e-4, 1e-8, fmt::format("part {} parameter {}", part, k));
+      EXPECT_LE((all.col(k) - one).norm(), 1e-13 * one.norm()) << part << " " << k;
+    }
+  }
 }
 
 TEST_P(Forces, SwollenFreeBodyIsStressFree) {
