@@ -42,9 +42,11 @@ struct Contours : testing::Test {
 
   /// By a smooth motion of all vertices.
   void compare_positions(const std::string& what) {
+    compare_motion(test::field(surface.X, 0.3), what);
+  }
+  void compare_motion(const Matrix3Xd& u, const std::string& what) {
     Renderer renderer(surface);
     const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
-    const Matrix3Xd u = test::field(surface.X, 0.3);
     compare(
         test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns)),
         [&](double h) { return picture(renderer, surface.X + h * u, state); }, 0.1,
@@ -106,6 +108,42 @@ TEST_F(Contours, positions) {
       state.camera = test::camera(projection, distorted);
       compare_positions("image");
     }
+}
+
+// Each end of an edge moves it by its own share, which motions that are smooth over the mesh hide:
+// here neighbours move otherwise. The plate ends at its rim.
+TEST_F(Contours, ends_of_edges) {
+  texture.source = Texture::Source::uniform;
+  texture.albedo = 0.8;
+  surface = {};
+  surface.X.resize(3, 4);
+  surface.X << -7, 6, 8, -5, -5, -6, 5, 6, 1, 0, 2, -1;
+  surface.triangles = {{0, 2, 1}, {0, 3, 2}};
+  compare_motion(test::field(20 * surface.X, 0.3), "plate");
+}
+
+// However few the rays, contours have the same share in the whole picture: so have pixels that they
+// cross although no ray of the pattern meets the body there.
+TEST_F(Contours, few_rays) {
+  texture.source = Texture::Source::uniform;
+  texture.albedo = 0.8;
+  Renderer renderer(surface);
+  const Matrix3Xd u = test::field(surface.X, 0.3);
+  const double h = 0.1;
+  const double numeric = (picture(renderer, surface.X + h * u, state).sum() -
+                          picture(renderer, surface.X - h * u, state).sum()) /
+                         (2 * h);
+  for (int rays : {1, 2, 3}) {
+    options.rays_per_axis = rays;
+    options.filter_width_px = rays == 1 ? 1.0 : RenderOptions().filter_width_px;
+    const Rendering r = renderer.render(surface.X, nullptr, texture, state, options, true);
+    const VectorXd d =
+        test::directional(renderer, r, surface.X, &u, nullptr, VectorXd::Zero(kPhotoColumns));
+    double sum = 0;
+    for (const double one : d)
+      if (std::isfinite(one)) sum += one;
+    EXPECT_NEAR(sum, numeric, 0.02 * std::abs(numeric)) << rays << " rays";
+  }
 }
 
 TEST_F(Contours, inner_edge_alone) {
