@@ -7,6 +7,8 @@
 #include <Eigen/QR>
 #include <random>
 
+#include "support/derivative.h"
+
 namespace hookeye {
 namespace {
 
@@ -60,6 +62,60 @@ TEST(Scaling, KeepsTheBoundsThatRoundingWouldLeave) {
 
 /// Photos under prescribed motions know ratios of stiffness alone: each modulus may be anything,
 /// although its ratio to the other is known to a thousandth.
+/// What a fit moves and what the model has: their slopes, for a logarithm and for a level.
+TEST(Scaling, HasItsDerivative) {
+  const Scaling scaling{{stiffness("k"), level("z")}};
+  const VectorXd p = Eigen::Vector2d(0.37, 2.3), x = scaling.to_x(p);
+  for (int i = 0; i < 2; ++i)
+    test::expect_derivative([&](double h) { return scaling.to_p(x + h * VectorXd::Unit(2, i)); },
+                            scaling.dp_dx(p)[i] * VectorXd::Unit(2, i), 1e-3, 1e-9,
+                            scaling.parameters[i].name);
+}
+
+/// Photos and measured values of the fitted examples, or of the others, and nothing else.
+TEST(NormalEquations, SumPhotosAndMeasuredValues) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> any;
+  const auto noise = [&](Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::MatrixXd(
+        Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return any(random); }));
+  };
+  Evaluation evaluation;
+  evaluation.columns = 3;
+  Eigen::MatrixXd J[2];
+  VectorXd r[2];
+  for (const bool held_out : {false, true, false}) {
+    ExampleEvaluation example;
+    example.held_out = held_out;
+    Eigen::MatrixXd& all = J[held_out];
+    VectorXd& residuals = r[held_out];
+    for (int k = 0; k < 4; ++k) {
+      const Eigen::MatrixXd own = noise(3, 3);
+      const VectorXd at = noise(3, 1);
+      if (k < 2) {
+        PhotoEvaluation photo;
+        photo.sums = {own.transpose() * own, own.transpose() * at, at.squaredNorm(), 3};
+        example.photos.push_back(photo);
+      } else {
+        MeasuredEvaluation measured;
+        measured.predicted.setZero();
+        measured.J = own, measured.r = at;
+        example.measured.push_back(measured);
+      }
+      const Eigen::Index before = residuals.size();
+      all.conservativeResize(before + 3, 3), residuals.conservativeResize(before + 3);
+      all.bottomRows(3) = own, residuals.tail(3) = at;
+    }
+    evaluation.examples.push_back(example);
+  }
+  for (const bool held_out : {false, true}) {
+    const NormalEquations sums = normal_equations(evaluation, held_out);
+    EXPECT_LE((sums.JtJ - J[held_out].transpose() * J[held_out]).norm(), 1e-13 * sums.JtJ.norm());
+    EXPECT_LE((sums.Jtr - J[held_out].transpose() * r[held_out]).norm(), 1e-13 * sums.Jtr.norm());
+    EXPECT_NEAR(sums.r2, r[held_out].squaredNorm(), 1e-13 * sums.r2);
+  }
+}
+
 TEST(ParameterCovariance, ARatioAloneLeavesBothModuliOpen) {
   const VectorXd p = Eigen::Vector3d(0.02, 0.3, 0.2);
   const std::vector<Parameter> all{stiffness("mu"), stiffness("kappa"), level("background.cam0")};
