@@ -204,14 +204,13 @@ TEST(RestTexture, PlacementMovesTheReferencePhotoToo) {
         VectorXd::Constant(1, 2.0 * sums.Jtr.dot(direction)), 2e-4, 0.01);
 }
 
-/// The photo that gives the texture was taken by a camera and with an exposure of its own: what
-/// changes these changes every picture, and derivatives know it.
-TEST(RestTexture, WhatTheReferencePhotoWasTakenWithCounts) {
+/// The misfit's slope by every candidate of the effects, a little off their nulls.
+void check_slopes(const std::vector<std::string>& effects, double step) {
   const test::TemporaryFolder folder;
   const auto scene = turned_scene(folder);
   Workspace workspace(scene);
   const ModelForm base = base_form(scene);
-  for (const std::string name : {"focal_length", "exposure", "camera_pose"}) {
+  for (const std::string& name : effects) {
     int tried = 0;
     for (const auto& candidate :
          find_effect(name)->candidates(base.realise(base.initial()), nullptr)) {
@@ -231,7 +230,7 @@ TEST(RestTexture, WhatTheReferencePhotoWasTakenWithCounts) {
       const auto sums = normal_equations(look(p, true));
       for (Eigen::Index i = base.size(); i < p.size(); ++i) {
         const std::string label = name + " [" + candidate->variant() + "] " + parameters[i].name;
-        const double h = 2e-3 * parameters[i].typical;
+        const double h = step * parameters[i].typical;
         if (std::abs(sums.Jtr[i]) * parameters[i].typical < 1e-9 * misfit(i, 0.0)) {
           // The distance of an orthographic camera; a gain that both photos share.
           EXPECT_NEAR(misfit(i, h), misfit(i, -h), 1e-6 * misfit(i, 0.0)) << label;
@@ -245,6 +244,15 @@ TEST(RestTexture, WhatTheReferencePhotoWasTakenWithCounts) {
     EXPECT_GT(tried, 0) << name;
   }
 }
+
+/// The photo that gives the texture was taken by a camera and with an exposure of its own: what
+/// changes these changes every picture, and derivatives know it.
+TEST(RestTexture, WhatTheReferencePhotoWasTakenWithCounts) {
+  check_slopes({"focal_length", "exposure", "camera_pose"}, 2e-3);
+}
+
+/// What bends the body in every example bends it in the photo that gives the texture as well.
+TEST(RestTexture, WhatMovesTheBodyAtRestCounts) { check_slopes({"gravity"}, 0.05); }
 
 /// A body that hangs in one jaw is at rest wherever the jaw went: such photos tell the floor.
 TEST(RestTexture, BodyHeldByOneJawIsAtRest) {
