@@ -217,30 +217,59 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
   return out;
 }
 
-/// Normal equations of the counted pixels; Huber weights by iteratively reweighted squares.
+/// Square root of Huber's weight by iteratively reweighted squares.
+double root_weight(double residual, double huber) {
+  return huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
+}
+
+/// B^T(w r) of all pixels, 0 where nothing counts that blur reaches.
+Image adjoint(const Image& residuals, const Image& sigma, double blur_variance, double huber) {
+  Image out{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
+  for (size_t i = 0; i < out.values.size(); ++i) {
+    const double residual = residuals.values[i];
+    if (std::isnan(residual)) continue;
+    const double weight = root_weight(residual, huber);
+    out.values[i] = static_cast<float>(weight * weight * residual / sigma.values[i]);
+  }
+  return blur_variance > 0.0 ? blur(out, blur_variance) : out;
+}
+
+/// Of pixels that the derivative has no row of.
+SumsBehind sums_behind(const ImageDerivative& dI, const Image& residuals, const Image& sigma,
+                       const Image& Bt_r, double huber) {
+  std::vector<unsigned char> has_row(sigma.pixels(), 0);
+  dI.for_each_pixel([&](size_t, int pixel) { has_row[pixel] = 1; });
+  SumsBehind out;
+  for (size_t i = 0; i < has_row.size(); ++i) {
+    if (has_row[i]) continue;
+    out.Bt_r += Bt_r.values[i];
+    const double residual = residuals.values[i];
+    if (!std::isnan(residual))
+      out.ww += std::pow(root_weight(residual, huber) / sigma.values[i], 2);
+  }
+  return out;
+}
+
+/// Normal equations of the counted pixels.
 NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
-                             const SurfaceMesh& surface, double blur_variance, double huber,
+                             const SurfaceMesh& surface, const PhotoState& state, double huber,
                              CondensedColumns columns) {
   const ImageDerivative& dI = rendering.dI;
   const auto count = static_cast<Eigen::Index>(dI.pixels());
   VectorXd r = VectorXd::Zero(count), w = r, Bt_r = r;
+  const Image all = adjoint(residuals, sigma, state.blur_variance, huber);
   dI.for_each_pixel([&](size_t k, int pixel) {
+    Bt_r[k] = all.values[pixel];
     const double residual = residuals.values[pixel];
     if (std::isnan(residual)) return;
-    const double weight =
-        huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
+    const double weight = root_weight(residual, huber);
     r[k] = weight * residual;
     w[k] = weight / sigma.values[pixel];
-    Bt_r[k] = w[k] * r[k];
   });
-  if (blur_variance > 0.0) {
-    Image adjoint{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
-    dI.for_each_pixel(
-        [&](size_t k, int pixel) { adjoint.values[pixel] = static_cast<float>(Bt_r[k]); });
-    adjoint = blur(adjoint, blur_variance);
-    dI.for_each_pixel([&](size_t k, int pixel) { Bt_r[k] = adjoint.values[pixel]; });
-  }
-  return NodeNormalEquations::accumulate(surface, dI, r, w, Bt_r, columns);
+  const bool level = columns.photo && !state.backdrop;
+  return NodeNormalEquations::accumulate(
+      surface, dI, r, w, Bt_r, columns,
+      level ? sums_behind(dI, residuals, sigma, all, huber) : SumsBehind{});
 }
 
 }  // namespace
@@ -312,8 +341,10 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       render_options.gloss_derivative = moves(kSpecular);
       render_options.blur_derivative = moves(kBlur);
       render_options.centres = options.pictures;
+      // Where there is blur, masked pixels are seen in their neighbours.
       impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
-                             render_options, silhouette, &photo.valid, &rendering);
+                             render_options, silhouette,
+                             state.blur_variance > 0.0 ? nullptr : &photo.valid, &rendering);
       const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
       const Comparison comparison =
           compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state);
@@ -342,8 +373,8 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
                               reference.columns->dphoto[source], &S);
         }
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
-        one.sums = condense(rendering, residual, sigma, surface.mesh, state.blur_variance,
-                            options.huber, {S.second.size() > 0, !S.photo.isZero(0.0)})
+        one.sums = condense(rendering, residual, sigma, surface.mesh, state, options.huber,
+                            {S.second.size() > 0, !S.photo.isZero(0.0)})
                        .reduce(S);
       }
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);

@@ -195,7 +195,7 @@ class RunOfPixels {
 NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
                                                     const ImageDerivative& dI, const VectorXd& r,
                                                     const VectorXd& w, const VectorXd& Bt_r,
-                                                    CondensedColumns columns) {
+                                                    CondensedColumns columns, SumsBehind behind) {
   NodeNormalEquations out;
   Impl& m = *out.impl_;
   m.columns = columns;
@@ -204,12 +204,18 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   m.photo.setZero(), m.b_photo.setZero();
   RunOfPixels run(surface, &m);
   Eigen::Index at = 0;
+  double by_blur = 0;  // that column is of the blurred picture already
   for (const Part& part : dI.parts) {
-    for (size_t i = 0; i < part.pixel.size(); ++i, ++at)
+    for (size_t i = 0; i < part.pixel.size(); ++i, ++at) {
       run.add(part, i, static_cast<float>(w[at]), static_cast<float>(Bt_r[at]));
+      if (columns.photo) by_blur += double(part.photo[i][kBlur]) * w[at] * r[at];
+    }
     run.flush();  // a run's pixels follow each other in one part
   }
   m.take_photo_sums();
+  m.b_photo[kBlur] = by_blur;
+  m.b_photo[kBackground] += behind.Bt_r;
+  m.photo(kBackground, kBackground) += behind.ww;
   return out;
 }
 

@@ -25,6 +25,12 @@ struct CondensedColumns {
   bool second = true, photo = true;
 };
 
+/// Pixels without a row in the image derivative, where the level behind the body is all that is
+/// seen (but for what blur spreads there): sums of their B^T(w r) and, of those that count, of w^2.
+struct SumsBehind {
+  double Bt_r = 0, ww = 0;
+};
+
 /// Normal equations of one photo.
 struct CondensedPhoto {
   Eigen::MatrixXd JtJ;  ///< m x m
@@ -42,7 +48,7 @@ class NodeNormalEquations {
   /// VertexSensitivity has it. `columns.photo` needs RenderOptions::photo_derivative.
   static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
                                         const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
-                                        CondensedColumns columns);
+                                        CondensedColumns columns, SumsBehind behind = {});
   CondensedPhoto reduce(const VertexSensitivity& S) const;
   NodeNormalEquations();
   ~NodeNormalEquations();
