@@ -134,6 +134,16 @@ std::vector<Field> all_fields(const Model& model) {
   return out;
 }
 
+}  // namespace
+
+std::vector<std::shared_ptr<const Ingredient>> free_form_ingredients(const Model& model) {
+  std::vector<std::shared_ptr<const Ingredient>> out;
+  for (const Field& field : all_fields(model)) out.push_back(field.ingredient);
+  return out;
+}
+
+namespace {
+
 double share(const NormalEquations& sums, const VectorXd& step, double structured) {
   if (structured <= 0.0) return 0.0;
   return std::clamp(-(2.0 * step.dot(sums.Jtr) + step.dot(sums.JtJ * step)) / structured, -1.0,

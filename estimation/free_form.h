@@ -28,6 +28,9 @@ struct FreeForm {
   std::string sentence;
 };
 
+/// The fields as they are scored: parameter 3 i + c is component c of bump i.
+std::vector<std::shared_ptr<const Ingredient>> free_form_ingredients(const Model& model);
+
 /// Best by evidence: the fields of every kind that has any, estimated as the mean under the prior
 /// that the evidence chose (a step by least squares would be noise where the photos tell little).
 std::variant<std::vector<FreeForm>, NumericalFailure> free_form(Workspace& workspace,

@@ -7,6 +7,7 @@
 
 #include "estimation/contest.h"
 #include "support/temporary_folder.h"
+#include "tests/estimation/effects_scene.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -49,6 +50,36 @@ TEST(FreeForm, FindsAWeightWithoutItsName) {
   // Along the axis of the body a force moves little that is seen, and the prior holds it back.
   EXPECT_LT(mean.z(), 0.4 * weight.z());
   EXPECT_GT(mean.z(), 1.1 * weight.z());
+}
+
+/// Dead forces are linear in their values: the column is the difference of residuals, in the
+/// examples that the field acts in and in no other.
+TEST(FreeForm, ColumnsAreTheForcesThatAreApplied) {
+  const Model& base = test::base_model();
+  const TetMesh& mesh = base.scene->body->mesh;
+  Equilibrium state;
+  state.q = test::deformed_state(*base.scene);
+  int acting = 0;
+  for (const auto& field : free_form_ingredients(base))
+    for (const int k : {0, 4, static_cast<int>(field->parameters().size()) - 1}) {
+      const double h = field->parameters()[k].typical;
+      Model shifted = base;
+      field->apply(h * VectorXd::Unit(field->parameters().size(), k), shifted);
+      const VectorXd null = VectorXd::Zero(field->parameters().size());
+      for (int e = 0; e < static_cast<int>(base.examples.size()); ++e) {
+        MechanicsDerivative column;
+        ASSERT_TRUE(field->mechanics_derivative(null, base, e, state, k, column));
+        const auto R = [&](const Model& model) {
+          return residual(mesh, EnergyModel{}, model.examples[e].loading, state.q);
+        };
+        const VectorXd applied = (R(shifted) - R(base)) / h;
+        if (column.dR_dt.size() == 0) column.dR_dt = VectorXd::Zero(applied.size());
+        EXPECT_LE((column.dR_dt - applied).norm(), 1e-9 * applied.norm() + 1e-12 / h)
+            << field->variant() << " " << k << " " << e;
+        acting += applied.norm() > 0.0;
+      }
+    }
+  EXPECT_GT(acting, 0);
 }
 
 TEST(FreeForm, SaysNothingWhereNothingIsHidden) {
