@@ -93,6 +93,21 @@ std::vector<std::string> effects_in_words(const Fitted& fitted) {
   return out;
 }
 
+std::string too_little_to_name(const Diagnosis& diagnosis) {
+  constexpr double kMost = 0.5;
+  for (const EffectScore& score : diagnosis.effects) {
+    if (!score.testable || numerical(score.effect)) continue;
+    const bool chance = score.evidence < std::max(kNameable, diagnosis.gate);
+    if (chance || nameable(score, diagnosis) || score.explains_held_out < kMost) return "";
+    return fmt::format(
+        "not named, but worth a look: {} would remove {:.0f} % of what is over the floor, {:.0f} % "
+        "on held-out photos, which is less than renderers and meshes err by (`hookeye add` tries "
+        "it)",
+        score.effect, 100.0 * score.explains, 100.0 * score.explains_held_out);
+  }
+  return "";
+}
+
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
                 const std::vector<std::string>& tie, std::string why, const std::string& refused) {
   if (!refused.empty()) why += "; " + refused;

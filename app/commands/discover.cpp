@@ -63,6 +63,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     timeline["sentence"] = found.sentence;
     timeline["missing"] = found.missing;
     timeline["tie"] = found.tie;
+    timeline["hint"] = too_little_to_name(found.steps.back().diagnosis);
     tell_floor(timeline, found.floor);
   });
   session.document = run.timeline();
@@ -78,6 +79,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));
   session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));
+  if (const auto hint = too_little_to_name(found.steps.back().diagnosis); !hint.empty())
+    session.say("{}", wrapped(hint));
   if (found.verdict == Verdict::unexplained)
     tell_free_form(run, bench, found.steps.back(), session);
   say_pictures(run.steps().back(), session);

@@ -131,7 +131,7 @@ namespace {
 /// written, so that no kill leaves it beside a step that it does not mean.
 void drop_verdict(Run& run) {
   run.update([](nlohmann::json& timeline) {
-    for (const char* key : {"verdict", "sentence", "missing", "tie"}) timeline.erase(key);
+    for (const char* key : {"verdict", "sentence", "missing", "tie", "hint"}) timeline.erase(key);
   });
 }
 

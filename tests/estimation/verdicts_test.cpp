@@ -83,6 +83,22 @@ Step fitted_base(Workspace& workspace, const ModelForm& form) {
 }
 
 /// A swollen body explains part of a weight. Once the weight is found it does nothing, and goes.
+/// Told as a hint alone, and only where photos that no score has seen speak for it.
+TEST(Leaders, WhatIsTooLittleToBeNamedIsAHint) {
+  EffectScore small = scored("strain_stiffening", 50.0);
+  small.fall = 0.1, small.explains = 0.3, small.explains_held_out = 0.6;
+  Diagnosis left = of({small});
+  left.floor.chi = 2.0;  // renderers err by 0.3
+  EXPECT_THAT(leaders(left), IsEmpty());
+  EXPECT_THAT(too_little_to_name(left), testing::HasSubstr("strain_stiffening would remove 30 %"));
+  left.effects[0].explains_held_out = 0.4;
+  EXPECT_EQ(too_little_to_name(left), "");
+  left.effects[0] = small, left.effects[0].evidence = 7.0;
+  EXPECT_EQ(too_little_to_name(left), "");
+  left.effects[0] = small, left.effects[0].fall = 1.0;
+  EXPECT_EQ(too_little_to_name(left), "");
+}
+
 TEST(Discover, AnEarlierEffectThatALaterOneMakesIdleIsDropped) {
   const SmallScene small({.hidden = kWeight});
   Workspace workspace(small.scene);
