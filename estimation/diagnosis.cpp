@@ -126,7 +126,8 @@ double information_of(const DiagnosisSums& sums, const ProjectedHypothesis& hypo
 /// Of all forms of an effect the one that explains most of the held-out photos, where that is more
 /// than the best of the fitted ones does there by a twentieth of their misfit, or where the fitted
 /// ones cannot tell the two apart: what is linear in a form's parameters says little of a large
-/// one.
+/// one. A form that explains not half of what the best does would get nowhere in a race
+/// (gets_farther); that it spoils no held-out photo is no merit.
 std::shared_ptr<const EffectScore> other_form(const Context& context,
                                               const std::vector<Candidate>& candidates,
                                               const std::vector<ProjectedHypothesis>& projected,
@@ -138,7 +139,8 @@ std::shared_ptr<const EffectScore> other_form(const Context& context,
       continue;
     EffectScore score = describe(context, candidates[i], projected[i]);
     const bool tie = information_of(context.sums, projected[i], r2) > best.bic - kTie;
-    if ((tie || score.explains_held_out > best.explains_held_out + kMore) && score.explains > 0.0 &&
+    if ((tie || score.explains_held_out > best.explains_held_out + kMore) &&
+        score.explains > 0.5 * best.explains &&
         (!out || score.explains_held_out > out->explains_held_out))
       out = std::make_shared<EffectScore>(std::move(score));
   }
