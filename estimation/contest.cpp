@@ -146,23 +146,6 @@ bool mesh_kept_its_word(const Step& step, const Fitted& refitted) {
 
 }  // namespace
 
-void score_refits(const Step& step, Contest& contest) {
-  auto& refits = contest.refits;
-  auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
-  const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
-    return total_chi(a.fitted) < total_chi(b.fitted);
-  });
-  contest.reference = best->fitted;
-  contest.measured_noise2 = measured_noise2(step.fitted);
-  for (const auto& refit : refits)
-    contest.measured_noise2 = std::min(contest.measured_noise2, measured_noise2(refit.fitted));
-  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
-  contest.before = refit_score(step.fitted, yardstick);
-  for (auto& refit : refits) refit.score = refit_score(refit.fitted, yardstick);
-  std::stable_sort(refits.begin(), refits.end(),
-                   [](auto& a, auto& b) { return a.score > b.score; });
-}
-
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events) {
@@ -198,7 +181,20 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
   }
-  if (!refits.empty()) score_refits(step, out);
+  if (refits.empty()) return out;
+  auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
+  const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
+    return total_chi(a.fitted) < total_chi(b.fitted);
+  });
+  out.reference = best->fitted;
+  out.measured_noise2 = measured_noise2(step.fitted);
+  for (const auto& refit : refits)
+    out.measured_noise2 = std::min(out.measured_noise2, measured_noise2(refit.fitted));
+  const Yardstick yardstick{&out.reference, &step.diagnosis.floor, out.measured_noise2};
+  out.before = refit_score(step.fitted, yardstick);
+  for (auto& refit : refits) refit.score = refit_score(refit.fitted, yardstick);
+  std::stable_sort(refits.begin(), refits.end(),
+                   [](auto& a, auto& b) { return a.score > b.score; });
   return out;
 }
 

@@ -43,8 +43,6 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events);
-/// Scores and sorts its refits, of which there is one at least, anew.
-void score_refits(const Step& step, Contest& contest);
 
 /// Two of the refits together, where none is enough alone: each pair fitted from what the two came
 /// to, with the correlation of the contest. The best pair, its first effect the one that stood

@@ -110,7 +110,10 @@ class Search {
       if (std::get<bool>(settled)) continue;
       auto widened = widened_form(true);
       if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
-      if (!std::get<bool>(widened) && !dropped_unsupported() && !reopened()) break;
+      if (std::get<bool>(widened) || dropped_unsupported() || reopened()) continue;
+      auto other = widened_loser();
+      if (auto* failure = std::get_if<NumericalFailure>(&other)) return *failure;
+      if (!std::get<bool>(other)) break;
     }
     return finish();
   }
@@ -157,7 +160,6 @@ class Search {
       add_two(*found->first, std::move(contest.raced), swapped_step(std::move(found->second)));
       return true;
     }
-    if (auto failure = widen_what_spoils(step, contest)) return *failure;
     refused_ = why_refused(step, contest.before, contest.refits.front());
     if (!refused_.empty()) return add_pair(contest, room);
     add_winner(contest);
@@ -192,24 +194,28 @@ class Search {
     return false;
   }
 
-  /// Where all that explain the fitted photos miss the held-out ones, a wider form of a loser may
-  /// miss them least: creep that levels off loses to softening while it may only grow.
-  std::optional<NumericalFailure> widen_what_spoils(const Step& step, Contest& contest) {
-    if (std::any_of(contest.refits.begin(), contest.refits.end(),
-                    [&](const Refit& refit) { return at_floor(refit.fitted, out_.floor); }))
-      return {};
-    bool wider = false;
-    for (Refit& refit : contest.refits) {
-      if (numerical(refit.effect) || !spoils_held_out(refit.fitted, out_.floor)) continue;
-      const size_t at = refit.fitted.form.ingredients.size() - 1;
-      const std::string narrow = refit.fitted.form.ingredients[at]->variant();
-      auto result = widened(workspace_, refit.fitted, at, out_.floor, options_.fit, events_);
+  /// Last of all: what was added explains the fitted photos and misses the held-out ones. So did
+  /// those that lost to it, and a wider form of one may miss them least: creep that levels off lost
+  /// to softening while it could only grow.
+  WentOn widened_loser() {
+    const Fitted& last = newest().fitted;
+    const std::vector<Refit> losers = std::exchange(losers_, {});
+    if (!spoils_held_out(last, out_.floor)) return false;
+    for (const Refit& loser : losers) {
+      const size_t at = loser.fitted.form.ingredients.size() - 1;
+      if (numerical(loser.effect) || !spoils_held_out(loser.fitted, out_.floor) ||
+          at + 1 != last.form.ingredients.size())
+        continue;
+      auto result = widened(workspace_, loser.fitted, at, out_.floor, options_.fit, events_);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-      refit.fitted = std::get<Fitted>(std::move(result));
-      wider = wider || refit.fitted.form.ingredients[at]->variant() != narrow;
+      Refit wide{loser.effect, std::get<Fitted>(std::move(result)), 0.0};
+      const Yardstick yardstick{&wide.fitted, &out_.floor, measured_noise2(wide.fitted)};
+      wide.score = refit_score(wide.fitted, yardstick);
+      if (wide.score < refit_score(last, yardstick) + kNameable) continue;
+      out_.steps.push_back(swapped_step({newest().added, std::move(wide)}));
+      return true;
     }
-    if (wider) score_refits(step, contest);
-    return {};
+    return false;
   }
 
   void add_two(const Refit& first, std::vector<Raced> raced, Step second) {
@@ -253,6 +259,9 @@ class Search {
       if (&rival != &winner && rival.score > winner.score - kTie) equals.push_back(&rival);
     }
     next.fitted = std::move(winner.fitted);
+    losers_.clear();
+    if (spoils_held_out(next.fitted, out_.floor))
+      losers_.assign(contest.refits.begin() + 1, contest.refits.end());
     if (next.fitted.form.ingredients.size() > base_ + 1)
       if (auto lighter = backward(workspace_, next.fitted, out_.floor, base_, options_)) {
         next.dropped = {lighter->effect}, next.fitted = std::move(lighter->fitted);
@@ -358,11 +367,12 @@ class Search {
   const DiscoverEvents& events_;
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;
-  std::string refused_;                ///< why the best of the last contest was not added
-  bool mesh_refitted_ = false;         ///< in the last contest
-  std::optional<Step> together_;       ///< second of a pair, once the first is written
-  std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays
-  std::set<std::pair<std::string, size_t>> widened_;     ///< forms that were asked, beside so many
+  std::string refused_;           ///< why the best of the last contest was not added
+  bool mesh_refitted_ = false;    ///< in the last contest
+  std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
+  std::optional<Step> together_;  ///< second of a pair, once the first is written
+  std::set<std::string> unsupported_;                 ///< were dropped once; who comes back stays
+  std::set<std::pair<std::string, size_t>> widened_;  ///< forms that were asked, beside so many
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace hookeye {
 
@@ -30,18 +31,34 @@ bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Paramet
   return false;
 }
 
-/// `fitted` without its ingredient `i`, fitted again from where it stands.
+double misfit(const Fitted& fitted) {
+  return fitted.evaluation.chi(false) + fitted.evaluation.chi(true);
+}
+
+/// `fitted` without its ingredient `i`, fitted again from where it stands or, where that is nearer,
+/// from where the capture's own parameters started: a modulus may have made up for the effect by
+/// factors. Coarse to fine where both are far off.
 std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
                                   const FitOptions& options) {
   const Eigen::Index offset = offset_of(fitted.form, i);
   const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
   ModelForm form = fitted.form;
   form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
-  VectorXd p(fitted.p.size() - n);
-  p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
-  FitOptions warm = options;
-  warm.coarse_to_fine = false;
-  auto result = fit(workspace, form, p, warm);
+  VectorXd stands(fitted.p.size() - n);
+  stands << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  VectorXd told = stands;
+  const Eigen::Index own = std::min(offset, base_form(form.scene).initial().size());
+  told.head(own) = form.initial().head(own);
+  double least = std::numeric_limits<double>::infinity();
+  VectorXd start = stands;
+  for (const VectorXd& p : {stands, told}) {
+    const auto there = assess(workspace, form, p, options);
+    const auto* known = std::get_if<Fitted>(&there);
+    if (known && misfit(*known) < least) least = misfit(*known), start = p;
+  }
+  FitOptions from_there = options;
+  from_there.coarse_to_fine = least > 2.0 * misfit(fitted);
+  auto result = fit(workspace, form, start, from_there);
   if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
   return {};
 }
