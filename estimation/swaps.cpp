@@ -13,6 +13,10 @@ Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
   return offset;
 }
 
+double misfit(const Fitted& fitted) {
+  return fitted.evaluation.chi(false) + fitted.evaluation.chi(true);
+}
+
 namespace {
 
 bool remeshes(const Ingredient& ingredient) {
@@ -29,10 +33,6 @@ bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Paramet
     if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
   }
   return false;
-}
-
-double misfit(const Fitted& fitted) {
-  return fitted.evaluation.chi(false) + fitted.evaluation.chi(true);
 }
 
 /// `fitted` without its ingredient `i`, fitted again from where it stands or, where that is nearer,

@@ -9,10 +9,6 @@ namespace hookeye {
 
 namespace {
 
-double misfit(const Fitted& fitted) {
-  return fitted.evaluation.chi(false) + fitted.evaluation.chi(true);
-}
-
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
 /// The values of an ingredient, and those before and after it.

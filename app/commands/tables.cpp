@@ -71,10 +71,9 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
   }
   return table(rows) +
          fmt::format(
-             "  evidence: log odds of the effect against chance, in this step's residual alone (5 "
-             "is "
-             "150 to 1)\n  named only above evidence {:.1f} (chance alone reaches it in 5 % of "
-             "runs)\n",
+             "  evidence: log odds of the effect against chance in what this step leaves (5: 150 "
+             "to 1)\n"
+             "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
              std::max(diagnosis.gate, kNameable)) +
          sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
 }
