@@ -116,12 +116,11 @@ void rays_of_the_product(benchmark::State& s) {
 
 /// Options of one_view: `all` counts shadows, gloss and the photo's own numbers, which many fits
 /// leave as told and the floor does not know.
-RenderOptions view_options(int rays_per_axis, int threads, bool all) {
+RenderOptions view_options(int rays_per_axis, bool all) {
   RenderOptions options;
   options.rays_per_axis = rays_per_axis;
   options.filter_width_px = rays_per_axis == 1 ? 0.5 : 3.0;
   options.visibility_rays = 0;
-  options.threads = threads;
   options.cast_shadows = options.gloss_derivative = options.photo_derivative = all;
   options.centres = options.blur_derivative = false;  // as in a fit
   return options;
@@ -140,11 +139,11 @@ CondensedPhoto share_of_view(const Matrix3Xd& x, const RenderOptions& options, b
       .reduce(S);
 }
 
-/// Refit, rays, residual, derivative, J^T J. Arguments: rays per axis, parameters, threads, and
+/// Refit, rays, residual, derivative, J^T J. Arguments: rays per axis, parameters, and
 /// whether all counts (view_options).
 void one_view(benchmark::State& s) {
   Bench& b = bench();
-  const RenderOptions options = view_options(int(s.range(0)), int(s.range(2)), s.range(3) != 0);
+  const RenderOptions options = view_options(int(s.range(0)), s.range(2) != 0);
   const Eigen::Index m = s.range(1), nv = 3 * b.surface.X.cols();
   VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m),
                       Eigen::MatrixXd::Random(kPhotoColumns, m)};
@@ -193,7 +192,7 @@ double agreement(const std::vector<double>& JtJ, const RowMatrix& S) {
     product.second.middleRows(3 * v, 3) = S.middleRows(6 * v + 3, 3);
   }
   Rendering r;
-  const auto seen = share_of_view(bench().surface.X, view_options(1, 1, false), false, product, &r);
+  const auto seen = share_of_view(bench().surface.X, view_options(1, false), false, product, &r);
   return Eigen::Map<const RowMatrix>(JtJ.data(), m, m).trace() / seen.JtJ.trace();
 }
 
@@ -229,11 +228,10 @@ BENCHMARK(rays_of_the_library)->Unit(benchmark::kMillisecond);
 BENCHMARK(rays_of_the_product)->Unit(benchmark::kMillisecond);
 BENCHMARK(one_view_floor)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(one_view)
-    ->Args({1, 10, 1, 0})
-    ->Args({1, 100, 1, 0})
-    ->Args({1, 10, 1, 1})
-    ->Args({3, 10, 1, 1})
-    ->Args({3, 10, 2, 1})
+    ->Args({1, 10, 0})
+    ->Args({1, 100, 0})
+    ->Args({1, 10, 1})
+    ->Args({3, 10, 1})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

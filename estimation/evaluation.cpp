@@ -137,6 +137,13 @@ struct Workspace::Impl {
     return examples;
   }
 
+  /// The example whose photos are the texture; -1: none.
+  int reference() const {
+    const BodySpec& body = scene->capture.body;
+    return body.texture == BodySpec::Texture::rest ? scene->example_index(body.texture_example)
+                                                   : -1;
+  }
+
   /// Equilibrium and sensitivities of one example.
   std::optional<NumericalFailure> solve(const Model& model, const ColumnSet* columns, int e,
                                         const EvaluationOptions& options, ExampleEvaluation& out,
@@ -227,13 +234,10 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   std::optional<ColumnSet> columns;
   if (options.derivatives) columns.emplace(form, p, candidates);
 
-  // The reference state of a texture taken from photos comes first: all others look at it.
   const Capture& capture = impl_->scene->capture;
-  const int reference = capture.body.texture == BodySpec::Texture::rest
-                            ? impl_->scene->example_index(capture.body.texture_example)
-                            : -1;
-  std::vector<int> wanted = impl_->wanted(options);
-  const int examples = static_cast<int>(capture.examples.size());
+  const int reference = impl_->reference();
+  const std::vector<int> wanted = impl_->wanted(options);
+  const size_t examples = capture.examples.size();
   std::vector<ExampleEvaluation> solved(examples);
   std::vector<ExampleColumns> derivative(examples);
   std::vector<std::optional<NumericalFailure>> failures(examples);
@@ -242,35 +246,46 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     to_solve.push_back(reference);
   auto cancelled = [&] { return options.cancel && options.cancel->load(); };
   std::atomic<int> done = 0;
+  std::atomic<bool> failed = false;
   const int all = static_cast<int>(to_solve.size() + wanted.size());
   auto advance = [&] {
     const int now = ++done;
     if (options.progress) options.progress(now, all);
   };
-  tbb::parallel_for(size_t{0}, to_solve.size(), [&](size_t i) {
-    const int e = to_solve[i];
+  const auto solve = [&](int e) {
     if (cancelled()) return;
     failures[e] =
         impl_->solve(model, columns ? &*columns : nullptr, e, options, solved[e], derivative[e]);
+    if (failures[e]) failed = true;
     advance();
-  });
-  for (int e : to_solve)
-    if (failures[e]) return *failures[e];
-  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
-  const ReferenceState reference_state =
-      reference >= 0 ? ReferenceState{reference, &solved[reference],
-                                      columns ? &derivative[reference] : nullptr}
-                     : ReferenceState{};
-  tbb::parallel_for(size_t{0}, wanted.size(), [&](size_t i) {
-    const int e = wanted[i];
-    if (cancelled()) return;
+  };
+  const auto compare = [&](int e, const ReferenceState& reference_state) {
+    if (cancelled() || failed) return;
     solved[e].example = e;
     solved[e].held_out = capture.examples[e].validate;
     const ExampleColumns* d = columns ? &derivative[e] : nullptr;
     solved[e].photos = impl_->comparers[e].compare(model, solved[e], reference_state, d, options);
     solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d);
     advance();
-  });
+  };
+  const auto for_each = [](const std::vector<int>& examples, const auto& body) {
+    tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) { body(examples[i]); });
+  };
+  // All look at the reference state. Without one every example goes on to its photos by itself, and
+  // no core waits for the slowest equilibrium.
+  if (reference < 0) {
+    for_each(wanted, [&](int e) {
+      solve(e);
+      compare(e, {});
+    });
+  } else {
+    for_each(to_solve, solve);
+    const ReferenceState state{reference, &solved[reference],
+                               columns ? &derivative[reference] : nullptr};
+    for_each(wanted, [&](int e) { compare(e, state); });
+  }
+  for (int e : to_solve)
+    if (failures[e]) return *failures[e];
   if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
   Evaluation out;
   out.columns = columns ? columns->size() : 0;

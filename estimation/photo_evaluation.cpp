@@ -334,6 +334,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       RenderOptions render_options =
           at_level(base_options, options.level, texture, options.single_rays);
       render_options.derivatives = columns != nullptr;
+      render_options.parallel = true;
       const auto moves = [&](PhotoColumn column) {
         return columns != nullptr && !columns->dphoto[k].row(column).isZero(0.0);
       };

@@ -22,15 +22,15 @@ namespace {
 constexpr size_t kKept = 16;  ///< cameras and reference photos whose preparation is kept
 constexpr int kBandRows = 8;
 
-/// Same results for any number of threads: every task has its own output.
+/// Same results for any number of threads: every task has its own output. Where the caller is one
+/// of several tasks, a core that waits for these begins no other of them.
 template <class Body>
-void for_each_task(int tasks, int threads, const Body& body) {
-  if (threads <= 1 || tasks <= 1) {
+void for_each_task(int tasks, bool parallel, const Body& body) {
+  if (!parallel || tasks <= 1) {
     for (int i = 0; i < tasks; ++i) body(i);
     return;
   }
-  tbb::task_arena arena(threads);
-  arena.execute([&] { tbb::parallel_for(0, tasks, [&](int i) { body(i); }); });
+  tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, tasks, [&](int i) { body(i); }); });
 }
 
 std::vector<Vector3d> facet_normals(const std::vector<std::array<int, 3>>& triangles,
@@ -175,11 +175,11 @@ std::vector<EdgeSegment> by_pixel(const std::vector<std::vector<EdgeSegment>>& p
 
 /// By pixel in ascending order.
 std::vector<EdgeSegment> contours(const Frame& frame, const PixelFilter& filter,
-                                  const std::vector<SurfaceEdge>& edges, int threads) {
+                                  const std::vector<SurfaceEdge>& edges, bool parallel) {
   constexpr size_t kEdges = 2048;
   const int tasks = static_cast<int>((edges.size() + kEdges - 1) / kEdges);
   std::vector<std::vector<EdgeSegment>> part(tasks);
-  for_each_task(tasks, threads, [&](int i) {
+  for_each_task(tasks, parallel, [&](int i) {
     const size_t first = i * kEdges, last = std::min(edges.size(), first + kEdges);
     silhouette_segments(frame, filter, edges, first, last, &part[i]);
     shadow_segments(frame, filter, edges, first, last, &part[i]);
@@ -226,13 +226,13 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
   }
   clear(photo, options.centres, out);
   const std::vector<EdgeSegment> edges = options.derivatives
-                                             ? contours(frame, filter, m.edges, options.threads)
+                                             ? contours(frame, filter, m.edges, options.parallel)
                                              : std::vector<EdgeSegment>();
   const BandTask task{frame, filter, m.grid(photo.camera, filter), silhouette, count, edges};
   const int bands = (view.y1 - view.y0 + kBandRows - 1) / kBandRows;
   auto& parts = out->dI.parts;
   parts.resize(bands + 1);
-  for_each_task(bands, options.threads, [&](int i) {
+  for_each_task(bands, options.parallel, [&](int i) {
     const int row = view.y0 + i * kBandRows;
     parts[i].clear();
     render_band(task, row, std::min(row + kBandRows, view.y1), out, &parts[i]);
@@ -241,7 +241,7 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
   add_outer_edges(task, &parts[bands]);
   if (photo.blur_variance > 0) out->I = blur(out->I, photo.blur_variance);
   if (options.derivatives && options.photo_derivative && options.blur_derivative)
-    for_each_task(bands + 1, options.threads, [&](int i) { set_blur_column(out->I, &parts[i]); });
+    for_each_task(bands + 1, options.parallel, [&](int i) { set_blur_column(out->I, &parts[i]); });
 }
 
 void ImageDerivative::Part::clear() {

@@ -26,7 +26,7 @@ struct RenderOptions {
   bool gloss_derivative = true;  ///< false: kSpecular of a body without gloss stays zero
   bool blur_derivative = true;   ///< false: kBlur stays zero
   bool centres = true;           ///< false: Rendering::triangle and uv stay empty
-  int threads = 1;
+  bool parallel = false;         ///< on the cores of the caller's arena (oneTBB)
 };
 
 /// Derivative of one pixel by the vertices of one triangle. A pixel's derivative is the sum of its

@@ -106,7 +106,7 @@ TEST(renderer, threads_agree_bit_by_bit) {
   Texture texture;
   const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
   RenderOptions one, two;
-  two.threads = 2;
+  two.parallel = true;
   const Rendering a = renderer.render(surface.X, nullptr, texture, state, one, true);
   const Rendering b = renderer.render(surface.X, nullptr, texture, state, two, true);
   EXPECT_EQ(a.I.values, b.I.values);
