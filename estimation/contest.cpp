@@ -182,9 +182,8 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
   }
   if (refits.empty()) return out;
-  auto total_chi = [](const Fitted& f) { return f.evaluation.chi(false) + f.evaluation.chi(true); };
   const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
-    return total_chi(a.fitted) < total_chi(b.fitted);
+    return misfit(a.fitted) < misfit(b.fitted);
   });
   out.reference = best->fitted;
   out.measured_noise2 = measured_noise2(step.fitted);
@@ -231,6 +230,27 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
         best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
     }
   return best;
+}
+
+std::string why_refused(const Step& step, double before, const Refit& with) {
+  const double least = least_fall(step.diagnosis, with.effect);
+  const auto fell = [&](bool held_out) {
+    return std::pow(step.fitted.evaluation.chi(held_out), 2) -
+           std::pow(with.fitted.evaluation.chi(held_out), 2);
+  };
+  if (with.score < before + kNameable)
+    return with.effect + " was refitted, but what it takes away does not pay for its parameters";
+  if (!held_out_allows(with.fitted, step.fitted, step.diagnosis.floor, least))
+    return with.effect + " was refitted, but the held-out examples speak against it";
+  if (fell(false) < least && !sensors_alone(*with.fitted.form.ingredients.back()))
+    return with.effect + " was refitted, but takes away less than renderers and meshes err by";
+  return "";
+}
+
+std::string refused_by(const Step& step, Refit with) {
+  const Yardstick yardstick{&with.fitted, &step.diagnosis.floor, measured_noise2(with.fitted)};
+  with.score = refit_score(with.fitted, yardstick);
+  return why_refused(step, refit_score(step.fitted, yardstick), with);
 }
 
 }  // namespace hookeye

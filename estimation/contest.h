@@ -57,4 +57,10 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
                                                                 const DiscoverOptions& options,
                                                                 const DiscoverEvents& events);
 
+/// Why a refit does not stand beside the step that it started from, whose score is `before`; ""
+/// where it does.
+std::string why_refused(const Step& step, double before, const Refit& with);
+/// The same, both scored by what the refit leaves.
+std::string refused_by(const Step& step, Refit with);
+
 }  // namespace hookeye

@@ -23,29 +23,6 @@ std::vector<std::string> effects_in(const ModelForm& form) {
 
 namespace {
 
-/// Why a refit does not stand beside the step that it started from; "" where it does.
-std::string why_refused(const Step& step, double before, const Refit& with) {
-  const double least = least_fall(step.diagnosis, with.effect);
-  const auto fell = [&](bool held_out) {
-    return std::pow(step.fitted.evaluation.chi(held_out), 2) -
-           std::pow(with.fitted.evaluation.chi(held_out), 2);
-  };
-  if (with.score < before + kNameable)
-    return with.effect + " was refitted, but what it takes away does not pay for its parameters";
-  if (!held_out_allows(with.fitted, step.fitted, step.diagnosis.floor, least))
-    return with.effect + " was refitted, but the held-out examples speak against it";
-  if (fell(false) < least && !sensors_alone(*with.fitted.form.ingredients.back()))
-    return with.effect + " was refitted, but takes away less than renderers and meshes err by";
-  return "";
-}
-
-/// The same, both scored by what the refit leaves.
-std::string refused_by(const Step& step, Refit with) {
-  const Yardstick yardstick{&with.fitted, &step.diagnosis.floor, measured_noise2(with.fitted)};
-  with.score = refit_score(with.fitted, yardstick);
-  return why_refused(step, refit_score(step.fitted, yardstick), with);
-}
-
 /// The step in which one effect took another's place.
 Step swapped_step(Swap swap) {
   Step step;
@@ -154,6 +131,10 @@ class Search {
     mesh_refitted_ = std::any_of(contest.refits.begin(), contest.refits.end(),
                                  [](const Refit& refit) { return numerical(refit.effect); });
     if (contest.refits.empty()) return false;
+    if (mesh_refitted_ && !numerical(contest.refits.front().effect)) {
+      auto wide = widened_form(true);  // the mesh has been asked, and is not what is missing
+      if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
+    }
     if (auto found =
             swap_behind_refit(workspace_, contest.refits, out_.floor, base_, options_, events_);
         found && refused_by(step, found->second.in).empty()) {
@@ -177,13 +158,16 @@ class Search {
         return false;
     for (size_t at = all.size(); at-- > base_;) {
       const std::string name = all[at]->name();
-      if (numerical(name) || at_floor(step.fitted, out_.floor, kLeftByRenderers) ||
-          !widened_.insert({name + all[at]->variant(), all.size()}).second)
+      const std::string form = name + all[at]->variant();
+      if (numerical(name) ||
+          (at_floor(step.fitted, out_.floor, kLeftByRenderers) && !wide_.contains(form)) ||
+          !widened_.insert({form, all.size()}).second)
         continue;
       auto result = widened(workspace_, step.fitted, at, out_.floor, options_.fit, events_);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
       Fitted& wide = std::get<Fitted>(result);
       if (wide.form.ingredients[at]->variant() == all[at]->variant()) continue;
+      wide_.insert(name + wide.form.ingredients[at]->variant());
       Step next;
       next.name = next.added = name;
       next.dropped = {name};
@@ -373,6 +357,7 @@ class Search {
   std::optional<Step> together_;  ///< second of a pair, once the first is written
   std::set<std::string> unsupported_;                 ///< were dropped once; who comes back stays
   std::set<std::pair<std::string, size_t>> widened_;  ///< forms that were asked, beside so many
+  std::set<std::string> wide_;  ///< forms that widening came to: a plainer one may do at the floor
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
 };
 

@@ -22,6 +22,9 @@ struct Yardstick {
   double measured_noise2;
 };
 
+/// chi of fitted and of held-out photos together.
+double misfit(const Fitted& fitted);
+
 /// Mean square of what `fitted` leaves of forces, moments and positions, 1 (as told) at least.
 double measured_noise2(const Fitted& fitted);
 

@@ -178,9 +178,6 @@ std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const 
     if (cancelled(*failure)) return *failure;
     return fit_plainest(workspace, std::move(*larger), options);
   }
-  const auto misfit = [](const Fitted& one) {
-    return one.evaluation.chi(false) + one.evaluation.chi(true);
-  };
   Fitted& smaller = std::get<Fitted>(second);
   return fit_plainest(workspace, std::move(misfit(smaller) <= misfit(*larger) ? smaller : *larger),
                       options);

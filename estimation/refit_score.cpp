@@ -58,6 +58,10 @@ int parameters_of_sensors(const ModelForm& form) {
 
 }  // namespace
 
+double misfit(const Fitted& fitted) {
+  return fitted.evaluation.chi(false) + fitted.evaluation.chi(true);
+}
+
 double measured_noise2(const Fitted& fitted) { return measured_misfit(fitted, false).noise(1.0); }
 
 double refit_score(const Fitted& fitted, const Yardstick& yardstick) {

@@ -13,10 +13,6 @@ Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
   return offset;
 }
 
-double misfit(const Fitted& fitted) {
-  return fitted.evaluation.chi(false) + fitted.evaluation.chi(true);
-}
-
 namespace {
 
 bool remeshes(const Ingredient& ingredient) {

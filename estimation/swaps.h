@@ -13,9 +13,6 @@ namespace hookeye {
 /// Where the values of an ingredient begin.
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient);
 
-/// chi of fitted and of held-out photos together.
-double misfit(const Fitted& fitted);
-
 /// The effects explain the fitted photos and not the held-out ones.
 bool spoils_held_out(const Fitted& fitted, const Floor& floor);
 

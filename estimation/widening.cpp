@@ -29,15 +29,19 @@ VectorXd joined(const VectorXd& before, const VectorXd& own, const VectorXd& aft
   return out;
 }
 
+/// The model without the ingredient.
+Model model_without(const Fitted& fitted, size_t at) {
+  const Parted values = parted(fitted, at);
+  ModelForm without = fitted.form;
+  without.ingredients.erase(without.ingredients.begin() + static_cast<std::ptrdiff_t>(at));
+  return without.realise(joined(values.before, VectorXd(), values.after));
+}
+
 std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
   const Ingredient& narrow = *fitted.form.ingredients[at];
   const Effect* effect = find_effect(narrow.name());
   if (!effect) return {};
-  const Parted values = parted(fitted, at);
-  ModelForm without = fitted.form;
-  without.ingredients.erase(without.ingredients.begin() + static_cast<std::ptrdiff_t>(at));
-  return effect->further_forms(without.realise(joined(values.before, VectorXd(), values.after)),
-                               narrow, values.own);
+  return effect->further_forms(model_without(fitted, at), narrow, parted(fitted, at).own);
 }
 
 std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow, size_t at,
@@ -79,12 +83,36 @@ bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
          held_out_allows(wide, narrow, floor);
 }
 
+/// The wide form's plainer one, where it has one that scores as well: all constants of a material
+/// that has axes of symmetry.
+std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wide, size_t at,
+                                                const Floor& floor, const FitOptions& options,
+                                                const DiscoverEvents& events) {
+  const Ingredient& ingredient = *wide.form.ingredients[at];
+  VectorXd values = parted(wide, at).own;
+  const auto form =
+      find_effect(ingredient.name())->plainer_form(model_without(wide, at), ingredient, values);
+  if (!form) return wide;
+  const std::string words = form->name() + " as '" + form->variant() + "'";
+  if (events.refitting) events.refitting(words);
+  auto result = fit_in(workspace, wide, at, {form, values}, options);
+  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
+    if (cancelled(*failure)) return *failure;
+    return wide;
+  }
+  const Fitted& plain = std::get<Fitted>(result);
+  if (events.refitted) events.refitted(words, plain);
+  const Yardstick yardstick{&wide, &floor, std::min(measured_noise2(wide), measured_noise2(plain))};
+  return refit_score(plain, yardstick) >= refit_score(wide, yardstick) ? result : wide;
+}
+
 }  // namespace
 
 std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
                                                const Floor& floor, const FitOptions& options,
                                                const DiscoverEvents& events) {
-  std::set<std::string> tried = {narrow.form.ingredients[at]->variant()};
+  const std::string first = narrow.form.ingredients[at]->variant();
+  std::set<std::string> tried = {first};
   for (bool better = true; better && !at_floor(narrow, floor, kLeftByRenderers);) {
     better = false;
     Fitted best = narrow;
@@ -106,7 +134,9 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
     }
     narrow = std::move(best);
   }
-  return narrow;
+  if (narrow.form.ingredients[at]->variant() == first && !at_floor(narrow, floor, kLeftByRenderers))
+    return narrow;
+  return plainest(workspace, std::move(narrow), at, floor, options, events);
 }
 
 }  // namespace hookeye

@@ -98,5 +98,19 @@ struct OrthotropicValues {
 std::shared_ptr<const EnergyTerm> orthotropic(const OrthotropicValues& values);
 /// Of c11 c22 c33 c12 c13 c23 g12 g13 g23.
 OrthotropicValues orthotropic_values(const Eigen::VectorXd& stiffnesses, const Matrix3d& frame);
+/// Stiffnesses by Voigt's order of strains (E11, E22, E33, 2 E23, 2 E13, 2 E12), symmetric.
+using Stiffness6 = Eigen::Matrix<double, 6, 6>;
+/// 1/2 e.C e of the Green strain in rest axes: 21 constants.
+std::shared_ptr<const EnergyTerm> anisotropic(const Stiffness6& C);
+/// Told in rest axes.
+Stiffness6 voigt_stiffness(const OrthotropicValues& values);
+/// C told in the axes that are the columns of A.
+Stiffness6 stiffness_in_frame(const Stiffness6& C, const Matrix3d& A);
+/// sum_i k_i W_i: with (s, -s) beside W_2 itself, the share s of W_2 goes over into W_1.
+struct WeightedTerm {
+  double coefficient;
+  std::shared_ptr<const EnergyTerm> term;
+};
+std::shared_ptr<const EnergyTerm> combination(std::vector<WeightedTerm> terms);
 
 }  // namespace hookeye

@@ -54,7 +54,8 @@ class Anisotropy final : public Effect {
            "print lines, rolling. Easily taken for a soft clamp or a misaligned load; pulls along "
            "two directions tell. Fibres may pull and push alike, or only pull; where both leave "
            "more than noise, the refit goes on to stiffnesses of their own along and across "
-           "(transverse isotropy, orthotropy).";
+           "(transverse isotropy, orthotropy, all constants), with the law that FEM codes have for "
+           "them, linear between stress and Green strain, where it is nearer than the told one.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -75,9 +76,9 @@ class Anisotropy final : public Effect {
     for (int axis = 0; axis < 3; ++axis)
       if (additive_base(model) && variant == fmt::format("across axis {}", axis + 1))
         return across(model, axis);
-    if (numbers.size() != 3) return nullptr;
     if (!additive_base(model))
       if (auto form = fibre_form(model, variant)) return form;
+    if (numbers.size() != 3) return nullptr;
     const Vector3d a(numbers[0], numbers[1], numbers[2]);
     if (starts_with(variant, "along")) return along(model, a);
     return starts_with(variant, "free around") ? free_around(model, a) : nullptr;
@@ -93,6 +94,11 @@ class Anisotropy final : public Effect {
     const double k = values[0];
     values = Vector3d(k, 0.0, 0.0);
     return free_around(model, Vector3d(numbers[0], numbers[1], numbers[2]));
+  }
+
+  std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& refitted,
+                                                 VectorXd& values) const override {
+    return plainer_stiffnesses(model, refitted, values);
   }
 
   std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,

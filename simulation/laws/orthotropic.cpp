@@ -1,73 +1,102 @@
-// orthotropic: an addend for other laws, not a material by itself
+// orthotropic, anisotropic: addends for other laws, not materials by themselves
 //
-// W = 1/2 sum_ij c_ij E_ii E_jj + 2 sum_{i<j} g_ij E_ij^2, E the Green strain in a frame of three
-// axes: the general orthotropic energy that is quadratic in E, told by its stiffnesses. With the
-// frame's first axis along fibres, c11, c12 = c13 and g12 = g13 are transverse isotropy's. Like
-// stvk, for large rotations and moderate strains.
+// W = 1/2 e.C e, e = (E11, E22, E33, 2 E23, 2 E13, 2 E12) the Green strain in Voigt's order: the
+// general energy that is quadratic in E, told by its stiffnesses C = sum_k x_k B_k. Like stvk, for
+// large rotations and moderate strains. Orthotropic: nine of them in a frame of three axes. With
+// the frame's first axis along fibres, c11, c12 = c13 and g12 = g13 are transverse isotropy's.
+#include <fmt/format.h>
+
 #include "simulation/laws/invariants.h"
 
 namespace hookeye {
 namespace {
 
-class Orthotropic final : public EnergyTerm {
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+constexpr int kI[] = {0, 1, 2, 1, 0, 0}, kJ[] = {0, 1, 2, 2, 2, 1};  ///< Voigt's order
+
+Matrix3d tensor_of_stress(const Vector6d& s) {
+  Matrix3d S;
+  for (int k = 0; k < 6; ++k) S(kI[k], kJ[k]) = S(kJ[k], kI[k]) = s[k];
+  return S;
+}
+
+Vector6d voigt_strain(const Matrix3d& E) {
+  Vector6d e;
+  for (int k = 0; k < 6; ++k) e[k] = (k < 3 ? 1.0 : 2.0) * E(kI[k], kJ[k]);
+  return e;
+}
+
+class QuadraticInStrain final : public EnergyTerm {
  public:
-  explicit Orthotropic(const OrthotropicValues& values) : v_(values) {}
-  std::string name() const override { return "orthotropic"; }
+  struct Basis {
+    std::string law;
+    std::vector<std::string> names;
+    std::vector<Stiffness6> B;
+  };
+  QuadraticInStrain(std::shared_ptr<const Basis> basis, const Eigen::VectorXd& x)
+      : basis_(std::move(basis)), x_(x), C_(Stiffness6::Zero()) {
+    for (int k = 0; k < x.size(); ++k) C_ += x[k] * basis_->B[k];
+  }
+  std::string name() const override { return basis_->law; }
   std::vector<Parameter> parameters(const Units& units) const override {
     std::vector<Parameter> all;
-    for (int k = 0; k < 9; ++k)
-      all.push_back(laws::coefficient(kNames[k], "stiffness", units.stress(), stiffness(k), 1.0));
+    for (int k = 0; k < x_.size(); ++k)
+      all.push_back(laws::coefficient(basis_->names[k], "stiffness", units.stress(), x_[k], 1.0));
     return all;
   }
   std::shared_ptr<const EnergyTerm> with(const Eigen::VectorXd& x) const override {
-    return orthotropic(orthotropic_values(x, v_.frame));
+    return std::make_shared<QuadraticInStrain>(basis_, x);
   }
   double psi(const Matrix3d& F) const override {
-    const Matrix3d E = green(F * v_.frame);
-    return 0.5 * (E.cwiseProduct(second_piola(E))).sum();
+    const Vector6d e = strain(F);
+    return 0.5 * e.dot(C_ * e);
   }
-  Matrix3d P(const Matrix3d& F) const override {
-    const Matrix3d G = F * v_.frame;
-    return G * second_piola(green(G)) * v_.frame.transpose();
-  }
+  Matrix3d P(const Matrix3d& F) const override { return F * tensor_of_stress(C_ * strain(F)); }
   Matrix9d dP_dF(const Matrix3d& F) const override {
-    // dP_a = sum_b S_ab dF_b + F_a-terms: C_aabb = c_ab, C_abab = g_ab; f_a the columns of F.
-    const Matrix3d G = F * v_.frame, S = second_piola(green(G));
-    Matrix9d D;
+    // dP = dF S + F dS, dS = C de, de = G dF
+    Eigen::Matrix<double, 6, 9> G = Eigen::Matrix<double, 6, 9>::Zero();
+    for (int k = 0; k < 6; ++k) {
+      G.block<1, 3>(k, 3 * kJ[k]) = F.col(kI[k]).transpose();
+      G.block<1, 3>(k, 3 * kI[k]) = F.col(kJ[k]).transpose();
+    }
+    const Matrix3d S = tensor_of_stress(C_ * strain(F));
+    Matrix9d D = G.transpose() * C_ * G;
     for (int b = 0; b < 3; ++b)
-      for (int a = 0; a < 3; ++a) {
-        Matrix3d block = v_.c(a, b) * G.col(a) * G.col(b).transpose();
-        for (int i = 0; i < 3; ++i)
-          if (a == b && i != a) block += v_.g(a, i) * G.col(i) * G.col(i).transpose();
-        if (a != b) block += v_.g(a, b) * G.col(b) * G.col(a).transpose();
-        block.diagonal().array() += S(a, b);
-        D.block<3, 3>(3 * a, 3 * b) = block;
-      }
-    return stiffness_from_frame(D, v_.frame);
+      for (int a = 0; a < 3; ++a) D.block<3, 3>(3 * a, 3 * b).diagonal().array() += S(a, b);
+    return D;
   }
   Matrix3d dP_dtheta(const Matrix3d& F, int k) const override {
-    return Orthotropic(orthotropic_values(Eigen::VectorXd::Unit(9, k), v_.frame)).P(F);
+    return F * tensor_of_stress(basis_->B[k] * strain(F));
   }
 
  private:
-  static constexpr const char* kNames[] = {"c11", "c22", "c33", "c12", "c13",
-                                           "c23", "g12", "g13", "g23"};
-  double stiffness(int k) const {
-    const int i = k < 3 ? k : k % 3 == 2 ? 1 : 0, j = k < 3 ? k : k % 3 == 0 ? 1 : 2;
-    return k < 6 ? v_.c(i, j) : v_.g(i, j);
+  static Vector6d strain(const Matrix3d& F) {
+    return voigt_strain(0.5 * (F.transpose() * F - Matrix3d::Identity()));
   }
-  static Matrix3d green(const Matrix3d& F) {
-    return 0.5 * (F.transpose() * F - Matrix3d::Identity());
-  }
-  Matrix3d second_piola(const Matrix3d& E) const {
-    Matrix3d S = 2.0 * v_.g.cwiseProduct(E);
-    S.diagonal() = v_.c * E.diagonal();
-    return S;
-  }
-  OrthotropicValues v_;
+  std::shared_ptr<const Basis> basis_;
+  Eigen::VectorXd x_;
+  Stiffness6 C_;
 };
 
 }  // namespace
+
+Stiffness6 stiffness_in_frame(const Stiffness6& C, const Matrix3d& A) {
+  // e in rest axes of a strain told in the frame: E = A E' A^T
+  Stiffness6 T;
+  for (int k = 0; k < 6; ++k) {
+    Matrix3d own = Matrix3d::Zero();
+    own(kI[k], kJ[k]) += 0.5, own(kJ[k], kI[k]) += 0.5;
+    T.col(k) = voigt_strain(A * own * A.transpose());
+  }
+  return T.transpose() * C * T;
+}
+
+Stiffness6 voigt_stiffness(const OrthotropicValues& v) {
+  Stiffness6 C = Stiffness6::Zero();
+  C.topLeftCorner<3, 3>() = v.c;
+  for (int k = 3; k < 6; ++k) C(k, k) = v.g(kI[k], kJ[k]);
+  return stiffness_in_frame(C, v.frame.transpose());
+}
 
 OrthotropicValues orthotropic_values(const Eigen::VectorXd& x, const Matrix3d& frame) {
   OrthotropicValues v;
@@ -77,8 +106,34 @@ OrthotropicValues orthotropic_values(const Eigen::VectorXd& x, const Matrix3d& f
   return v;
 }
 
-std::shared_ptr<const EnergyTerm> orthotropic(const OrthotropicValues& values) {
-  return std::make_shared<Orthotropic>(values);
+std::shared_ptr<const EnergyTerm> orthotropic(const OrthotropicValues& v) {
+  auto basis = std::make_shared<QuadraticInStrain::Basis>();
+  basis->law = "orthotropic";
+  basis->names = {"c11", "c22", "c33", "c12", "c13", "c23", "g12", "g13", "g23"};
+  for (int k = 0; k < 9; ++k)
+    basis->B.push_back(voigt_stiffness(orthotropic_values(Eigen::VectorXd::Unit(9, k), v.frame)));
+  Eigen::VectorXd x(9);
+  x << v.c.diagonal(), v.c(0, 1), v.c(0, 2), v.c(1, 2), v.g(0, 1), v.g(0, 2), v.g(1, 2);
+  return std::make_shared<QuadraticInStrain>(std::move(basis), x);
+}
+
+std::shared_ptr<const EnergyTerm> anisotropic(const Stiffness6& C) {
+  static const auto basis = [] {
+    auto made = std::make_shared<QuadraticInStrain::Basis>();
+    made->law = "anisotropic";
+    for (int i = 0; i < 6; ++i)
+      for (int j = i; j < 6; ++j) {
+        made->names.push_back(fmt::format("C{}{}", i + 1, j + 1));
+        made->B.push_back(Stiffness6::Zero());
+        made->B.back()(i, j) = made->B.back()(j, i) = 1.0;
+      }
+    return made;
+  }();
+  Eigen::VectorXd x(21);
+  int k = 0;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j) x[k++] = C(i, j);
+  return std::make_shared<QuadraticInStrain>(basis, x);
 }
 
 }  // namespace hookeye

@@ -20,8 +20,8 @@ struct Case {
   std::string label() const { return effect->name() + " [" + ingredient->variant() + "]"; }
 };
 
-/// Adds the further forms of `refitted`, and theirs; one a kind: those around other directions are
-/// alike.
+/// Adds the further forms of `refitted`, the plainer one, and theirs; one a kind: those around
+/// other directions are alike.
 void add_further(const Effect& effect, const Ingredient& refitted, std::set<std::string>& kinds,
                  std::vector<Case>& all) {
   for (const auto& further : effect.further_forms(base_model(), refitted, some_values(refitted))) {
@@ -30,6 +30,11 @@ void add_further(const Effect& effect, const Ingredient& refitted, std::set<std:
     if (!kinds.insert(variant.substr(0, variant.find('('))).second) continue;
     all.push_back({&effect, further.form});
     add_further(effect, *further.form, kinds, all);
+  }
+  VectorXd values = some_values(refitted);
+  if (const auto plainer = effect.plainer_form(base_model(), refitted, values)) {
+    EXPECT_EQ(values.size(), static_cast<int>(plainer->parameters().size()));
+    all.push_back({&effect, plainer});
   }
 }
 
@@ -131,9 +136,9 @@ TEST(Catalogue, ParametersAreDeclaredWhole) {
 }
 
 TEST(Catalogue, OneSidedEffectsSaySo) {
-  const std::set<std::string> expected = {"anisotropy",    "soft_clamp", "grip_slip",
-                                          "floor_contact", "creep",      "softening",
-                                          "defocus",       "specular",   "mesh_resolution"};
+  const std::set<std::string> expected = {
+      "anisotropy", "soft_clamp", "grip_slip", "floor_contact",   "creep",
+      "softening",  "defocus",    "specular",  "mesh_resolution", "strain_stiffening"};
   std::set<std::string> one_sided;
   for (const Case& c : all_cases(false))
     for (const Parameter& p : c.ingredient->parameters())

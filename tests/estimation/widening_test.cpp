@@ -70,6 +70,18 @@ TEST(Widening, FibresThatOnlyPullAndStiffen) {
   EXPECT_NEAR(fitted.p[2], 5.0, 0.5);
 }
 
+/// As FEM codes have it: engineering constants, linear between second Piola-Kirchhoff stress and
+/// Green strain, where the told law is neo-Hooke's.
+TEST(Widening, OrthotropyThatReplacesTheToldLaw) {
+  const Fitted fitted = found(
+      "{effect: anisotropy, variant: \"free orthotropic, linear in the Green strain, around "
+      "(0.300, "
+      "0.200, 0.933)\", values: {anisotropy.c11: 0.03, anisotropy.c22: -0.006, anisotropy.c33: "
+      "0.004, anisotropy.g12: 0.004, anisotropy.g13: -0.003, anisotropy.linear: 1}}",
+      "anisotropy", "free orthotropic, linear in the Green strain");
+  EXPECT_NEAR(fitted.p[12], 1.0, 0.1);
+}
+
 TEST(Widening, CreepThatLevelsOff) {
   const Fitted fitted = found(
       "{effect: creep, variant: free levelling off of the stiffness, values: {creep.c: 0.6, "

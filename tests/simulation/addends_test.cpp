@@ -1,7 +1,8 @@
-// Laws that effects add to others: fibres that only pull, orthotropic stiffnesses.
+// Laws that effects add to others: fibres that only pull, orthotropic stiffnesses, combinations.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <limits>
 
 #include "simulation/blocks.h"
 #include "simulation/energy_term.h"
@@ -35,9 +36,16 @@ OrthotropicValues some_orthotropic() {
   return orthotropic_values(x, some_frame());
 }
 
+Stiffness6 some_stiffness() {
+  const Stiffness6 A = 0.3 * test::noise(36, 5).reshaped(6, 6);
+  return A + A.transpose();
+}
+
 TEST(Addends, DerivativesAreThoseOfTheEnergy) {
   for (const Law& law : {pulling_fibre(pulling(0.0, false)), pulling_fibre(pulling(0.7, false)),
-                         pulling_fibre(pulling(0.7, true)), orthotropic(some_orthotropic())})
+                         pulling_fibre(pulling(0.7, true)), orthotropic(some_orthotropic()),
+                         anisotropic(some_stiffness()),
+                         combination({{0.7, stvk(0.3, 0.05)}, {-0.4, neo_hookean(0.05, 0.4)}})})
     for (unsigned seed = 1; seed <= 4; ++seed) {
       const Matrix3d F = some_deformation(seed);
       const Matrix9d D = law->dP_dF(F);
@@ -99,6 +107,32 @@ TEST(Addends, OrthotropicWithIsotropicStiffnessesIsStVk) {
     EXPECT_LE((ours->P(F) - theirs->P(F)).norm(), 1e-14);
     EXPECT_LE((ours->dP_dF(F) - theirs->dP_dF(F)).norm(), 1e-13);
   }
+}
+
+TEST(Addends, StiffnessesInAFrameAndInRestAxesAreTheSameLaw) {
+  const OrthotropicValues v = some_orthotropic();
+  const Law ours = anisotropic(voigt_stiffness(v)), theirs = orthotropic(v);
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const Matrix3d F = some_deformation(seed), E = 0.5 * (F.transpose() * F - Matrix3d::Identity());
+    const Matrix3d own = v.frame.transpose() * E * v.frame;
+    const double W = 0.5 * own.diagonal().dot(v.c * own.diagonal()) +
+                     v.g.cwiseProduct(own).cwiseProduct(own).sum();
+    EXPECT_NEAR(ours->psi(F), W, 1e-14);
+    EXPECT_NEAR(theirs->psi(F), W, 1e-14);
+    EXPECT_LE((ours->P(F) - theirs->P(F)).norm(), 1e-13);
+  }
+  OrthotropicValues told = v;
+  told.frame.setIdentity();
+  EXPECT_LE((stiffness_in_frame(voigt_stiffness(v), v.frame) - voigt_stiffness(told)).norm(),
+            1e-14);
+}
+
+TEST(Addends, ACombinationIsInadmissibleWhereOneOfItsTermsIs) {
+  const Law law = combination({{1.0, stvk(0.3, 0.05)}, {-1.0, neo_hookean(0.05, 0.4)}});
+  const Matrix3d inverted = Vector3d(1, 1, -0.5).asDiagonal();
+  EXPECT_EQ(law->psi(inverted), std::numeric_limits<double>::infinity());
+  const Matrix3d F = some_deformation(1);
+  EXPECT_NEAR(law->psi(F), stvk(0.3, 0.05)->psi(F) - neo_hookean(0.05, 0.4)->psi(F), 1e-14);
 }
 
 }  // namespace
