@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace hookeye {
 
@@ -314,7 +315,9 @@ std::shared_ptr<const Ingredient> stiffness_form(const Model& model, const std::
 
 std::vector<Effect::Further> stiffnesses_after_fibre(const Model& model, const Vector3d& a,
                                                      double k) {
-  const VectorXd start = fibre_at_rest(k);
+  // A fibre that hardly stretches, or only pulls, is no guide: where both push as well, the body
+  // may have no equilibrium.
+  const VectorXd start = fibre_at_rest(std::min(k, initial_shear_modulus(model.energy)));
   std::vector<Effect::Further> all = {{transverse_around(model, a), start}};
   add_all(model, in_rest_axes(transverse_stiffnesses(start), frame_along(a)), all);
   return all;
