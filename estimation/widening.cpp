@@ -121,7 +121,9 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       if (better && at_floor(best, floor, kLeftByRenderers)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
       if (events.refitting) events.refitting(words);
-      auto result = fit_in(workspace, narrow, at, further, options);
+      FitOptions farther = options;
+      farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
+      auto result = fit_in(workspace, narrow, at, further, farther);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;
