@@ -249,4 +249,30 @@ VectorXd some_values(const Ingredient& ingredient) {
   return values;
 }
 
+std::shared_ptr<const Scene> additive_block(std::vector<std::string> fit) {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  MaterialSpec& spec = scene->capture.materials.at(0);
+  spec.law = "additive";
+  spec.parameters.clear();
+  const auto tell = [&](const std::string& key, std::vector<double> numbers) {
+    spec.parameters[key] = {std::move(numbers), spec.place};
+  };
+  tell("I1bar.at", {0, 0.4});
+  tell("I1bar.stiffness", {0.05, 0.08});
+  tell("J.at", {-0.1, 0.1});
+  tell("J.stiffness", {0.6, 0.5});
+  tell("E33.at", {-0.1, 0, 0.2});
+  tell("E33.stiffness", {0.02, 0.03, 0.06});
+  tell("E11.at", {0});
+  tell("E11.stiffness", {0.02});
+  tell("E11_E33.at", {0});
+  tell("E11_E33.at_2", {0});
+  tell("E11_E33.stiffness", {0.01});
+  tell("barrier.modulus", {0.5});
+  tell("barrier.below", {0.3});
+  scene->capture.fit_places.assign(fit.size(), spec.place);
+  scene->capture.fit = std::move(fit);
+  return scene;
+}
+
 }  // namespace hookeye::test

@@ -10,6 +10,8 @@ namespace hookeye::test {
 /// Block 20 x 16 x 40 mm, clamped at its base: rest, pull, twist (rigid, measured force), bend, and
 /// press held out. Photos are grey: they fix the sizes, not the contents. Read once.
 std::shared_ptr<const Scene> block_scene();
+/// The same block made of an additive material with anisotropy and couplings; `fit` is left open.
+std::shared_ptr<const Scene> additive_block(std::vector<std::string> fit);
 /// The same set-up (mesh, regions, loads, told motions) turned by 90 degrees about z.
 std::shared_ptr<const Scene> turned_scene();
 /// x -> (-y, x, z), exact.
