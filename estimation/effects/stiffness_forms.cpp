@@ -15,7 +15,7 @@ const char* const kOrthotropic = "free orthotropic around";
 const char* const kLinear = "free orthotropic, linear in the Green strain, around";
 const char* const kAll = "free stiffnesses of all strains";
 const char* const kStiffness[] = {"c11", "c22", "c33", "c12", "c13", "c23", "g12", "g13"};
-const int kConstants = 20;  ///< of all_stiffnesses()
+const int kConstants = 20;  ///< of all stiffnesses
 
 /// Columns: `a` and two axes across.
 Matrix3d frame_along(const Vector3d& a) {
@@ -164,33 +164,6 @@ std::string linear_text(double share) {
                      figure(100.0 * share));
 }
 
-/// A fibre's energy at rest in the Green strain, but for a part of the volume alone.
-VectorXd fibre_at_rest(double k) {
-  VectorXd constants(5);
-  constants << 4.0 / 3.0 * k, 0.0, -4.0 / 3.0 * k, 0.0, 0.0;
-  return constants;
-}
-
-/// The transverse form around each axis of an orthotropic one: the axis that the fibre stood for
-/// may be another than that of the symmetry. Each starts near the base law, where it has an
-/// equilibrium: what eleven values share between them may have none in five.
-void add_transverse(const Model& model, const Matrix3d& frame, std::vector<Effect::Further>& all) {
-  VectorXd start = VectorXd::Zero(5);
-  start.head(2).setConstant(0.1 * initial_shear_modulus(model.energy));
-  for (int i = 0; i < 3; ++i)
-    all.push_back({transverse_around(model, rounded(frame.col(i))), start});
-}
-
-/// From the same stiffnesses.
-void add_all(const Model& model, const Stiffness6& C, std::vector<Effect::Further>& all) {
-  if (is_isotropic_at_rest(model.energy))
-    all.push_back({all_stiffnesses(model), values_of(C, 0.0)});
-}
-
-Stiffness6 in_rest_axes(const VectorXd& stiffnesses, const Matrix3d& frame) {
-  return voigt_stiffness(orthotropic_values(stiffnesses, frame));
-}
-
 using MakeTerm = std::function<std::shared_ptr<const EnergyTerm>(const VectorXd&)>;
 
 /// The values before the angles are moduli, all null: nothing is added.
@@ -208,42 +181,6 @@ std::shared_ptr<const Ingredient> of_term(const std::string& start, const Vector
   return make_ingredient(std::move(spec));
 }
 
-}  // namespace
-
-Vector3d turned(const Vector3d& a, double t1, double t2) {
-  const auto [first, second] = normal_axes(a);
-  return rotation_of(t1 * first + t2 * second) * a.normalized();
-}
-
-Vector3d rounded(const Vector3d& a) {
-  Vector3d out = a.normalized();
-  for (double& x : out) x = std::round(1000.0 * x) / 1000.0;
-  return out;
-}
-
-Vector3d base_axis(const Ingredient& ingredient) {
-  const auto n = numbers_in(ingredient.variant());
-  return Vector3d(n.at(0), n.at(1), n.at(2)).normalized();
-}
-
-std::vector<Parameter> fibre_angles() {
-  return {{"anisotropy.angle1", "rad", "first angle of the fibre", 0.0, -3.2, 3.2, 0.2, false},
-          {"anisotropy.angle2", "rad", "second angle of the fibre", 0.0, -3.2, 3.2, 0.2, false}};
-}
-
-Parameter modulus_of(const Model& model, const std::string& name, const std::string& long_name,
-                     double least) {
-  const double mu = initial_shear_modulus(model.energy);
-  return {"anisotropy." + name,
-          model.scene->capture.units.stress(),
-          long_name,
-          0.0,
-          least * mu,
-          1e3 * mu,
-          mu,
-          false};
-}
-
 std::shared_ptr<const Ingredient> transverse_around(const Model& model, const Vector3d& a) {
   std::vector<Parameter> parameters = {
       modulus_of(model, "k", "modulus added along the fibre", -2.0),
@@ -256,6 +193,7 @@ std::shared_ptr<const Ingredient> transverse_around(const Model& model, const Ve
   });
 }
 
+/// Around the frame whose first axis is `a`.
 std::shared_ptr<const Ingredient> orthotropic_around(const Model& model, const Vector3d& a) {
   return of_term(kOrthotropic, a, orthotropic_parameters(model), 8,
                  [a](const VectorXd& v) { return orthotropic_term(v, a); });
@@ -301,6 +239,69 @@ std::shared_ptr<const Ingredient> all_stiffnesses(const Model& model) {
     return true;
   };
   return make_ingredient(std::move(spec));
+}
+
+/// A fibre's energy at rest in the Green strain, but for a part of the volume alone.
+VectorXd fibre_at_rest(double k) {
+  VectorXd constants(5);
+  constants << 4.0 / 3.0 * k, 0.0, -4.0 / 3.0 * k, 0.0, 0.0;
+  return constants;
+}
+
+/// The transverse form around each axis of an orthotropic one: the axis that the fibre stood for
+/// may be another than that of the symmetry. Each starts near the base law, where it has an
+/// equilibrium: what eleven values share between them may have none in five.
+void add_transverse(const Model& model, const Matrix3d& frame, std::vector<Effect::Further>& all) {
+  VectorXd start = VectorXd::Zero(5);
+  start.head(2).setConstant(0.1 * initial_shear_modulus(model.energy));
+  for (int i = 0; i < 3; ++i)
+    all.push_back({transverse_around(model, rounded(frame.col(i))), start});
+}
+
+/// From the same stiffnesses.
+void add_all(const Model& model, const Stiffness6& C, std::vector<Effect::Further>& all) {
+  if (is_isotropic_at_rest(model.energy))
+    all.push_back({all_stiffnesses(model), values_of(C, 0.0)});
+}
+
+Stiffness6 in_rest_axes(const VectorXd& stiffnesses, const Matrix3d& frame) {
+  return voigt_stiffness(orthotropic_values(stiffnesses, frame));
+}
+
+}  // namespace
+
+Vector3d turned(const Vector3d& a, double t1, double t2) {
+  const auto [first, second] = normal_axes(a);
+  return rotation_of(t1 * first + t2 * second) * a.normalized();
+}
+
+Vector3d rounded(const Vector3d& a) {
+  Vector3d out = a.normalized();
+  for (double& x : out) x = std::round(1000.0 * x) / 1000.0;
+  return out;
+}
+
+Vector3d base_axis(const Ingredient& ingredient) {
+  const auto n = numbers_in(ingredient.variant());
+  return Vector3d(n.at(0), n.at(1), n.at(2)).normalized();
+}
+
+std::vector<Parameter> fibre_angles() {
+  return {{"anisotropy.angle1", "rad", "first angle of the fibre", 0.0, -3.2, 3.2, 0.2, false},
+          {"anisotropy.angle2", "rad", "second angle of the fibre", 0.0, -3.2, 3.2, 0.2, false}};
+}
+
+Parameter modulus_of(const Model& model, const std::string& name, const std::string& long_name,
+                     double least) {
+  const double mu = initial_shear_modulus(model.energy);
+  return {"anisotropy." + name,
+          model.scene->capture.units.stress(),
+          long_name,
+          0.0,
+          least * mu,
+          1e3 * mu,
+          mu,
+          false};
 }
 
 std::shared_ptr<const Ingredient> stiffness_form(const Model& model, const std::string& variant) {

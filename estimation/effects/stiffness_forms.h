@@ -18,22 +18,16 @@ std::vector<Parameter> fibre_angles();
 Parameter modulus_of(const Model& model, const std::string& name, const std::string& long_name,
                      double least);
 
-/// W += k/2 E_aa^2 + c E_aa (E_bb + E_cc) + 2 g (E_ab^2 + E_ac^2): a modulus along the fibre, a
-/// shear modulus of its own and a coupling (the small-strain constants E1, E2 = E3, nu12, G12
-/// beside the base law's), direction free around `a`.
-std::shared_ptr<const Ingredient> transverse_around(const Model& model, const Vector3d& a);
-/// Orthotropy around the frame whose first axis is `a`, its orientation free: all stiffnesses but
-/// g23, which is the base law's shear modulus.
-std::shared_ptr<const Ingredient> orthotropic_around(const Model& model, const Vector3d& a);
-/// The same where a share of the base law, isotropic at rest, is linear between second
-/// Piola-Kirchhoff stress and Green strain too, in volume as in shape: at 1 the whole material is
-/// the orthotropic St Venant-Kirchhoff law that FEM codes have for engineering constants.
-std::shared_ptr<const Ingredient> linear_orthotropic_around(const Model& model, const Vector3d& a);
-/// All 21 constants but C44, which the base law's shear modulus stands for, and the share: without
-/// an axis that could be a wrong one, and but for the share linear in its values.
-std::shared_ptr<const Ingredient> all_stiffnesses(const Model& model);
-
-/// One of the above by its variant; null: none.
+/// By its variant; null: none.
+///   transverse: W += k/2 E_aa^2 + c E_aa (E_bb + E_cc) + 2 g (E_ab^2 + E_ac^2), a modulus along
+///   the fibre, a shear modulus of its own and a coupling (the small-strain constants E1, E2 = E3,
+///   nu12, G12 beside the base law's), direction free; orthotropic: all stiffnesses but g23, which
+///   is the base law's shear modulus, orientation free; linear orthotropic: the same where a share
+///   of the base law, isotropic at rest, is linear between second Piola-Kirchhoff stress and Green
+///   strain too, in volume as in shape: at 1 the whole material is the orthotropic St
+///   Venant-Kirchhoff law that FEM codes have for engineering constants; all: all 21 constants but
+///   C44, which the base law's shear modulus stands for, and the share: without an axis that could
+///   be a wrong one, and but for the share linear in its values.
 std::shared_ptr<const Ingredient> stiffness_form(const Model& model, const std::string& variant);
 /// Those to try after a fibre of modulus `k` along `a`.
 std::vector<Effect::Further> stiffnesses_after_fibre(const Model& model, const Vector3d& a,
@@ -41,7 +35,7 @@ std::vector<Effect::Further> stiffnesses_after_fibre(const Model& model, const V
 /// Those to try after one of the above.
 std::vector<Effect::Further> further_stiffnesses(const Model& model, const Ingredient& refitted,
                                                  const VectorXd& values);
-/// Orthotropy that is most like all_stiffnesses(), `values` moved to it; null: `refitted` is not
+/// Linear orthotropy that is most like all constants, `values` moved to it; null: `refitted` is not
 /// it.
 std::shared_ptr<const Ingredient> plainer_stiffnesses(const Model& model,
                                                       const Ingredient& refitted, VectorXd& values);
