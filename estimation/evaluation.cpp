@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "estimation/columns.h"
 #include "estimation/photo_evaluation.h"
@@ -114,11 +115,13 @@ void keep_freed_memory() {
 struct Workspace::Impl {
   std::shared_ptr<const Scene> scene;
   std::vector<EquilibriumSolver> solvers;  ///< one per example
-  std::vector<PhotoComparer> comparers;    ///< one per example
+  std::vector<VectorXd> last;  ///< by example: q of the last evaluation in which all had one
+  std::vector<PhotoComparer> comparers;  ///< one per example
 
   explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
     for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
       solvers.emplace_back(scene->mesh());
+      last.emplace_back();
       comparers.emplace_back(scene, static_cast<int>(e));
     }
   }
@@ -144,18 +147,18 @@ struct Workspace::Impl {
                                                    : -1;
   }
 
-  /// Equilibrium and sensitivities of one example.
+  /// Equilibrium and sensitivities of one example. `cancelled` is polled.
   std::optional<NumericalFailure> solve(const Model& model, const ColumnSet* columns, int e,
-                                        const EvaluationOptions& options, ExampleEvaluation& out,
-                                        ExampleColumns& derivative) {
+                                        const EvaluationOptions& options,
+                                        const std::function<bool()>& cancelled,
+                                        ExampleEvaluation& out, ExampleColumns& derivative) {
     EquilibriumOptions equilibrium_options;
     equilibrium_options.factored = columns != nullptr;
     equilibrium_options.tolerance = options.tolerance;
     equilibrium_options.most_iterations = options.most_iterations;
-    if (options.cancel)
-      equilibrium_options.cancelled = [cancel = options.cancel] { return cancel->load(); };
-    auto solved =
-        solvers[e].solve(model.energy_of(e), model.examples[e].loading, equilibrium_options);
+    equilibrium_options.cancelled = cancelled;
+    auto solved = solvers[e].solve(model.energy_of(e), model.examples[e].loading,
+                                   equilibrium_options, last[e].size() ? &last[e] : nullptr);
     if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
       failure->example = scene->capture.examples[e].name;
       return *failure;
@@ -166,6 +169,18 @@ struct Workspace::Impl {
     out.S =
         sensitivities(*out.equilibrium, model.examples[e].loading, derivative.dR, derivative.dqc);
     return {};
+  }
+
+  /// Where the next evaluation starts. Where one example has no equilibrium, the others may or may
+  /// not have been solved already: all go back, so that the same fit takes the same way each time.
+  void settle(const std::vector<int>& examples, const std::vector<ExampleEvaluation>& solved,
+              bool failed) {
+    for (int e : examples) {
+      if (failed)
+        solvers[e].forget();
+      else
+        last[e] = solved[e].equilibrium->q;
+    }
   }
 };
 
@@ -252,15 +267,18 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     const int now = ++done;
     if (options.progress) options.progress(now, all);
   };
+  // One example without an equilibrium is enough: nobody looks at the others.
+  const std::function<bool()> pointless = [&] { return failed || cancelled(); };
   const auto solve = [&](int e) {
-    if (cancelled()) return;
-    failures[e] =
-        impl_->solve(model, columns ? &*columns : nullptr, e, options, solved[e], derivative[e]);
+    if (pointless()) return;
+    failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options, pointless,
+                               solved[e], derivative[e]);
+    if (failures[e] && failures[e]->reason == "cancelled") failures[e].reset();
     if (failures[e]) failed = true;
     advance();
   };
   const auto compare = [&](int e, const ReferenceState& reference_state) {
-    if (cancelled() || failed) return;
+    if (pointless()) return;
     solved[e].example = e;
     solved[e].held_out = capture.examples[e].validate;
     const ExampleColumns* d = columns ? &derivative[e] : nullptr;
@@ -284,9 +302,10 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
                                columns ? &derivative[reference] : nullptr};
     for_each(wanted, [&](int e) { compare(e, state); });
   }
+  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+  impl_->settle(to_solve, solved, failed);
   for (int e : to_solve)
     if (failures[e]) return *failures[e];
-  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
   Evaluation out;
   out.columns = columns ? columns->size() : 0;
   for (int e : wanted) out.examples.push_back(std::move(solved[e]));

@@ -82,8 +82,11 @@ class Reporter final : public ceres::IterationCallback {
       : options_(options), cost_(cost), stage_(stage), count_(count), misfit_(misfit), of_(of) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
-    if (summary.iteration == 0 || summary.step_is_successful)
+    if (summary.iteration == 0 || summary.step_is_successful) {
       least_ = std::fmin(least_, cost_.smallest_eigenvalue());  // asked there for its Jacobian
+      chi_ = chi(summary.cost);
+      refused_ = 0;
+    }
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
     if (options_.progress)
       options_.progress({stage_.name(), summary.iteration, of_, chi(summary.cost)});
@@ -103,9 +106,10 @@ class Reporter final : public ceres::IterationCallback {
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
     if (!summary.step_is_successful)
-      return summary.iteration > 0 && std::abs(summary.cost_change) < 1e-4 * summary.cost;
+      return summary.iteration > 0 &&
+             (std::abs(summary.cost_change) < 1e-4 * summary.cost || gives_up());
     if (cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2())) return true;
-    return stage_.level == 0 && !stage_.registered && summary.iteration > 0 && creeps(summary);
+    return stage_.level == 0 && summary.iteration > 0 && creeps(summary);
   }
 
   /// Two steps in a row that gained nothing that counts. Of a structured misfit, whose effective
@@ -121,6 +125,9 @@ class Reporter final : public ceres::IterationCallback {
     slow_ = counts && arrives ? 0 : slow_ + 1;
     return slow_ == 2;
   }
+  /// Four refused steps in a row on the way to `aim_chi`. They shrink by 2, 4, 8, 16: where a
+  /// thousandth of the step finds no equilibrium or nothing better, nobody arrives.
+  bool gives_up() { return ++refused_ >= 4 && options_.aim_chi > 0.0 && chi_ > options_.aim_chi; }
   double chi(double cost) const { return std::sqrt(2.0 * cost / std::max(1.0, count_)); }
 
   const FitOptions& options_;
@@ -128,7 +135,8 @@ class Reporter final : public ceres::IterationCallback {
   Stage stage_;
   double count_, misfit_;
   int of_;
-  int slow_ = 0;  ///< steps in a row
+  int slow_ = 0, refused_ = 0;                            ///< steps in a row
+  double chi_ = std::numeric_limits<double>::infinity();  ///< after the last accepted step
   double least_ = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -209,6 +209,14 @@ class Scaling {
     return below_.factor * std::pow(wanted / below_.rms_px, 1.0 / power);
   }
 
+  /// Sixteen times the values would not move the pictures twice as far, seen from what was tried
+  /// last: fibres that have stopped what they can stop.
+  bool saturated(double factor, double rms_px) const {
+    return below_.factor > 0.0 && factor > below_.factor &&
+           std::log(rms_px / below_.rms_px) < 0.25 * std::log(factor / below_.factor);
+  }
+  double last_below() const { return below_.factor; }
+
  private:
   struct Tried {
     double factor = 0.0, rms_px = 0.0;
@@ -266,6 +274,10 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
       return true;
     }
     if (still) return false;
+    if (hidden.drawn && addition.rms_px < wanted && scaling.saturated(factor, addition.rms_px)) {
+      factor = largest = scaling.last_below();
+      continue;
+    }
     factor = std::min(scaling.next(factor, addition.rms_px, wanted), largest);
   }
   return false;

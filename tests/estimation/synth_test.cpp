@@ -228,6 +228,27 @@ TEST_F(SynthTest, WhatIsDrawnKeepsItsEllipticity) {
   }
 }
 
+/// Fibres that only pull stop what they can stop: asked for more than that, a seed had drawn them
+/// 240 times as stiff as the body.
+TEST_F(SynthTest, WhatIsDrawnEndsWhereMoreMovesNothingMore) {
+  const auto drawn = [&](const std::string& size) {
+    const Synthesis made = make(
+        recipe_text("hidden:\n  - {effect: anisotropy, variant: \"pulling along (0.000, 0.000, "
+                    "1.000)\", rms_px: " +
+                        size + "}\n",
+                    kFast),
+        "fibres" + size);
+    const auto truth = nlohmann::json::parse(bytes(made.truth)).at("hidden").at(0);
+    return std::pair{truth.at("values").at("anisotropy.k").get<double>(), made.hidden[0].rms_px};
+  };
+  const auto [k, rms_px] = drawn("0.3");
+  const auto [most, most_px] = drawn("30");
+  EXPECT_NEAR(rms_px, 0.3, 0.01);
+  EXPECT_GT(most_px, rms_px);
+  EXPECT_LT(most_px, 5.0);
+  EXPECT_LT(most, 40 * 0.02);
+}
+
 /// A photographer that leaves an even grey of 0.25 in every picture that the stage asks for.
 std::string grey_photographer(const fs::path& folder, const std::string& size) {
   const fs::path script = folder / "photographer";
