@@ -85,11 +85,21 @@ const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
   return nullptr;
 }
 
+/// A numerical error that would remove at least half of the misfit. The finer mesh was solved for
+/// the score: where it leaves more than that, something larger is missing, and the mesh is asked
+/// after it.
+bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
+  return numerical(effect) &&
+         std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
+           return score.effect == effect && score.explains > 0.5;
+         });
+}
+
 /// The first `most` of a race and the effect of the largest evidence: who is slow in two steps may
 /// still be right. So may a sensor's error, which moves no photo and so cannot win by them. A
-/// numerical error that comes near the first is refitted too, whatever its rank: nothing is named
-/// before the mesh is settled. Where nobody is ahead of it by more than a tie it goes first,
-/// however far it got.
+/// numerical error that comes near the first is refitted too, whatever its rank, where it may be
+/// all there is: nothing is named before the mesh is settled. Where nobody is ahead of it by more
+/// than a tie it goes first, however far it got.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
@@ -108,7 +118,7 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
     const bool held = racer.effect == first || (mesh && racer.effect == mesh->effect) ||
                       sensors_alone(*racer.form.ingredients.back());
     if (!held && !ties(racer.effect) && out_of_reach(racer, winner)) continue;
-    if (held || places-- > 0 || (numerical(racer.effect) && may_tie(racer, winner)))
+    if (held || places-- > 0 || (may_be_all(racer.effect, diagnosis) && may_tie(racer, winner)))
       kept.push_back(std::move(racer));
   }
   racers = std::move(kept);
