@@ -73,8 +73,9 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
     else if (!photos)
       *why += hidden_by_mesh(diagnosis);
   }
-  if (!tie.empty()) return Verdict::ambiguous;
-  return photos && measured ? Verdict::explained : Verdict::unexplained;
+  // Two that leave as much are no answer to choose from where that is much.
+  if (!photos || !measured) return Verdict::unexplained;
+  return tie.empty() ? Verdict::explained : Verdict::ambiguous;
 }
 
 std::vector<std::string> effects_in_words(const Fitted& fitted) {

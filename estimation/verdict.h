@@ -9,6 +9,8 @@
 
 namespace hookeye {
 
+/// What is left is noise (explained); so it would be with another effect in the place of one
+/// (ambiguous: a tie); it is not, tie or none (unexplained).
 enum class Verdict { explained, unexplained, ambiguous };
 const char* to_string(Verdict verdict);
 
