@@ -180,7 +180,7 @@ class Search {
 
   /// Last of all: what was added explains the fitted photos and misses the held-out ones. So did
   /// those that lost to it, and a wider form of one may miss them least: creep that levels off lost
-  /// to softening while it could only grow.
+  /// to softening while it could only grow. They choose; to them its further values are not fitted.
   WentOn widened_loser() {
     const Fitted& last = newest().fitted;
     const std::vector<Refit> losers = std::exchange(losers_, {});
@@ -195,7 +195,9 @@ class Search {
       Refit wide{loser.effect, std::get<Fitted>(std::move(result)), 0.0};
       const Yardstick yardstick{&wide.fitted, &out_.floor, measured_noise2(wide.fitted)};
       wide.score = refit_score(wide.fitted, yardstick);
-      if (wide.score < refit_score(last, yardstick) + kNameable) continue;
+      if (wide.score < refit_score(last, yardstick) - kTie ||
+          held_out_allows(last, wide.fitted, out_.floor))
+        continue;
       out_.steps.push_back(swapped_step({newest().added, std::move(wide)}));
       return true;
     }

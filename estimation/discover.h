@@ -29,8 +29,11 @@ double misfit(const Fitted& fitted);
 double measured_noise2(const Fitted& fitted);
 
 /// log-likelihood of a fitted model with the effective number of residuals: fitted and held-out
-/// photos and measurements; minus (dof/2) log N (BIC). N is of the values that show a parameter:
-/// for an error of the sensors, which no photo shows, the measured ones alone.
+/// photos, each with a variance of their own, and measurements; minus (dof/2) log N (BIC). (While
+/// something large is missing, held-out photos may miss by three times as much: of one variance for
+/// all they alone would choose, by how a wrong model happens to extrapolate.) N is of the values
+/// that show a parameter: for an error of the sensors, which no photo shows, the measured ones
+/// alone.
 double refit_score(const Fitted& fitted, const Yardstick& yardstick);
 
 /// Whether the held-out examples speak against `with`: by their log-likelihood, less than a tie

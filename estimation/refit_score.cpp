@@ -20,12 +20,12 @@ struct EffectiveMisfit {
 };
 
 /// |z|^2 of the photos of `fitted` with the weights that the correlation in `reference` gives; of
-/// all examples or of those held out.
-EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool held_out_alone) {
+/// the fitted examples or of those held out.
+EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool held_out) {
   EffectiveMisfit out;
   for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
     const auto& example = fitted.evaluation.examples[e];
-    if (held_out_alone && !example.held_out) continue;
+    if (example.held_out != held_out) continue;
     const auto weights = photo_statistics(reference.evaluation.examples[e].photos);
     for (size_t k = 0; k < example.photos.size(); ++k) {
       const FlowStatistics own = flow_statistics(example.photos[k].flow);
@@ -65,16 +65,18 @@ double misfit(const Fitted& fitted) {
 double measured_noise2(const Fitted& fitted) { return measured_misfit(fitted, false).noise(1.0); }
 
 double refit_score(const Fitted& fitted, const Yardstick& yardstick) {
-  const EffectiveMisfit photos = photo_misfit(fitted, *yardstick.reference, false);
+  const EffectiveMisfit photos = photo_misfit(fitted, *yardstick.reference, false),
+                        held_out = photo_misfit(fitted, *yardstick.reference, true);
   const EffectiveMisfit measured = measured_misfit(fitted, false);
   const int of_sensors = parameters_of_sensors(fitted.form);
   const auto price = [](int parameters, double count) {
     return 0.5 * parameters * std::log(std::max(count, 2.0));
   };
-  return photos.log_likelihood(yardstick.floor->cell_variance) -
+  const double count = photos.count + held_out.count + measured.count;
+  return photos.log_likelihood(yardstick.floor->cell_variance) +
+         held_out.log_likelihood(yardstick.floor->cell_variance) -
          0.5 * measured.r2 / yardstick.measured_noise2 -
-         price(fitted.form.size() - of_sensors, photos.count + measured.count) -
-         price(of_sensors, measured.count);
+         price(fitted.form.size() - of_sensors, count) - price(of_sensors, measured.count);
 }
 
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor, double least) {

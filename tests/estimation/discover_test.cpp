@@ -117,6 +117,29 @@ TEST(RefitScore, ForcesCountByTheirOwnNoise) {
   EXPECT_NEAR(loss(rough), loss(exact), 1e-9);
 }
 
+/// While much is missing, held-out photos miss by several times as much as fitted ones. A fifth
+/// less on the fitted ones is worth more than a twentieth on those, however large theirs are.
+TEST(RefitScore, HeldOutPhotosHaveAVarianceOfTheirOwn) {
+  const SmallScene small({});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  const Fitted right = std::get<Fitted>(assess(workspace, form, form.initial()));
+  const auto missing = [&](double times, double times_held_out) {
+    Fitted out = right;
+    for (auto& example : out.evaluation.examples)
+      for (auto& photo : example.photos)
+        for (FlowCell& cell : photo.flow.cells) cell.z *= example.held_out ? times_held_out : times;
+    return out;
+  };
+  const Floor floor;
+  const Yardstick yardstick{&right, &floor, 1.0};
+  const auto score = [&](double times, double times_held_out) {
+    return refit_score(missing(times, times_held_out), yardstick);
+  };
+  EXPECT_GT(score(8.0, 31.5), score(10.0, 30.0) + kNameable);
+  EXPECT_GT(score(10.0, 24.0), score(9.5, 30.0) + kTie);  // and they are heard
+}
+
 /// A trial whose held-out example has no equilibrium, not even at its start, is out of the race.
 /// It was told as cancelled, and that ended the whole search.
 TEST(Race, AHeldOutExampleWithoutEquilibriumIsNoEnd) {
@@ -303,6 +326,20 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
   weight.fall = 0.2, fitted.evaluation.examples[0].photos[0].r2 = 110.0;
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained);
   EXPECT_THAT(why, testing::EndsWith("the noise floor"));
+}
+
+/// Two that leave as much are a choice where that is little, and no answer where it is much.
+TEST(Verdict, ATieIsAmbiguousOnlyAtTheFloor) {
+  Fitted fitted;
+  fitted.evaluation.examples.resize(1);
+  fitted.evaluation.examples[0].photos.resize(1);
+  PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
+  photo.count = 100.0, photo.r2 = 110.0;
+  const Diagnosis nothing_stands_out;
+  const std::vector<std::string> tie = {"creep", "softening"};
+  EXPECT_EQ(judge(fitted, nothing_stands_out, tie, nullptr), Verdict::ambiguous);
+  photo.r2 = 8000.0;
+  EXPECT_EQ(judge(fitted, nothing_stands_out, tie, nullptr), Verdict::unexplained);
 }
 
 TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
