@@ -120,8 +120,8 @@ class Search {
     if (std::get<bool>(widened)) return true;
     Step& step = newest();
     if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis)) return false;
-    if (auto better =
-            swap_for_better(workspace_, step.fitted, out_.floor, base_, options_, events_)) {
+    if (auto better = swap_for_better(workspace_, step.fitted, out_.floor, base_, refused_swaps_,
+                                      options_, events_)) {
       out_.steps.push_back(swapped_step(std::move(*better)));
       return true;
     }
@@ -135,8 +135,8 @@ class Search {
       auto wide = widened_form(true);  // the mesh has been asked, and is not what is missing
       if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
     }
-    if (auto found =
-            swap_behind_refit(workspace_, contest.refits, out_.floor, base_, options_, events_);
+    if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
+                                       refused_swaps_, options_, events_);
         found && refused_by(step, found->second.in).empty()) {
       add_two(*found->first, std::move(contest.raced), swapped_step(std::move(found->second)));
       return true;
@@ -353,8 +353,9 @@ class Search {
   const DiscoverEvents& events_;
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;
-  std::string refused_;           ///< why the best of the last contest was not added
-  bool mesh_refitted_ = false;    ///< in the last contest
+  std::string refused_;         ///< why the best of the last contest was not added
+  bool mesh_refitted_ = false;  ///< in the last contest
+  RefusedSwaps refused_swaps_;
   std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
   std::optional<Step> together_;  ///< second of a pair, once the first is written
   std::set<std::string> unsupported_;                 ///< were dropped once; who comes back stays

@@ -88,8 +88,7 @@ class Reporter final : public ceres::IterationCallback {
       refused_ = 0;
     }
     if (done(summary)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-    if (options_.progress)
-      options_.progress({stage_.name(), summary.iteration, of_, chi(summary.cost)});
+    if (options_.progress) options_.progress({stage_.name(), summary.iteration, of_, chi_});
     return ceres::SOLVER_CONTINUE;
   }
   double smallest_eigenvalue() const { return least_; }

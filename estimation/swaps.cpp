@@ -117,8 +117,16 @@ bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
 
 namespace {
 
+std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
+
+std::string forms_of(const ModelForm& form) {
+  std::string out;
+  for (const auto& one : form.ingredients) out += form_of(*one) + ", ";
+  return out;
+}
+
 bool same_form(const Ingredient& one, const Ingredient& other) {
-  return one.name() == other.name() && one.variant() == other.variant();
+  return form_of(one) == form_of(other);
 }
 
 /// What ties with the leader where `dropped` is not in the model, but for itself.
@@ -166,23 +174,29 @@ std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
 }  // namespace
 
 std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, const Floor& floor,
-                                    size_t first_effect, const DiscoverOptions& options,
-                                    const DiscoverEvents& events) {
+                                    size_t first_effect, RefusedSwaps& refused,
+                                    const DiscoverOptions& options, const DiscoverEvents& events) {
   std::optional<Swap> best;
   if (fitted.form.ingredients.size() < first_effect + 2 || at_floor(fitted, floor)) return best;
   const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
-  double enough = refit_score(fitted, yardstick) + kNameable;
+  const double pays = refit_score(fitted, yardstick) + kNameable;
+  double enough = pays;
   for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
     if (best && at_floor(best->in.fitted, floor)) break;
     const auto lighter = without(workspace, fitted, i, options);
     if (!lighter) continue;
     for (const EffectScore* score : doubles_of(lighter->dropped, lighter->diagnosis)) {
+      const std::string asked = forms_of(fitted.form) + ": " + form_of(*score->best) +
+                                " in place of " + form_of(lighter->dropped);
+      if (refused.contains(asked)) continue;
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
-      if (!refit || same_form(*refit->fitted.form.ingredients.back(), lighter->dropped)) continue;
+      if (!refit) continue;
       refit->score = refit_score(refit->fitted, yardstick);
-      if (refit->score < enough) continue;
-      enough = refit->score;
-      best = Swap{lighter->dropped.name(), std::move(*refit)};
+      if (refit->score < pays ||
+          same_form(*refit->fitted.form.ingredients.back(), lighter->dropped))
+        refused.insert(asked);
+      else if (refit->score >= enough)
+        enough = refit->score, best = Swap{lighter->dropped.name(), std::move(*refit)};
     }
   }
   return best;
@@ -219,7 +233,7 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
 
 std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
     Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
-    const DiscoverOptions& options, const DiscoverEvents& events) {
+    RefusedSwaps& refused, const DiscoverOptions& options, const DiscoverEvents& events) {
   if (std::any_of(refits.begin(), refits.end(),
                   [&](const Refit& refit) { return at_floor(refit.fitted, floor); }))
     return {};
@@ -227,7 +241,8 @@ std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
     return spoils_held_out(refit.fitted, floor);
   });
   if (found == refits.end()) return {};
-  auto swap = swap_for_better(workspace, found->fitted, floor, first_effect, options, events);
+  auto swap =
+      swap_for_better(workspace, found->fitted, floor, first_effect, refused, options, events);
   if (!swap) return {};
   const Yardstick yardstick{&swap->in.fitted, &floor, measured_noise2(swap->in.fitted)};
   swap->in.score = refit_score(swap->in.fitted, yardstick);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,21 +39,25 @@ struct Swap {
   Refit in;         ///< the one that took its place, with all others
 };
 
+/// Swaps that were refused: all forms of the model, the one that left and the one that came. What
+/// was asked behind a refit is not asked again once that refit stands; beside other effects it is.
+using RefusedSwaps = std::set<std::string>;
+
 /// Two effects or more are not enough: one of them may stand for another. It was chosen while the
 /// others were missing, or is a double that only the held-out photos tell from the right one (creep
 /// and softening, of two loads). Each is dropped, what leads then or ties with the leader is
 /// refitted in its place, and the best of these is it if its score is higher by kNameable. Empty:
 /// none is, or the model is at the floor.
 std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, const Floor& floor,
-                                    size_t first_effect, const DiscoverOptions& options,
-                                    const DiscoverEvents& events);
+                                    size_t first_effect, RefusedSwaps& refused,
+                                    const DiscoverOptions& options, const DiscoverEvents& events);
 
 /// The same for the best of `refits` that explains the fitted photos alone, where none is at the
 /// floor of both and with the swap it scores higher than all of them by kNameable: an effect added
 /// before, or its form, keeps the right one (or the mesh) from winning.
 std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
     Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
-    const DiscoverOptions& options, const DiscoverEvents& events);
+    RefusedSwaps& refused, const DiscoverOptions& options, const DiscoverEvents& events);
 
 struct TieAsked {
   std::vector<std::string> tie;  ///< who equals the first of the tie still, with it; empty: nobody

@@ -55,6 +55,40 @@ TEST(Swaps, WhatWasChosenBesideALargerMisfitIsAskedAgain) {
       {"placement", "softening"});
 }
 
+/// Creep stands, a camera was knocked too. Of two loads softening is creep's double, but leaves the
+/// held-out photos worse: beside the same effects it is asked for once.
+TEST(Swaps, ARefusedOneIsNotAskedTwice) {
+  const test::SmallScene small(
+      {.hidden =
+           "hidden:\n  - {effect: camera_pose, variant: cam0 from twist on, values: "
+           "{camera_pose.cam0 from twist on.rx: -0.0005, camera_pose.cam0 from twist on.tx: -0.08}}"
+           "\n  - {effect: creep, variant: steadily with the order, values: {creep.c: 0.812}}\n",
+       .seed = 3});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Step step;
+  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  for (const char* effect : {"creep", "gravity"}) {
+    step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+    const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
+                                    [&](const EffectScore& one) { return one.effect == effect; });
+    ASSERT_NE(score, step.diagnosis.effects.end()) << effect;
+    step.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *score, {}));
+  }
+  RefusedSwaps refused;
+  const auto asked = [&] {
+    std::vector<std::string> words;
+    DiscoverEvents events;
+    events.refitting = [&](const std::string& one) { words.push_back(one); };
+    swap_for_better(workspace, step.fitted, step.diagnosis.floor, form.ingredients.size(), refused,
+                    {}, events);
+    return words;
+  };
+  EXPECT_THAT(asked(), testing::Contains("softening in place of creep"));
+  ASSERT_FALSE(refused.empty());
+  EXPECT_THAT(asked(), testing::Not(testing::Contains("softening in place of creep")));
+}
+
 /// Swelling beside the weight that is all there is: its interval holds its null, and the photos do
 /// without it.
 TEST(Swaps, WhatIsNotSupportedLeaves) {
