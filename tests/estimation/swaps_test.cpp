@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <stdexcept>
+
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -17,6 +19,21 @@ Discovery explained(const test::SmallCapture& capture, const std::vector<std::st
   EXPECT_THAT(discovery.tie, IsEmpty());
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
   return discovery;
+}
+
+/// The model with these fitted, one after the other, and what was diagnosed before the last.
+Step with_effects(Workspace& workspace, const ModelForm& form,
+                  const std::vector<std::string>& effects) {
+  Step step;
+  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  for (const std::string& effect : effects) {
+    step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+    const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
+                                    [&](const EffectScore& one) { return one.effect == effect; });
+    if (score == step.diagnosis.effects.end()) throw std::runtime_error("no score of " + effect);
+    step.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *score, {}));
+  }
+  return step;
 }
 
 /// Of two loads, creep and softening are one: the third tells, which is held out.
@@ -66,15 +83,7 @@ TEST(Swaps, ARefusedOneIsNotAskedTwice) {
        .seed = 3});
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
-  Step step;
-  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
-  for (const char* effect : {"creep", "gravity"}) {
-    step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
-    const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
-                                    [&](const EffectScore& one) { return one.effect == effect; });
-    ASSERT_NE(score, step.diagnosis.effects.end()) << effect;
-    step.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *score, {}));
-  }
+  const Step step = with_effects(workspace, form, {"creep", "gravity"});
   RefusedSwaps refused;
   const auto asked = [&] {
     std::vector<std::string> words;
@@ -96,15 +105,7 @@ TEST(Swaps, WhatIsNotSupportedLeaves) {
       {.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9000}}\n"});
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
-  Step step;
-  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
-  for (const char* effect : {"gravity", "swelling"}) {
-    step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
-    const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
-                                    [&](const EffectScore& one) { return one.effect == effect; });
-    ASSERT_NE(score, step.diagnosis.effects.end()) << effect;
-    step.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *score, {}));
-  }
+  const Step step = with_effects(workspace, form, {"gravity", "swelling"});
   ASSERT_THAT(effects_in(step.fitted.form), testing::ElementsAre("gravity", "swelling"));
   const size_t first = form.ingredients.size();
   const Floor floor = step.diagnosis.floor;

@@ -218,6 +218,87 @@ TEST(Discover, BothCamerasWereKnocked) {
   EXPECT_NEAR(value("camera_pose.cam1.tx"), 0.4, 0.05);
 }
 
+/// What is smaller than the mesh's own error is not named, but the user hears what would show it.
+TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
+  Fitted fitted;
+  fitted.evaluation.examples.resize(1);
+  fitted.evaluation.examples[0].photos.resize(1);
+  fitted.evaluation.examples[0].photos[0].count = 100.0;
+  fitted.evaluation.examples[0].photos[0].r2 = 200.0;
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(1);
+  EffectScore& weight = diagnosis.effects[0];
+  weight.effect = "gravity", weight.evidence = 50.0, weight.fall = 0.2;
+  weight.mesh_fall = diagnosis.mesh_fall = 0.4;
+  std::string why;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
+  EXPECT_THAT(why, testing::HasSubstr("gravity stands out by less than a mesh finer still"));
+  weight.fall = 0.6;
+  judge(fitted, diagnosis, {}, &why);
+  EXPECT_THAT(why, testing::HasSubstr("and gravity still stands out"));
+  weight.fall = 0.2, fitted.evaluation.examples[0].photos[0].r2 = 110.0;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained);
+  EXPECT_THAT(why, testing::EndsWith("the noise floor"));
+}
+
+/// Two that leave as much are a choice where that is little, and no answer where it is much.
+TEST(Verdict, ATieIsAmbiguousOnlyAtTheFloor) {
+  Fitted fitted;
+  fitted.evaluation.examples.resize(1);
+  fitted.evaluation.examples[0].photos.resize(1);
+  PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
+  photo.count = 100.0, photo.r2 = 110.0;
+  const Diagnosis nothing_stands_out;
+  const std::vector<std::string> tie = {"creep", "softening"};
+  EXPECT_EQ(judge(fitted, nothing_stands_out, tie, nullptr), Verdict::ambiguous);
+  photo.r2 = 8000.0;
+  EXPECT_EQ(judge(fitted, nothing_stands_out, tie, nullptr), Verdict::unexplained);
+}
+
+TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
+  EXPECT_EQ(say(Verdict::explained, {"gravity", "creep"}, {}, "little is left", ""),
+            "missing: gravity and creep; with them, little is left");
+  EXPECT_EQ(say(Verdict::explained, {"gravity", "mesh_resolution"}, {}, "little is left", ""),
+            "missing: gravity; with it on a finer mesh (mesh_resolution), little is left");
+  EXPECT_EQ(say(Verdict::explained, {"mesh_resolution"}, {}, "little is left", ""),
+            "nothing is missing but a finer mesh (mesh_resolution): on it, little is left");
+  EXPECT_EQ(say(Verdict::explained, {}, {}, "little is left", ""),
+            "nothing is missing: little is left");
+  EXPECT_EQ(say(Verdict::explained, {}, {}, "little is left", "creep was refused"),
+            "nothing that is missing pays for itself: little is left; creep was refused");
+  EXPECT_EQ(say(Verdict::unexplained, {}, {}, "much is left", ""),
+            "not in the catalogue: much is left");
+  EXPECT_EQ(say(Verdict::unexplained, {"gravity"}, {}, "much is left", ""),
+            "named, but not enough: gravity; with it, much is left");
+  EXPECT_EQ(say(Verdict::unexplained, {"mesh_resolution"}, {}, "much is left", "creep was refused"),
+            "nothing that was tried explains it: even on a finer mesh (mesh_resolution), much is "
+            "left; creep was refused");
+  EXPECT_EQ(
+      say(Verdict::ambiguous, {"gravity", "creep"}, {"creep", "softening"}, "little is left", ""),
+      "missing: gravity and creep; with them, little is left; these could not be told apart: "
+      "creep, softening");
+}
+
+/// A force 100 deviations off is not explained by photos that are at their floor.
+TEST(Verdict, WantsTheMeasuredValuesExplainedToo) {
+  const SmallScene small({.same_renderer = true});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  Diagnosis diagnosis;
+  diagnosis.floor = measure_floor(*small.scene, fitted.evaluation);
+  std::string why;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained) << why;
+  for (auto& example : fitted.evaluation.examples)
+    for (auto& measured : example.measured) measured.r.z() += 100.0;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
+  EXPECT_THAT(why, testing::ContainsRegex("the force measured on 'grip' in '[a-z]+' is 1?[0-9]+ "
+                                          "times its told noise off"));
+  // what a finer mesh would change by as much is the mesh's
+  diagnosis.mesh_in_measured = 1e4;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained) << why;
+}
+
 /// Without its name in the catalogue, and without those that are easily taken for it, no other may
 /// stand for it.
 TEST(Discover, WhatTheCatalogueDoesNotHaveEndsUnexplained) {
