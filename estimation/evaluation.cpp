@@ -112,10 +112,29 @@ void keep_freed_memory() {
 #endif
 }
 
+namespace {
+
+/// Where the equilibria of an evaluation with derivatives go with the parameters, to first order.
+struct Linear {
+  std::vector<std::shared_ptr<const Ingredient>> ingredients;
+  VectorXd p;
+  std::vector<VectorXd> q;         ///< by example; empty: was not solved
+  std::vector<Eigen::MatrixXd> S;  ///< dq/dp
+
+  /// Empty: not known.
+  std::optional<VectorXd> at(const ModelForm& form, const VectorXd& there, int e) const {
+    if (ingredients != form.ingredients || q[e].size() == 0) return {};
+    return q[e] + S[e] * (there - p);
+  }
+};
+
+}  // namespace
+
 struct Workspace::Impl {
   std::shared_ptr<const Scene> scene;
   std::vector<EquilibriumSolver> solvers;  ///< one per example
   std::vector<VectorXd> last;  ///< by example: q of the last evaluation in which all had one
+  Linear linear;               ///< of the last evaluation with derivatives, without candidates
   std::vector<PhotoComparer> comparers;  ///< one per example
 
   explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
@@ -147,12 +166,15 @@ struct Workspace::Impl {
                                                    : -1;
   }
 
-  /// Equilibrium and sensitivities of one example. `cancelled` is polled.
+  /// Equilibrium and sensitivities of one example. `expected`: where it may be; `cancelled` is
+  /// polled.
   std::optional<NumericalFailure> solve(const Model& model, const ColumnSet* columns, int e,
                                         const EvaluationOptions& options,
+                                        const std::optional<VectorXd>& expected,
                                         const std::function<bool()>& cancelled,
                                         ExampleEvaluation& out, ExampleColumns& derivative) {
     EquilibriumOptions equilibrium_options;
+    if (expected) equilibrium_options.expected = &*expected;
     equilibrium_options.factored = columns != nullptr;
     equilibrium_options.tolerance = options.tolerance;
     equilibrium_options.most_iterations = options.most_iterations;
@@ -163,11 +185,12 @@ struct Workspace::Impl {
       failure->example = scene->capture.examples[e].name;
       return *failure;
     }
-    out.equilibrium = std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+    auto equilibrium = std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+    out.equilibrium = equilibrium;
     if (!columns) return {};
-    derivative = columns->of_example(model, e, *out.equilibrium);
-    out.S =
-        sensitivities(*out.equilibrium, model.examples[e].loading, derivative.dR, derivative.dqc);
+    derivative = columns->of_example(model, e, *equilibrium);
+    out.S = sensitivities(*equilibrium, model.examples[e].loading, derivative.dR, derivative.dqc);
+    equilibrium->factor.reset();  // the largest of all: models that are kept would keep it
     return {};
   }
 
@@ -180,6 +203,15 @@ struct Workspace::Impl {
         solvers[e].forget();
       else
         last[e] = solved[e].equilibrium->q;
+    }
+  }
+
+  void keep_linear(const ModelForm& form, const VectorXd& p,
+                   const std::vector<ExampleEvaluation>& solved) {
+    linear = {form.ingredients, p, {}, {}};
+    for (const ExampleEvaluation& one : solved) {
+      linear.q.push_back(one.S.size() ? one.equilibrium->q : VectorXd());
+      linear.S.push_back(one.S);
     }
   }
 };
@@ -271,8 +303,8 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   const std::function<bool()> pointless = [&] { return failed || cancelled(); };
   const auto solve = [&](int e) {
     if (pointless()) return;
-    failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options, pointless,
-                               solved[e], derivative[e]);
+    failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options,
+                               impl_->linear.at(form, p, e), pointless, solved[e], derivative[e]);
     if (failures[e] && failures[e]->reason == "cancelled") failures[e].reset();
     if (failures[e]) failed = true;
     advance();
@@ -306,6 +338,7 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   impl_->settle(to_solve, solved, failed);
   for (int e : to_solve)
     if (failures[e]) return *failures[e];
+  if (columns && candidates.empty()) impl_->keep_linear(form, p, solved);
   Evaluation out;
   out.columns = columns ? columns->size() : 0;
   for (int e : wanted) out.examples.push_back(std::move(solved[e]));

@@ -70,8 +70,8 @@ struct MeasuredEvaluation {
 struct ExampleEvaluation {
   int example = 0;
   bool held_out = false;
-  std::shared_ptr<const Equilibrium> equilibrium;
-  Eigen::MatrixXd S;  ///< dq/dp, 3n x columns
+  std::shared_ptr<const Equilibrium> equilibrium;  ///< without its factor
+  Eigen::MatrixXd S;                               ///< dq/dp, 3n x columns
   std::vector<PhotoEvaluation> photos;
   std::vector<MeasuredEvaluation> measured;
 };

@@ -68,6 +68,9 @@ struct EquilibriumOptions {
   /// Leave the factored tangent, which sensitivities() needs. False: Equilibrium::factor is null
   /// and `stable` is not known, but true.
   bool factored = true;
+  /// Where the solution is expected (3n), as last solution + S dp: a warm start begins there where
+  /// that leaves less out of balance than the last solution does. Null: not known.
+  const VectorXd* expected = nullptr;
   std::function<bool()> cancelled;  ///< polled; true: returns a failure "cancelled"
 };
 

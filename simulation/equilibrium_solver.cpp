@@ -19,6 +19,8 @@ struct EquilibriumSolver::Impl {
   explicit Impl(std::shared_ptr<const TetMesh> m)
       : mesh(std::move(m)), assembly(*mesh), rest(mesh->X.reshaped()) {}
 
+  VectorXd moved_along(const Problem& problem, const VectorXd& x) const;
+  double out_of_balance(const Problem& problem, const VectorXd& x) const;
   bool warm(const Problem& problem, const EquilibriumOptions& options, VectorXd& x);
   NewtonOutcome climb(const Problem& problem, const EquilibriumOptions& options, VectorXd& x,
                       double& reached);
@@ -92,15 +94,30 @@ std::vector<int> pins_of(const Problem& problem, const VectorXd& rest, std::stri
 
 }  // namespace
 
+/// x with the supports where they belong and the interior moved along with them, by the last
+/// solution's tangent. Without such a move it stays.
+VectorXd EquilibriumSolver::Impl::moved_along(const Problem& problem, const VectorXd& x) const {
+  const VectorXd jump = prescribed_jump(problem, rest, x, x, 1.0);
+  if (jump.isZero(0.0)) return x;
+  return x + predict(problem, state, state.K, x, 1.0, jump);
+}
+
+/// |R_free|, infinite where an element is inverted.
+double EquilibriumSolver::Impl::out_of_balance(const Problem& problem, const VectorXd& x) const {
+  if (!(assembly.smallest_J(x) > 0)) return std::numeric_limits<double>::infinity();
+  return select(problem.residual(x, 1.0), state.free).norm();
+}
+
 /// From the last solution straight to the full load, with the last factor as long as it serves.
 bool EquilibriumSolver::Impl::warm(const Problem& problem, const EquilibriumOptions& options,
                                    VectorXd& x) {
   if (!state.factor || !state.factor->positive()) return false;
-  // The last solution's tangent moves the interior along with the supports; without such a move
-  // Newton starts where it is.
-  const VectorXd jump = prescribed_jump(problem, rest, x, x, 1.0);
-  VectorXd trial = x;
-  if (!jump.isZero(0.0)) trial += predict(problem, state, state.K, x, 1.0, jump);
+  VectorXd trial = moved_along(problem, x);
+  if (options.expected) {
+    VectorXd expected = moved_along(problem, *options.expected);
+    if (out_of_balance(problem, expected) < out_of_balance(problem, trial))
+      trial = std::move(expected);
+  }
   if (!(assembly.smallest_J(trial) > 0)) return false;
   NewtonGoal goal = goal_of(options, state, 1.0, 25);
   goal.reuse_factor = true;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/effect.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -35,6 +36,39 @@ TEST(Evaluation, AFailedOneLeavesNothingBehind) {
   const auto direct = misfits(small, {0.02, 0.021});
   EXPECT_NEAR(way[2], direct[1], 1e-6 * direct[1]);
   for (int again = 0; again < 3; ++again) EXPECT_EQ(misfits(small, {0.02, 1e-6, 0.021}), way);
+}
+
+int newton_iterations(const Evaluation& evaluation) {
+  int all = 0;
+  for (const auto& example : evaluation.examples) all += example.equilibrium->newton_iterations;
+  return all;
+}
+
+/// After a step along known derivatives equilibria are where these take them, but for the square
+/// of the step.
+TEST(Evaluation, DerivativesTellWhereTheNextOneStarts) {
+  const SmallScene small({});
+  ModelForm form = base_form(small.scene);
+  form.ingredients.push_back(
+      find_effect("gravity")->candidates(form.realise(form.initial()), nullptr).front());
+  const auto step = [&](bool derivatives) {
+    Workspace workspace(small.scene);
+    EvaluationOptions options;
+    options.derivatives = derivatives;
+    const auto at = [&](double weight) {
+      Eigen::VectorXd p = form.initial();
+      p.tail(3) << 0.3 * weight, 0.0, weight;
+      return std::get<Evaluation>(workspace.evaluate(form, p, options));
+    };
+    at(-9000.0);
+    return at(-12000.0);
+  };
+  const Evaluation told = step(true), untold = step(false);
+  EXPECT_LT(newton_iterations(told), newton_iterations(untold));
+  for (size_t e = 0; e < told.examples.size(); ++e)
+    EXPECT_LT(
+        (told.examples[e].equilibrium->q - untold.examples[e].equilibrium->q).cwiseAbs().maxCoeff(),
+        1e-6);
 }
 
 }  // namespace

@@ -224,6 +224,32 @@ TEST(Solver, WithoutItsFactorTheEquilibriumIsTheSame) {
   EXPECT_FALSE(b.factor);
 }
 
+/// A warm start begins where the solution is expected, and where that is nonsense at the last one.
+TEST(Solver, StartsWhereTheSolutionIsExpected) {
+  BentBlock c;
+  const auto iterations = [&](const VectorXd* expected, VectorXd& q) {
+    BentBlock now = c;
+    EquilibriumSolver solver(std::make_shared<const TetMesh>(now.mesh));
+    EquilibriumOptions options;
+    if (!std::holds_alternative<Equilibrium>(solver.solve(now.energy(), now.loading(), options)))
+      return -1;
+    now.gravity *= 1.3, now.lift *= 1.1;
+    options.expected = expected;
+    const auto result = solver.solve(now.energy(), now.loading(), options);
+    if (!std::holds_alternative<Equilibrium>(result)) return -1;
+    q = std::get<Equilibrium>(result).q;
+    return std::get<Equilibrium>(result).newton_iterations;
+  };
+  VectorXd q, expected, odd;
+  const int without = iterations(nullptr, q);
+  ASSERT_GT(without, 1);
+  EXPECT_LE(iterations(&q, expected), 1);
+  EXPECT_LE((expected - q).cwiseAbs().maxCoeff(), 1e-7);
+  const VectorXd turned_inside_out = -q;
+  EXPECT_EQ(iterations(&turned_inside_out, odd), without);
+  EXPECT_EQ(odd, q);
+}
+
 /// A small load needs one factorization: the predictor's serves Newton too.
 TEST(Solver, KeepsThePredictorsFactorWhereItCameNear) {
   BentBlock c;
