@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/QR>
+
 #include "estimation/effects/graded_stiffness.h"
 
 namespace hookeye {
@@ -24,6 +26,26 @@ struct ScaledForces {
     return element_forces(model.scene->body->mesh, scaled, q);
   }};
 };
+
+/// Of single bumps the one that least squares over the volume put nearest to the sum of all: its
+/// centre and amplitude. The rest is a constant and the same amplitude in all bumps, which is none:
+/// they overlap where the body is thick, and hardly at its edges.
+std::pair<Vector3d, double> likest_blob(const TetMesh& mesh, const std::vector<Vector3d>& centres,
+                                        double radius, const VectorXd& values) {
+  const auto m = static_cast<Eigen::Index>(centres.size());
+  const VectorXd w = element_volumes(mesh).cwiseSqrt();
+  Eigen::MatrixXd bumps(mesh.size(), m);
+  for (Eigen::Index i = 0; i < m; ++i)
+    bumps.col(i) = w.cwiseProduct(gaussian_bump(mesh, centres[static_cast<size_t>(i)], radius));
+  Eigen::MatrixXd rest(mesh.size(), 2);
+  rest << w, bumps.rowwise().sum();
+  bumps -= rest * rest.colPivHouseholderQr().solve(bumps);
+  const VectorXd along = bumps.transpose() * (bumps * values);
+  const VectorXd square = bumps.colwise().squaredNorm();
+  Eigen::Index i = 0;
+  (along.array().square() / square.array().max(1e-12 * square.maxCoeff())).maxCoeff(&i);
+  return {centres[static_cast<size_t>(i)], along[i] / square[i]};
+}
 
 /// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
 /// The refit may go on to one that changes along a direction, or in two layers
@@ -73,17 +95,18 @@ class StiffnessField final : public Effect {
     return free_blob(model);
   }
 
-  /// The bump that is farthest from the others, as a blob.
+  /// The one blob, of those that the bumps are, that is most like the field but for its mean. (Not
+  /// the bump of the largest value: bumps overlap where the body is thick, and hardly at its
+  /// edges.)
   std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
                                                  VectorXd& values) const override {
     const auto n = numbers_in(refitted.variant());
     if (!starts_with(refitted.variant(), "field") || n.size() < 4) return nullptr;
-    VectorXd sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    const VectorXd over = values.array() - sorted[sorted.size() / 2];
-    Eigen::Index i = 0;
-    over.cwiseAbs().maxCoeff(&i);
-    values = freed({Vector3d(n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]), n[0]}, over[i]);
+    std::vector<Vector3d> centres;
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      centres.emplace_back(n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]);
+    const auto [centre, amplitude] = likest_blob(model.scene->body->mesh, centres, n[0], values);
+    values = freed({centre, n[0]}, amplitude);
     return free_blob(model);
   }
 

@@ -6,8 +6,10 @@
 #include <set>
 
 #include "estimation/diagnosis.h"
+#include "estimation/effects/toolbox.h"
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation.h"
+#include "estimation/kept_stiffness.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye::test {
@@ -333,6 +335,37 @@ TEST(Catalogue, SmallerFormsSayTheSameWhereOneValueStandsOut) {
     }
   }
   EXPECT_GT(tried, 0);
+}
+
+/// A stiff place in a field whose other values are all the same: that is the modulus' own.
+TEST(StiffnessField, TheSmallerFormIsThePlaceAndTheRestGoesToTheModulus) {
+  const Model& model = base_model();
+  const Effect& effect = *find_effect("stiffness_field");
+  const auto field = effect.candidates(model, nullptr).front();
+  const auto n = static_cast<Eigen::Index>(field->parameters().size());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    VectorXd values = VectorXd::Constant(n, 0.8);
+    values[k] += 0.6;
+    const ModelForm larger = extended(base(), field);
+    const VectorXd p = with_values(larger, values);
+    VectorXd few = values;
+    const auto blob = effect.smaller_form(model, *field, few);
+    ASSERT_TRUE(blob);
+    const auto centre = numbers_in(field->variant());
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(few[1 + i], centre[static_cast<size_t>(1 + 3 * k + i)], 1e-9) << k;
+    EXPECT_NEAR(few[0], 0.6, 0.35) << k;
+    const ModelForm smaller = extended(base(), blob);
+    const Model large = larger.realise(p);
+    const VectorXd start = with_stiffness_of(large, smaller, with_values(smaller, few));
+    const VectorXd& w_large = large.energy.parts[0].weight;
+    VectorXd ratio = p[0] * w_large;
+    const Model small = smaller.realise(start);
+    ratio = ratio.cwiseQuotient(start[0] * small.energy.parts[0].weight);
+    std::sort(ratio.begin(), ratio.end());
+    EXPECT_NEAR(ratio[ratio.size() / 2], 1.0, 1e-9) << k;
+    EXPECT_GT(start[0], 1.3 * p[0]) << k;
+  }
 }
 
 }  // namespace
