@@ -61,19 +61,6 @@ namespace {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
-/// none.
-bool may_tie(const Racer& rival, const Racer& winner) {
-  return rival.structured() < 1.5 * winner.structured();
-}
-
-/// Left with three times the misfit of the first after as many steps: nobody came from there to
-/// win, and the refit of a field costs as much as all others. Not asked of the effect of the
-/// largest evidence, nor of those that tie with it: two steps from afar say less than the scores.
-bool out_of_reach(const Racer& rival, const Racer& winner) {
-  return rival.chi() > 3.0 * winner.chi();
-}
-
 /// The mesh, where it stands out and no other effect by more than `margin` before it; else null.
 const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
   for (const EffectScore& score : diagnosis.effects)
@@ -103,11 +90,6 @@ bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
-  const auto ties = [&](const std::string& effect) {
-    return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
-      return score.effect == effect && score.evidence > diagnosis.effects.front().evidence - kTie;
-    });
-  };
   const Racer winner = racers.front();
   std::vector<Racer> kept;
   const EffectScore* mesh = mesh_ahead(diagnosis, kTie);
@@ -117,8 +99,9 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
   for (Racer& racer : racers) {
     const bool held = racer.effect == first || (mesh && racer.effect == mesh->effect) ||
                       sensors_alone(*racer.form.ingredients.back());
-    if (!held && !ties(racer.effect) && out_of_reach(racer, winner)) continue;
-    if (held || places-- > 0 || (may_be_all(racer.effect, diagnosis) && may_tie(racer, winner)))
+    if (!held && !ties_with_first(diagnosis, racer.effect) && racer.out_of_reach_of(winner))
+      continue;
+    if (held || places-- > 0 || (may_be_all(racer.effect, diagnosis) && racer.may_tie_with(winner)))
       kept.push_back(std::move(racer));
   }
   racers = std::move(kept);
@@ -174,7 +157,7 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     // Nothing can do better than the floor; once it is reached only a tie is of use.
     if (!refits.empty() &&
         at_floor(refits.front().fitted, step.diagnosis.floor, kLeftByRenderers) &&
-        !may_tie(racer, racers.front()))
+        !racer.may_tie_with(racers.front()))
       continue;
     if (events.refitting) events.refitting(racer.effect);
     FitOptions fit = options.fit;
@@ -191,20 +174,24 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
   }
-  if (refits.empty()) return out;
+  if (!refits.empty()) rank(out, step);
+  return out;
+}
+
+void rank(Contest& contest, const Step& step) {
+  auto& refits = contest.refits;
   const auto best = std::min_element(refits.begin(), refits.end(), [&](auto& a, auto& b) {
     return misfit(a.fitted) < misfit(b.fitted);
   });
-  out.reference = best->fitted;
-  out.measured_noise2 = measured_noise2(step.fitted);
+  contest.reference = best->fitted;
+  contest.measured_noise2 = measured_noise2(step.fitted);
   for (const auto& refit : refits)
-    out.measured_noise2 = std::min(out.measured_noise2, measured_noise2(refit.fitted));
-  const Yardstick yardstick{&out.reference, &step.diagnosis.floor, out.measured_noise2};
-  out.before = refit_score(step.fitted, yardstick);
+    contest.measured_noise2 = std::min(contest.measured_noise2, measured_noise2(refit.fitted));
+  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
+  contest.before = refit_score(step.fitted, yardstick);
   for (auto& refit : refits) refit.score = refit_score(refit.fitted, yardstick);
   std::stable_sort(refits.begin(), refits.end(),
                    [](auto& a, auto& b) { return a.score > b.score; });
-  return out;
 }
 
 std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,

@@ -38,8 +38,11 @@ struct Contest {
 bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
                         std::string* why = nullptr);
 
-/// Refits the leaders of a race and scores them on fitted and held-out photos with the correlation
-/// of the best of them.
+/// Scores the refits, of which there are some, on fitted and held-out photos with the correlation
+/// of the best of them, and sorts them.
+void rank(Contest& contest, const Step& step);
+
+/// Refits the leaders of a race and ranks them.
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events);

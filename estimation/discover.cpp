@@ -62,7 +62,8 @@ class Search {
       : workspace_(workspace),
         options_(options),
         events_(events),
-        base_(base_form(workspace.scene().shared_from_this()).ingredients.size()) {}
+        base_(base_form(workspace.scene().shared_from_this()).ingredients.size()),
+        wider_(workspace, options.fit, events) {}
 
   std::variant<Discovery, NumericalFailure> run(Step first) {
     out_.tie = options_.tie;
@@ -135,6 +136,7 @@ class Search {
       auto wide = widened_form(true);  // the mesh has been asked, and is not what is missing
       if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
     }
+    if (auto failure = widen_spoiler(contest)) return *failure;
     if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
                                        refused_swaps_, options_, events_);
         found && refused_by(step, found->second.in).empty()) {
@@ -148,8 +150,7 @@ class Search {
   }
 
   /// Before another effect is asked for those that stand are asked for a wider form, the newest
-  /// first; a mesh that stands out is settled before them, or has been asked. Each form once beside
-  /// as many others.
+  /// first; a mesh that stands out is settled before them, or has been asked.
   WentOn widened_form(bool mesh_was_asked) {
     const Step& step = newest();
     const auto& all = step.fitted.form.ingredients;
@@ -158,24 +159,44 @@ class Search {
         return false;
     for (size_t at = all.size(); at-- > base_;) {
       const std::string name = all[at]->name();
-      const std::string form = name + all[at]->variant();
       if (numerical(name) ||
-          (at_floor(step.fitted, out_.floor, kLeftByRenderers) && !wide_.contains(form)) ||
-          !widened_.insert({form, all.size()}).second)
+          (at_floor(step.fitted, out_.floor, kLeftByRenderers) && !wider_.came_to(*all[at])))
         continue;
-      auto result = widened(workspace_, step.fitted, at, out_.floor, options_.fit, events_);
+      auto result = wider_.ask(step.fitted, at, out_.floor);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-      Fitted& wide = std::get<Fitted>(result);
-      if (wide.form.ingredients[at]->variant() == all[at]->variant()) continue;
-      wide_.insert(name + wide.form.ingredients[at]->variant());
+      auto& wide = std::get<std::optional<Fitted>>(result);
+      if (!wide) continue;
       Step next;
       next.name = next.added = name;
       next.dropped = {name};
-      next.fitted = std::move(wide);
+      next.fitted = std::move(*wide);
       out_.steps.push_back(std::move(next));
       return true;
     }
     return false;
+  }
+
+  /// The best refit explains the fitted photos and misses the held-out ones, and none explains
+  /// both: before what stands is doubted for it, it is asked for a wider form. (Creep that levels
+  /// off is growing creep to the first loads.)
+  std::optional<NumericalFailure> widen_spoiler(Contest& contest) {
+    auto& refits = contest.refits;
+    const auto spoils = [&](const Refit& refit) {
+      return spoils_held_out(refit.fitted, out_.floor) && !numerical(refit.effect);
+    };
+    const auto spoiler = std::find_if(refits.begin(), refits.end(), spoils);
+    if (spoiler == refits.end() || std::any_of(refits.begin(), refits.end(), [&](auto& refit) {
+          return at_floor(refit.fitted, out_.floor);
+        }))
+      return {};
+    const size_t at = spoiler->fitted.form.ingredients.size() - 1;
+    auto result = wider_.ask(spoiler->fitted, at, out_.floor);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+    if (auto& wide = std::get<std::optional<Fitted>>(result)) {
+      spoiler->fitted = std::move(*wide);
+      rank(contest, newest());
+    }
+    return {};
   }
 
   /// Last of all: what was added explains the fitted photos and misses the held-out ones. So did
@@ -258,8 +279,8 @@ class Search {
       }
     settle_tie(out_.tie, effects_in(next.fitted.form));
     if (out_.tie.size() > 1) {
-      if (auto asked = ask_tie_again(workspace_, next.fitted, out_.tie, out_.floor, base_, options_,
-                                     events_)) {
+      if (auto asked = ask_tie_again(workspace_, next.fitted, out_.tie, out_.floor, base_,
+                                     refused_swaps_, options_, events_)) {
         out_.tie = std::move(asked->tie);
         if (asked->better) together_ = swapped_step(std::move(*asked->better));
       }
@@ -326,7 +347,8 @@ class Search {
       for (const std::string& loser : narrow_losers(then, last))
         if (!stands(loser) && asked_.insert({then.added, loser}).second) contest.push_back(loser);
       if (contest.size() < 2) continue;
-      auto asked = ask_tie_again(workspace_, last, contest, out_.floor, base_, options_, events_);
+      auto asked = ask_tie_again(workspace_, last, contest, out_.floor, base_, refused_swaps_,
+                                 options_, events_);
       if (!asked) continue;
       if (asked->better) {
         out_.steps.push_back(swapped_step(std::move(*asked->better)));
@@ -356,11 +378,10 @@ class Search {
   std::string refused_;         ///< why the best of the last contest was not added
   bool mesh_refitted_ = false;  ///< in the last contest
   RefusedSwaps refused_swaps_;
+  WiderForms wider_;
   std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
   std::optional<Step> together_;  ///< second of a pair, once the first is written
-  std::set<std::string> unsupported_;                 ///< were dropped once; who comes back stays
-  std::set<std::pair<std::string, size_t>> widened_;  ///< forms that were asked, beside so many
-  std::set<std::string> wide_;  ///< forms that widening came to: a plainer one may do at the floor
+  std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
 };
 

@@ -11,6 +11,10 @@ namespace hookeye {
 
 namespace {
 
+/// Share of |r|^2 below which a step in a coarse picture, which only has to lead the next one to
+/// the right speckle, is none.
+constexpr double kCoarse = 0.02;
+
 class ReducedCost final : public ceres::CostFunction {
  public:
   ReducedCost(Workspace& workspace, const ModelForm& form, const Scope& scope,
@@ -98,29 +102,30 @@ class Reporter final : public ceres::IterationCallback {
   /// white noise; below 1e-6 of |r|^2 rays that change triangles hide it (two evaluations 1e-6
   /// apart in a modulus differ by some 1e-5), and at 1e-5 moduli stopped a standard error short. A
   /// refused step that changed next to nothing has met the same limit. A structured misfit moves
-  /// the parameters by more than noise does: the limit grows with its square. A coarse picture only
-  /// has to lead the next one to the right speckle.
+  /// the parameters by more than noise does: the limit grows with its square.
   bool done(const ceres::IterationSummary& summary) {
-    if (stage_.level > 1 && cost_.promised() < 0.02 * cost_.r2()) return true;
+    if (stage_.level > 1 && cost_.promised() < kCoarse * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
     if (!summary.step_is_successful)
       return summary.iteration > 0 &&
              (std::abs(summary.cost_change) < 1e-4 * summary.cost || gives_up());
     if (cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2())) return true;
-    return stage_.level == 0 && summary.iteration > 0 && creeps(summary);
+    return stage_.level != 1 && summary.iteration > 0 && creeps(summary);
   }
 
   /// Two steps in a row that gained nothing that counts. Of a structured misfit, whose effective
   /// residuals are some hundred, 1e-3 of |r|^2 is a third of a standard error, whatever was
   /// promised: near a fold of the equilibria derivatives hold for tiny steps alone. Steps on the
-  /// way to `aim_chi` count where twenty of them would arrive.
+  /// way to `aim_chi` count where twenty of them would arrive. (In coarse pictures chi is another.)
   bool creeps(const ceres::IterationSummary& summary) {
     const double chi = this->chi(summary.cost);
     const double structured = 1.0 - 1.0 / std::max(1.0, chi * chi);
     const double fell = this->chi(summary.cost + summary.cost_change) - chi;
-    const bool counts = summary.cost_change > (1e-6 + 1e-3 * structured) * summary.cost;
-    const bool arrives = options_.aim_chi == 0.0 || 20.0 * fell > chi - options_.aim_chi;
+    const double least = stage_.level > 1 ? kCoarse : 1e-6 + 1e-3 * structured;
+    const bool counts = summary.cost_change > least * summary.cost;
+    const bool arrives =
+        options_.aim_chi == 0.0 || stage_.level > 0 || 20.0 * fell > chi - options_.aim_chi;
     slow_ = counts && arrives ? 0 : slow_ + 1;
     return slow_ == 2;
   }

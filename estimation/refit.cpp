@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimation/discover.h"
+#include "estimation/kept_stiffness.h"
 
 namespace hookeye {
 
@@ -125,6 +126,7 @@ std::optional<std::pair<ModelForm, VectorXd>> with_other_form(
   other.ingredients.push_back(std::move(form));
   VectorXd there(before.size() + values.size());
   there << before, values;
+  there = with_stiffness_of(fitted.form.realise(fitted.p), other, std::move(there));
   return std::pair{std::move(other), std::move(there)};
 }
 
@@ -246,7 +248,36 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
   return best;
 }
 
+/// Photos of `left` keep at most a tenth of what `start` had over the floor, fitted and held-out.
+bool explains_nearly_all(const Trial& left, const TrialScale& start) {
+  const double floor2 = start.floor * start.floor;
+  const auto nearly = [&](double after, double before) {
+    return after * after - floor2 <= 0.1 * std::max(0.0, before * before - floor2);
+  };
+  return nearly(left.chi_fit, start.chi) && nearly(left.chi_validate, start.chi_validate);
+}
+
+/// The first explains nearly all, and this one promises less than half of what the first did and
+/// would be out of its reach with that: it could only come from there to tie, as a double whose
+/// first step does not look like it. Not asked of what moves no photo.
+bool no_rival(const EffectScore& score, const Diagnosis& diagnosis, const Racer& first,
+              const TrialScale& start) {
+  const EffectScore& led = diagnosis.effects.front();
+  if (first.effect != led.effect || !explains_nearly_all(newest(first), start) ||
+      sensors_alone(*score.best) || ties_with_first(diagnosis, score.effect) ||
+      score.explains > 0.5 * led.explains)
+    return false;
+  const double chi2 = start.chi * start.chi, floor2 = start.floor * start.floor;
+  return std::sqrt(chi2 - score.explains * (chi2 - floor2)) > 3.0 * newest(first).chi_fit;
+}
+
 }  // namespace
+
+bool ties_with_first(const Diagnosis& diagnosis, const std::string& effect) {
+  return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
+    return score.effect == effect && score.evidence > diagnosis.effects.front().evidence - kTie;
+  });
+}
 
 double Racer::structured() const {
   const double f2 = trial.floor * trial.floor, least = kLeftByRenderers * kLeftByRenderers - 1.0;
@@ -280,6 +311,8 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
   if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
   for (const EffectScore& score : diagnosis.effects) {
     if (!nameable(score, diagnosis)) continue;
+    if (!racers.empty() && no_rival(score, diagnosis, racers.front(), std::get<TrialScale>(scale)))
+      continue;
     auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
     if (auto* failure = std::get_if<NumericalFailure>(&entered)) {
       if (cancelled(*failure)) return *failure;
@@ -287,15 +320,27 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
     }
     racers.push_back(std::get<Racer>(std::move(entered)));
     if (tried) tried(racers.back());
+    if (racers.size() > 1 || &score == &diagnosis.effects.back()) continue;
+    // The first is asked for its second step at once: who need not run shows then.
+    auto further = step_on(workspace, racers.front(), std::get<TrialScale>(scale), options);
+    if (auto* trial = std::get_if<Trial>(&further))
+      racers.front().next = std::move(*trial);
+    else if (cancelled(std::get<NumericalFailure>(further)))
+      return std::get<NumericalFailure>(further);
   }
   auto sort = [&] {
     std::stable_sort(racers.begin(), racers.end(),
                      [](const Racer& a, const Racer& b) { return a.chi() < b.chi(); });
   };
   sort();
-  for (size_t i = 0; racers.size() > 1 && i < racers.size(); ++i) {
+  const Racer first = racers.empty() ? Racer() : racers.front();
+  for (size_t i = 0; i < racers.size() && (racers.size() > 1 || first.next); ++i) {
     // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
-    if (i >= kSecondRound && racers[i].effect != diagnosis.effects.front().effect) continue;
+    const std::string& effect = racers[i].effect;
+    if (effect != diagnosis.effects.front().effect &&
+        (i >= kSecondRound ||
+         (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect))))
+      continue;
     auto result = step_on(workspace, racers[i], std::get<TrialScale>(scale), options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;

@@ -6,6 +6,8 @@
 
 namespace hookeye {
 
+std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
+
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
   Eigen::Index offset = 0;
   for (size_t k = 0; k < ingredient; ++k)
@@ -31,19 +33,30 @@ bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Paramet
   return false;
 }
 
+struct Parted {
+  ModelForm form;
+  VectorXd p;
+};
+
+/// `fitted` without its ingredient `i`, all else as it stands.
+Parted parted_from(const Fitted& fitted, size_t i) {
+  const Eigen::Index offset = offset_of(fitted.form, i);
+  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
+  Parted out{fitted.form, VectorXd(fitted.p.size() - n)};
+  out.form.ingredients.erase(out.form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
+  out.p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  return out;
+}
+
 /// `fitted` without its ingredient `i`, fitted again from where it stands or, where that is nearer,
 /// from where the capture's own parameters started: a modulus may have made up for the effect by
 /// factors. Coarse to fine where both are far off.
 std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
                                   const FitOptions& options) {
-  const Eigen::Index offset = offset_of(fitted.form, i);
-  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
-  ModelForm form = fitted.form;
-  form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
-  VectorXd stands(fitted.p.size() - n);
-  stands << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  const auto [form, stands] = parted_from(fitted, i);
   VectorXd told = stands;
-  const Eigen::Index own = std::min(offset, base_form(form.scene).initial().size());
+  const Eigen::Index own =
+      std::min(offset_of(fitted.form, i), base_form(form.scene).initial().size());
   told.head(own) = form.initial().head(own);
   double least = std::numeric_limits<double>::infinity();
   VectorXd start = stands;
@@ -117,12 +130,15 @@ bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
 
 namespace {
 
-std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
-
 std::string forms_of(const ModelForm& form) {
   std::string out;
   for (const auto& one : form.ingredients) out += form_of(*one) + ", ";
   return out;
+}
+
+/// Which a refused swap answers.
+std::string question(const ModelForm& form, const Ingredient& dropped, const std::string& effect) {
+  return forms_of(form) + ": " + effect + " in place of " + form_of(dropped);
 }
 
 bool same_form(const Ingredient& one, const Ingredient& other) {
@@ -147,28 +163,36 @@ struct Without {
   Diagnosis diagnosis;
 };
 
-std::optional<Without> without(Workspace& workspace, const Fitted& fitted, size_t i,
-                               const DiscoverOptions& options) {
-  const Ingredient& dropped = *fitted.form.ingredients[i];
-  if (!find_effect(dropped.name()) || remeshes(dropped)) return {};
-  auto lighter = fit_without(workspace, fitted, i, options.fit);
+bool may_leave(const Ingredient& ingredient) {
+  return find_effect(ingredient.name()) && !remeshes(ingredient);
+}
+
+std::optional<Without> diagnosed(Workspace& workspace, const Ingredient& dropped,
+                                 std::optional<Fitted> lighter, const DiscoverOptions& options) {
   if (!lighter) return {};
   auto diagnosis = diagnose(workspace, *lighter, options.diagnosis);
   if (!std::holds_alternative<Diagnosis>(diagnosis)) return {};
   return Without{dropped, std::move(*lighter), std::get<Diagnosis>(std::move(diagnosis))};
 }
 
-std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
-                                  const EffectScore& score, const DiscoverOptions& options,
-                                  const DiscoverEvents& events) {
-  const std::string old = without.dropped.name();
-  const std::string words = score.effect + (score.effect == old ? " anew" : " in place of " + old);
+/// The refit of a swap, announced to who watches. Empty: it failed.
+template <class Fit>
+std::optional<Refit> told_of_swap(const std::string& in, const std::string& out,
+                                  const DiscoverEvents& events, const Fit& fit) {
+  const std::string words = in + (in == out ? " anew" : " in place of " + out);
   if (events.refitting) events.refitting(words);
-  auto result = add_effect(workspace, without.fitted, score, options.fit);
+  auto result = fit();
   auto* refitted = std::get_if<Fitted>(&result);
   if (!refitted) return {};
   if (events.refitted) events.refitted(words, *refitted);
-  return Refit{score.effect, std::move(*refitted), 0.0};
+  return Refit{in, std::move(*refitted), 0.0};
+}
+
+std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
+                                  const EffectScore& score, const DiscoverOptions& options,
+                                  const DiscoverEvents& events) {
+  return told_of_swap(score.effect, without.dropped.name(), events,
+                      [&] { return add_effect(workspace, without.fitted, score, options.fit); });
 }
 
 }  // namespace
@@ -183,46 +207,96 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
   double enough = pays;
   for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
     if (best && at_floor(best->in.fitted, floor)) break;
-    const auto lighter = without(workspace, fitted, i, options);
+    const Ingredient& dropped = *fitted.form.ingredients[i];
+    if (!may_leave(dropped)) continue;
+    const auto lighter =
+        diagnosed(workspace, dropped, fit_without(workspace, fitted, i, options.fit), options);
     if (!lighter) continue;
-    for (const EffectScore* score : doubles_of(lighter->dropped, lighter->diagnosis)) {
-      const std::string asked = forms_of(fitted.form) + ": " + form_of(*score->best) +
-                                " in place of " + form_of(lighter->dropped);
+    for (const EffectScore* score : doubles_of(dropped, lighter->diagnosis)) {
+      const std::string asked = question(fitted.form, dropped, score->effect);
       if (refused.contains(asked)) continue;
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
       if (!refit) continue;
       refit->score = refit_score(refit->fitted, yardstick);
-      if (refit->score < pays ||
-          same_form(*refit->fitted.form.ingredients.back(), lighter->dropped))
-        refused.insert(asked);
+      if (refit->score < pays || same_form(*refit->fitted.form.ingredients.back(), dropped))
+        refused.emplace(asked, RefusedSwap{refit->fitted.form, refit->fitted.p});
       else if (refit->score >= enough)
-        enough = refit->score, best = Swap{lighter->dropped.name(), std::move(*refit)};
+        enough = refit->score, best = Swap{dropped.name(), std::move(*refit)};
     }
   }
   return best;
 }
 
+namespace {
+
+/// Those of `effects` that are within reach of the first of them where it is dropped, or may tie
+/// with it where no more is to be had, refitted.
+std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without,
+                                  const std::vector<std::string>& effects, bool ties_alone,
+                                  const DiscoverOptions& options, const DiscoverEvents& events) {
+  std::vector<Refit> out;
+  Diagnosis asked = without.diagnosis;
+  std::erase_if(asked.effects, [&](const EffectScore& score) {
+    return std::find(effects.begin(), effects.end(), score.effect) == effects.end();
+  });
+  auto raced = race(workspace, without.fitted, asked, options.fit);
+  auto* racers = std::get_if<std::vector<Racer>>(&raced);
+  if (!racers) return out;
+  for (const Racer& racer : *racers) {
+    const Racer& first = racers->front();
+    const bool behind = ties_alone ? !racer.may_tie_with(first) : racer.out_of_reach_of(first);
+    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)))
+      continue;
+    auto refitted = told_of_swap(racer.effect, effects.front(), events,
+                                 [&] { return refit(workspace, racer, options.fit); });
+    if (refitted) out.push_back(std::move(*refitted));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
                                       const std::vector<std::string>& tie, const Floor& floor,
-                                      size_t first_effect, const DiscoverOptions& options,
+                                      size_t first_effect, const RefusedSwaps& refused,
+                                      const DiscoverOptions& options,
                                       const DiscoverEvents& events) {
   const auto& all = last.form.ingredients;
   size_t i = first_effect;
   while (i < all.size() && all[i]->name() != tie.front()) ++i;
-  const auto lighter =
-      i < all.size() ? without(workspace, last, i, options) : std::optional<Without>();
-  if (!lighter) return {};
+  if (i == all.size() || !may_leave(*all[i])) return {};
+  std::vector<Refit> refits;
+  std::vector<std::string> open = {tie.front()};
+  for (auto rival = tie.begin() + 1; rival != tie.end(); ++rival) {
+    const auto known = refused.find(question(last.form, *all[i], *rival));
+    if (known == refused.end()) {
+      open.push_back(*rival);
+      continue;
+    }
+    auto there = assess(workspace, known->second.form, known->second.p, options.fit);
+    if (auto* fitted = std::get_if<Fitted>(&there))
+      refits.push_back({*rival, std::move(*fitted), 0.0});
+  }
+  if (open.size() > 1) {
+    // As it stands, what the first explained is what is missing: who equals it explains that.
+    const auto [form, stands] = parted_from(last, i);
+    auto there = assess(workspace, form, stands, options.fit);
+    auto* lighter = std::get_if<Fitted>(&there);
+    const auto without = diagnosed(
+        workspace, *all[i], lighter ? std::optional(std::move(*lighter)) : std::nullopt, options);
+    if (!without) return {};
+    const bool ties_alone = at_floor(last, floor, kLeftByRenderers);
+    for (Refit& refit : refit_in_reach(workspace, *without, open, ties_alone, options, events))
+      refits.push_back(std::move(refit));
+  }
   const Yardstick yardstick{&last, &floor, measured_noise2(last)};
   const double now = refit_score(last, yardstick);
   TieAsked out;
-  for (const EffectScore& score : lighter->diagnosis.effects) {
-    if (!score.best || std::find(tie.begin() + 1, tie.end(), score.effect) == tie.end()) continue;
-    auto refit = in_its_place(workspace, *lighter, score, options, events);
-    if (!refit) continue;
-    refit->score = refit_score(refit->fitted, yardstick);
-    if (refit->score > now - kTie) out.tie.push_back(score.effect);
-    if (refit->score > now + kTie && (!out.better || refit->score > out.better->in.score))
-      out.better = Swap{tie.front(), std::move(*refit)};
+  for (Refit& refit : refits) {
+    refit.score = refit_score(refit.fitted, yardstick);
+    if (refit.score > now - kTie) out.tie.push_back(refit.effect);
+    if (refit.score > now + kTie && (!out.better || refit.score > out.better->in.score))
+      out.better = Swap{tie.front(), std::move(refit)};
   }
   if (out.better)
     out.tie.clear();

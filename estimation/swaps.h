@@ -1,8 +1,8 @@
 // Effects of earlier steps that a later one shows to be idle or wrong. Internal to discover.
 #pragma once
 
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +11,8 @@
 
 namespace hookeye {
 
+/// Effect and variant.
+std::string form_of(const Ingredient& one);
 /// Where the values of an ingredient begin.
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient);
 
@@ -39,9 +41,14 @@ struct Swap {
   Refit in;         ///< the one that took its place, with all others
 };
 
-/// Swaps that were refused: all forms of the model, the one that left and the one that came. What
-/// was asked behind a refit is not asked again once that refit stands; beside other effects it is.
-using RefusedSwaps = std::set<std::string>;
+/// What came of swaps that were refused: by all forms of the model, the one that left and the
+/// effect that came. What was asked behind a refit is not fitted again once that refit stands, nor
+/// where a tie asks for it; beside other effects it is.
+struct RefusedSwap {
+  ModelForm form;
+  VectorXd p;
+};
+using RefusedSwaps = std::map<std::string, RefusedSwap>;
 
 /// Two effects or more are not enough: one of them may stand for another. It was chosen while the
 /// others were missing, or is a double that only the held-out photos tell from the right one (creep
@@ -65,11 +72,12 @@ struct TieAsked {
 };
 
 /// What a tie comes to in the last model, where a later effect stands beside it: who was equal
-/// while that was missing need not be. Empty: it could not be asked, as the model without the first
-/// of the tie has no fit.
+/// while that was missing need not be. All of the tie race where its first is not in the model; who
+/// is out of reach there, or behind where `last` is at the floor, is not refitted. Empty: it could
+/// not be asked, as the model without the first of the tie has no equilibrium.
 std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
                                       const std::vector<std::string>& tie, const Floor& floor,
-                                      size_t first_effect, const DiscoverOptions& options,
-                                      const DiscoverEvents& events);
+                                      size_t first_effect, const RefusedSwaps& refused,
+                                      const DiscoverOptions& options, const DiscoverEvents& events);
 
 }  // namespace hookeye

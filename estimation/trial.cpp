@@ -43,11 +43,17 @@ VectorXd bounded_step(const Scaling& scaling, const VectorXd& p, const VectorXd&
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,
                                                        const FitOptions& options) {
-  const auto seen = workspace.evaluate(form, p, half_size(options));
+  EvaluationOptions all = half_size(options);
+  all.held_out = true;
+  auto seen = workspace.evaluate(form, p, all);
+  if (std::holds_alternative<NumericalFailure>(seen) && !(options.cancel && options.cancel->load()))
+    seen = workspace.evaluate(form, p, half_size(options));  // a held-out example has none
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  const Evaluation& pictures = std::get<Evaluation>(seen);
+  Evaluation& pictures = std::get<Evaluation>(seen);
+  const double held_out = pictures.linear_chi(true);
+  std::erase_if(pictures.examples, [](const auto& example) { return example.held_out; });
   const Floor floor = measure_floor(workspace.scene(), pictures);
-  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false),
+  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false), held_out,
                     floor.source == "rest photos" ? floor.chi : 0.0};
 }
 

@@ -19,9 +19,9 @@ struct Trial {
 };
 /// What the trials of a race are measured against: the model that they start from.
 struct TrialScale {
-  double huber = 0.0;  ///< Huber's threshold in units of noise
-  double chi = 0.0;    ///< Trial::chi_fit of that model
-  double floor = 0.0;  ///< Trial::floor
+  double huber = 0.0;                    ///< Huber's threshold in units of noise
+  double chi = 0.0, chi_validate = 0.0;  ///< Trial's, of that model
+  double floor = 0.0;                    ///< Trial::floor
 };
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,

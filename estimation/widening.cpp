@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimation/kept_stiffness.h"
 #include "estimation/swaps.h"
 
 namespace hookeye {
@@ -54,6 +55,7 @@ std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted
   const auto parameters = form.parameters();
   for (Eigen::Index i = 0; i < start.size(); ++i)
     start[i] = std::clamp(start[i], parameters[i].low, parameters[i].high);
+  start = with_stiffness_of(narrow.form.realise(narrow.p), form, std::move(start));
   // From farther off than twice the narrow form's misfit, motions may be beyond full-size pictures.
   const auto there = assess(workspace, form, start, options);
   if (const auto* failure = std::get_if<NumericalFailure>(&there)) return *failure;
@@ -140,5 +142,21 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
     return narrow;
   return plainest(workspace, std::move(narrow), at, floor, options, events);
 }
+
+std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitted& fitted,
+                                                                      size_t at,
+                                                                      const Floor& floor) {
+  const std::string narrow = form_of(*fitted.form.ingredients[at]);
+  if (!asked_.insert({narrow, fitted.form.ingredients.size()}).second) return std::nullopt;
+  auto result = widened(workspace_, fitted, at, floor, options_, events_);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  Fitted& wide = std::get<Fitted>(result);
+  const std::string form = form_of(*wide.form.ingredients[at]);
+  if (form == narrow) return std::nullopt;
+  came_to_.insert(form);
+  return std::move(wide);
+}
+
+bool WiderForms::came_to(const Ingredient& form) const { return came_to_.contains(form_of(form)); }
 
 }  // namespace hookeye

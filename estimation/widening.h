@@ -1,6 +1,12 @@
 // The form of a named effect made wider, before a second effect is asked for. Internal to discover.
 #pragma once
 
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+
 #include "estimation/contest.h"
 
 namespace hookeye {
@@ -15,5 +21,24 @@ namespace hookeye {
 std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
                                                const Floor& floor, const FitOptions& options,
                                                const DiscoverEvents& events = {});
+
+/// The same for all steps of a search: each form once beside as many others.
+class WiderForms {
+ public:
+  WiderForms(Workspace& workspace, const FitOptions& options, const DiscoverEvents& events)
+      : workspace_(workspace), options_(options), events_(events) {}
+  /// Empty: none is better, or it was asked before.
+  std::variant<std::optional<Fitted>, NumericalFailure> ask(const Fitted& fitted, size_t at,
+                                                            const Floor& floor);
+  /// Widening came to this form: a plainer one may do at the floor.
+  bool came_to(const Ingredient& form) const;
+
+ private:
+  Workspace& workspace_;
+  const FitOptions& options_;
+  const DiscoverEvents& events_;
+  std::set<std::pair<std::string, size_t>> asked_;  ///< form, beside so many
+  std::set<std::string> came_to_;
+};
 
 }  // namespace hookeye

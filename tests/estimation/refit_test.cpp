@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "estimation/step_json.h"
 #include "tests/estimation/small_capture.h"
@@ -63,6 +64,31 @@ TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   EXPECT_EQ(again.effects[0].other_form->best->variant(), "in all");
   EXPECT_EQ(again.effects[0].other_form->values, score_.other_form->values);
   EXPECT_EQ(again.effects[0].base_step, score_.base_step);
+}
+
+/// The first explains nearly all: who promises little does not run.
+TEST_F(TwoForms, TheRaceEndsWhereTheFirstLeavesNothing) {
+  EffectScore first = form_of("in all");
+  first.explains = 0.95, first.evidence = 200.0, first.fall = 1e3;
+  EffectScore second = first;
+  second.effect = "gravity";
+  second.best = find_effect("gravity")->candidates(base_.form.realise(base_.p), nullptr).front();
+  second.values.setZero(second.best->parameters().size());
+  second.evidence = 100.0;
+  const auto tried = [&](double explains, double evidence) {
+    second.explains = explains, second.evidence = evidence;
+    Diagnosis diagnosis;
+    diagnosis.effects = {first, second};
+    std::map<std::string, int> steps;
+    const auto raced =
+        race(*workspace_, base_, diagnosis, {}, [&](const Racer& racer) { ++steps[racer.effect]; });
+    EXPECT_EQ(std::get<std::vector<Racer>>(raced).front().effect, "load_direction");
+    EXPECT_EQ(steps["load_direction"], 2);
+    return steps["gravity"];
+  };
+  EXPECT_EQ(tried(0.1, 100.0), 0);
+  EXPECT_EQ(tried(0.9, 100.0), 2);
+  EXPECT_EQ(tried(0.1, 199.0), 2);  // as much evidence says more than two steps
 }
 
 TEST(Racer, IsJudgedByWhatIsNoNoise) {

@@ -96,6 +96,19 @@ TEST(Swaps, ARefusedOneIsNotAskedTwice) {
   EXPECT_THAT(asked(), testing::Contains("softening in place of creep"));
   ASSERT_FALSE(refused.empty());
   EXPECT_THAT(asked(), testing::Not(testing::Contains("softening in place of creep")));
+  // Nor where a tie asks for it: what came of it is remembered.
+  const auto tie = [&](const RefusedSwaps& known, int* refits) {
+    DiscoverEvents events;
+    events.refitting = [&](const std::string&) { ++*refits; };
+    const auto of = ask_tie_again(workspace, step.fitted, {"creep", "softening"},
+                                  step.diagnosis.floor, form.ingredients.size(), known, {}, events);
+    return of.has_value() && of->tie.empty() && !of->better;
+  };
+  int with = 0, without = 0;
+  EXPECT_TRUE(tie(refused, &with));
+  EXPECT_TRUE(tie({}, &without));
+  EXPECT_EQ(with, 0);
+  EXPECT_EQ(without, 1);
 }
 
 /// Swelling beside the weight that is all there is: its interval holds its null, and the photos do
@@ -120,7 +133,7 @@ TEST(Swaps, WhatIsNotSupportedLeaves) {
   DiscoverOptions stopped;
   stopped.fit.cancel = stopped.diagnosis.cancel = &cancel;
   const auto asked =
-      ask_tie_again(workspace, step.fitted, {"gravity", "pressure"}, floor, first, stopped, {});
+      ask_tie_again(workspace, step.fitted, {"gravity", "pressure"}, floor, first, {}, stopped, {});
   EXPECT_FALSE(asked.has_value());
   Fitted wide = step.fitted;
   wide.low.setConstant(-1e9), wide.high.setConstant(1e9);
