@@ -61,12 +61,12 @@ struct CondensedResidual {
 /// `scale`: dp/dx of the units that z and R are in.
 CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale);
 
-/// Covariance H^-1 (sum_k lambda_k H_k) H^-1: lambda_k is how much the variance of a smooth
-/// signature in photo k exceeds that under white noise (flow.h). Numbers of a held-out example
-/// alone have what its photos say of them with the model as it is.
 /// A positive number in units of stress ("MPa", "N/cm^2"); lengths and factors are positive too.
 bool is_modulus(const Parameter& one);
 
+/// Covariance H^-1 (sum_k lambda_k H_k) H^-1: lambda_k is how much the variance of a smooth
+/// signature in photo k exceeds that under white noise (flow.h). Numbers of a held-out example
+/// alone have what its photos say of them with the model as it is.
 struct ParameterCovariance {
   Eigen::MatrixXd determined;           ///< without the directions that have no information
   Eigen::MatrixXd undetermined;         ///< of those: a standard deviation of 30 times what matters
