@@ -151,8 +151,22 @@ std::string choice_rows(const json& before, const json& step, double floor) {
                     : effect == added ? "-"
                                       : fmt::format("{:.1f}", -number_in(refit, "score"))});
   }
-  return table(rows) +
-         (left_out ? fmt::format("  and {} that got less far in the trial\n", left_out) : "");
+  const size_t tried = rows.size();
+  size_t untried = 0;
+  for (const auto& score : scores) {
+    const std::string effect = score.at("effect");
+    if (number_in(score, "evidence") < kNameable || !entry_of(step.at("raced"), effect).is_null())
+      continue;
+    ++untried;
+    if (rows.size() <= kMost)
+      rows.push_back(
+          {effect, fmt::format("{:.1f}", number_in(score, "evidence")), "-", "", "", "", ""});
+  }
+  std::string text = table(rows);
+  if (left_out) text += fmt::format("  and {} that got less far in the trial\n", left_out);
+  if (const size_t more = untried - (rows.size() - tried))
+    text += fmt::format("  and {} of less evidence, not tried\n", more);
+  return text;
 }
 
 /// How far ahead of the next one: "how sure".
@@ -210,13 +224,16 @@ std::string choice_table(const json& before, const json& step, double floor) {
                       "CAPTURE -o NEW_RUN` tells what else it could have been{}",
                       added, resemblance(before, added)));
   const auto raced = step.value("raced", json::array());
-  if (raced.size() < 2) return "";
+  if (raced.empty()) return "";
   return "\n" +
          wrapped(fmt::format(
-             "why {}: what each of the {} effects that stood out leaves, in multiples of the noise "
-             "floor (tried: after two steps of its refit, in half-size photos; behind: in the "
-             "refits' log likelihood less the price of their parameters, below {:.0f} is a tie)",
-             added, raced.size(), kTie)) +
+             "why {}: what the effects that stood out leave, in multiples of the noise floor "
+             "(tried: "
+             "after two steps of its refit, in half-size photos, -: not, as its linear step "
+             "promised "
+             "too little beside the first; behind: in the refits' log likelihood less the price of "
+             "their parameters, below {:.0f} is a tie)",
+             added, kTie)) +
          choice_rows(before, step, floor) + wrapped(sureness(step) + resemblance(before, added), 2);
 }
 
