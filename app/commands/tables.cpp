@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/text.h"
+#include "estimation/contest.h"
 #include "estimation/verdict.h"
 
 namespace hookeye {
@@ -224,15 +225,15 @@ std::string choice_table(const json& before, const json& step, double floor) {
                       "CAPTURE -o NEW_RUN` tells what else it could have been{}",
                       added, resemblance(before, added)));
   const auto raced = step.value("raced", json::array());
-  if (raced.empty()) return "";
+  // A mesh that settles its step alone is no choice.
+  if (raced.empty() || (raced.size() == 1 && numerical(added))) return "";
   return "\n" +
          wrapped(fmt::format(
              "why {}: what the effects that stood out leave, in multiples of the noise floor "
-             "(tried: "
-             "after two steps of its refit, in half-size photos, -: not, as its linear step "
-             "promised "
-             "too little beside the first; behind: in the refits' log likelihood less the price of "
-             "their parameters, below {:.0f} is a tie)",
+             "(tried: after two steps of its refit, in half-size photos, -: not, as its linear "
+             "step "
+             "promised too little beside the first; behind: in the refits' log likelihood less the "
+             "price of their parameters, below {:.0f} is a tie)",
              added, kTie)) +
          choice_rows(before, step, floor) + wrapped(sureness(step) + resemblance(before, added), 2);
 }

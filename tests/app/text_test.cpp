@@ -73,13 +73,15 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
   const auto before = nlohmann::json::parse(R"({"diagnosis": [
       {"effect": "gravity", "evidence": 365.3}, {"effect": "pressure", "evidence": 89.2},
       {"effect": "creep", "evidence": 2.0}]})");
-  const auto step = nlohmann::json::parse(R"({"added": "gravity", "chi_fit": 1.0, "raced": [
+  auto step = nlohmann::json::parse(R"({"added": "gravity", "chi_fit": 1.0, "raced": [
       {"effect": "gravity", "chi_fit": 0.5, "chi_validate": 0.5, "floor": 0.5}]})");
   const std::string text = choice_table(before, step, 1.0);
   EXPECT_THAT(text, testing::ContainsRegex("gravity +365.3 +1.00 +1.00"));
   EXPECT_THAT(text, testing::ContainsRegex("pressure +89.2 +-"));
   EXPECT_THAT(text, testing::Not(HasSubstr("creep")));
   EXPECT_THAT(text, HasSubstr("no other got near enough to gravity"));
+  step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
+  EXPECT_EQ(choice_table(before, step, 1.0), "");
 }
 
 }  // namespace
