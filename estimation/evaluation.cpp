@@ -123,7 +123,7 @@ struct Linear {
 
   /// Empty: not known.
   std::optional<VectorXd> at(const ModelForm& form, const VectorXd& there, int e) const {
-    if (ingredients != form.ingredients || q[e].size() == 0) return {};
+    if (q.empty() || ingredients != form.ingredients || q[e].size() == 0) return {};
     return q[e] + S[e] * (there - p);
   }
 };
