@@ -17,6 +17,11 @@ bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
          fitted.evaluation.chi(true) <= times * floor.chi;
 }
 
+bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) > kAtFloor * floor.chi;
+}
+
 namespace {
 
 /// The 99.9 % point of chi^2 with n degrees of freedom (Wilson and Hilferty 1931).

@@ -136,7 +136,7 @@ class Search {
       auto wide = widened_form(true);  // the mesh has been asked, and is not what is missing
       if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
     }
-    if (auto failure = widen_spoiler(contest)) return *failure;
+    if (auto failure = wider_.mend(contest, step, out_.floor)) return *failure;
     if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
                                        refused_swaps_, options_, events_);
         found && refused_by(step, found->second.in).empty()) {
@@ -174,29 +174,6 @@ class Search {
       return true;
     }
     return false;
-  }
-
-  /// The best refit explains the fitted photos and misses the held-out ones, and none explains
-  /// both: before what stands is doubted for it, it is asked for a wider form. (Creep that levels
-  /// off is growing creep to the first loads.)
-  std::optional<NumericalFailure> widen_spoiler(Contest& contest) {
-    auto& refits = contest.refits;
-    const auto spoils = [&](const Refit& refit) {
-      return spoils_held_out(refit.fitted, out_.floor) && !numerical(refit.effect);
-    };
-    const auto spoiler = std::find_if(refits.begin(), refits.end(), spoils);
-    if (spoiler == refits.end() || std::any_of(refits.begin(), refits.end(), [&](auto& refit) {
-          return at_floor(refit.fitted, out_.floor);
-        }))
-      return {};
-    const size_t at = spoiler->fitted.form.ingredients.size() - 1;
-    auto result = wider_.ask(spoiler->fitted, at, out_.floor);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    if (auto& wide = std::get<std::optional<Fitted>>(result)) {
-      spoiler->fitted = std::move(*wide);
-      rank(contest, newest());
-    }
-    return {};
   }
 
   /// Last of all: what was added explains the fitted photos and misses the held-out ones. So did

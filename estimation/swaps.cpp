@@ -123,11 +123,6 @@ bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& 
   return false;
 }
 
-bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) > kAtFloor * floor.chi;
-}
-
 namespace {
 
 std::string forms_of(const ModelForm& form) {

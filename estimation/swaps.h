@@ -16,9 +16,6 @@ std::string form_of(const Ingredient& one);
 /// Where the values of an ingredient begin.
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient);
 
-/// The effects explain the fitted photos and not the held-out ones.
-bool spoils_held_out(const Fitted& fitted, const Floor& floor);
-
 /// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
 /// `first_effect`: how many ingredients the capture's own model has.
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,

@@ -45,6 +45,23 @@ std::string hidden_by_mesh(const Diagnosis& diagnosis) {
   return "";
 }
 
+/// Fitted photos that are explained know no more: what is missing shows in held-out ones alone.
+std::string shown_by_held_out(const Fitted& fitted) {
+  const ExampleEvaluation* worst = nullptr;
+  const auto chi2 = [](const ExampleEvaluation& example) {
+    double r2 = 0.0, count = 0.0;
+    for (const auto& photo : example.photos) r2 += photo.r2, count += photo.count;
+    return r2 / std::max(1.0, count);
+  };
+  for (const auto& example : fitted.evaluation.examples)
+    if (example.held_out && (!worst || chi2(example) > chi2(*worst))) worst = &example;
+  if (!worst || worst->photos.empty()) return "";
+  return fmt::format(
+      ", and what is missing shows in held-out photos alone, most in '{}': fit it too (without "
+      "use: validate), with another load held out",
+      fitted.form.scene->capture.examples[worst->example].name);
+}
+
 bool seen(const Fitted& fitted) {
   return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
                      [](const auto& example) { return !example.photos.empty(); });
@@ -71,7 +88,8 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
       *why += fmt::format(", and {} still stand{} out", fmt::join(standing, " and "),
                           standing.size() == 1 ? "s" : "");
     else if (!photos)
-      *why += hidden_by_mesh(diagnosis);
+      *why += spoils_held_out(fitted, diagnosis.floor) ? shown_by_held_out(fitted)
+                                                       : hidden_by_mesh(diagnosis);
   }
   // Two that leave as much are no answer to choose from where that is much.
   if (!photos || !measured) return Verdict::unexplained;

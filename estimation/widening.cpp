@@ -157,6 +157,25 @@ std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitt
   return std::move(wide);
 }
 
+std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& step,
+                                                 const Floor& floor) {
+  auto& refits = contest.refits;
+  const auto spoiler = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
+    return spoils_held_out(refit.fitted, floor) && !numerical(refit.effect);
+  });
+  if (spoiler == refits.end() || std::any_of(refits.begin(), refits.end(), [&](const Refit& refit) {
+        return at_floor(refit.fitted, floor);
+      }))
+    return {};
+  auto result = ask(spoiler->fitted, spoiler->fitted.form.ingredients.size() - 1, floor);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (auto& wide = std::get<std::optional<Fitted>>(result)) {
+    spoiler->fitted = std::move(*wide);
+    rank(contest, step);
+  }
+  return {};
+}
+
 bool WiderForms::came_to(const Ingredient& form) const { return came_to_.contains(form_of(form)); }
 
 }  // namespace hookeye

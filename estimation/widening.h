@@ -30,6 +30,10 @@ class WiderForms {
   /// Empty: none is better, or it was asked before.
   std::variant<std::optional<Fitted>, NumericalFailure> ask(const Fitted& fitted, size_t at,
                                                             const Floor& floor);
+  /// The best refit explains the fitted photos and misses the held-out ones, and none explains
+  /// both: before what stands is doubted for it, it is asked for a wider form, and the contest is
+  /// ranked anew. (Creep that levels off is growing creep to the first loads.)
+  std::optional<NumericalFailure> mend(Contest& contest, const Step& step, const Floor& floor);
   /// Widening came to this form: a plainer one may do at the floor.
   bool came_to(const Ingredient& form) const;
 

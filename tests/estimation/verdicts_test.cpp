@@ -279,14 +279,39 @@ TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
       "creep, softening");
 }
 
-/// A force 100 deviations off is not explained by photos that are at their floor.
-TEST(Verdict, WantsTheMeasuredValuesExplainedToo) {
-  const SmallScene small({.same_renderer = true});
+/// The told model of a capture that hides nothing, nothing diagnosed.
+std::pair<Fitted, Diagnosis> at_its_floor(const SmallScene& small) {
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
   Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
   Diagnosis diagnosis;
   diagnosis.floor = measure_floor(*small.scene, fitted.evaluation);
+  return {std::move(fitted), std::move(diagnosis)};
+}
+
+/// Fitted photos at their floor cannot tell what the held-out ones lack; the user hears which
+/// would.
+TEST(Verdict, SaysWhichHeldOutLoadShowsWhatIsMissing) {
+  const SmallScene small({.same_renderer = true});
+  auto [fitted, diagnosis] = at_its_floor(small);
+  std::string why, held_out;
+  for (auto& example : fitted.evaluation.examples)
+    if (example.held_out) {
+      held_out = small.scene->capture.examples[example.example].name;
+      for (auto& photo : example.photos) photo.r2 *= 9.0;
+    }
+  ASSERT_NE(held_out, "");
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
+  EXPECT_THAT(why, testing::EndsWith("what is missing shows in held-out photos alone, most in '" +
+                                     held_out +
+                                     "': fit it too (without use: validate), with another load "
+                                     "held out"));
+}
+
+/// A force 100 deviations off is not explained by photos that are at their floor.
+TEST(Verdict, WantsTheMeasuredValuesExplainedToo) {
+  const SmallScene small({.same_renderer = true});
+  auto [fitted, diagnosis] = at_its_floor(small);
   std::string why;
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained) << why;
   for (auto& example : fitted.evaluation.examples)
