@@ -64,23 +64,13 @@ std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted
   return fit(workspace, form, start, from_there);
 }
 
-/// What photos have over the floor, of fitted and held-out ones together.
-double excess(const Fitted& fitted, const Floor& floor) {
-  double sum = 0.0;
-  for (const bool held_out : {false, true}) {
-    const double chi = fitted.evaluation.chi(held_out);
-    sum += std::max(0.0, chi * chi - floor.chi * floor.chi);
-  }
-  return sum;
-}
-
 /// Most of what was left goes with the form; where another effect is missing, a little more than
 /// its values cost goes with any.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
   const Fitted& reference = misfit(wide) < misfit(narrow) ? wide : narrow;
   const double noise2 = std::min(measured_noise2(wide), measured_noise2(narrow));
   const Yardstick yardstick{&reference, &floor, noise2};
-  return excess(wide, floor) < 0.5 * excess(narrow, floor) &&
+  return over_floor(wide, floor) < 0.5 * over_floor(narrow, floor) &&
          refit_score(wide, yardstick) > refit_score(narrow, yardstick) + kTie &&
          held_out_allows(wide, narrow, floor);
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "estimation/contest.h"
 #include "estimation/discover.h"
 #include "estimation/refit.h"
 #include "tests/estimation/small_capture.h"
@@ -306,6 +307,28 @@ TEST(Verdict, SaysWhichHeldOutLoadShowsWhatIsMissing) {
                                      held_out +
                                      "': fit it too (without use: validate), with another load "
                                      "held out"));
+}
+
+/// Far from the floor an effect has to take a tenth of what is over it; at the floor it has not.
+TEST(Contest, WhatTakesLittleOfALargeMisfitIsRefused) {
+  const SmallScene small({.same_renderer = true});
+  const auto [fitted, diagnosis] = at_its_floor(small);
+  const auto left = [&](double r2) {
+    Fitted out = fitted;
+    for (auto& example : out.evaluation.examples)
+      for (auto& photo : example.photos) photo.r2 *= r2;
+    return out;
+  };
+  Step step;
+  step.diagnosis = diagnosis;
+  const auto refused = [&](double before, double after) {
+    step.fitted = left(before);
+    return why_refused(step, 0.0, {"gravity", left(after), 100.0});
+  };
+  EXPECT_THAT(refused(100.0, 95.0), testing::HasSubstr("leaves 95 % of what is over the floor"));
+  EXPECT_EQ(refused(100.0, 85.0), "");
+  EXPECT_EQ(refused(1.6, 1.55), "") << "at the floor";
+  EXPECT_THAT(refused(1.8, 1.75), testing::HasSubstr("leaves 9")) << "not quite";
 }
 
 /// A force 100 deviations off is not explained by photos that are at their floor.
