@@ -17,13 +17,9 @@ bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
          fitted.evaluation.chi(true) <= times * floor.chi;
 }
 
-double over_floor(const Fitted& fitted, const Floor& floor) {
-  double sum = 0.0;
-  for (const bool held_out : {false, true}) {
-    const double chi = fitted.evaluation.chi(held_out);
-    sum += std::max(0.0, chi * chi - floor.chi * floor.chi);
-  }
-  return sum;
+double over_floor(const Fitted& fitted, const Floor& floor, bool held_out) {
+  const double chi = fitted.evaluation.chi(held_out);
+  return std::max(0.0, chi * chi - floor.chi * floor.chi);
 }
 
 bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
@@ -245,8 +241,8 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
 
 /// Of a misfit that effects had nothing to do with they explain 4 % in the median and 22 % in one
 /// of four (linear steps of base models, bench/blind --small): where much is left, what takes less
-/// than a tenth may be part of what has no name. Of ten effects of one size the first takes as
-/// much.
+/// than a tenth of the fitted photos' and of the held-out ones' may be part of what has no name.
+/// Of ten effects of one size the first takes as much.
 constexpr double kWorthAName = 0.1;
 
 std::string why_refused(const Step& step, double before, const Refit& with) {
@@ -263,11 +259,16 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
     return with.effect + " was refitted, but the held-out examples speak against it";
   if (fell(false) < least && moves_photos)
     return with.effect + " was refitted, but takes away less than renderers and meshes err by";
+  const auto leaves = [&](bool held_out) {
+    const double before = over_floor(step.fitted, floor, held_out);
+    return before > 0.0 ? over_floor(with.fitted, floor, held_out) / before : 1.0;
+  };
+  const double left = std::min(leaves(false), leaves(true));
   if (moves_photos && !numerical(with.effect) && !at_floor(with.fitted, floor) &&
-      over_floor(with.fitted, floor) > (1.0 - kWorthAName) * over_floor(step.fitted, floor))
+      left > 1.0 - kWorthAName)
     return fmt::format(
         "{} was refitted, but leaves {:.0f} % of what is over the floor: what is there takes more",
-        with.effect, 100.0 * over_floor(with.fitted, floor) / over_floor(step.fitted, floor));
+        with.effect, 100.0 * left);
   return "";
 }
 

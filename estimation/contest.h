@@ -17,8 +17,8 @@ bool numerical(const std::string& effect);
 /// texture and shading errors of another renderer leave at most.
 constexpr double kAtFloor = 1.3;
 bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);
-/// What chi^2 has over the floor's, of fitted and held-out photos together.
-double over_floor(const Fitted& fitted, const Floor& floor);
+/// What chi^2 has over the floor's.
+double over_floor(const Fitted& fitted, const Floor& floor, bool held_out);
 /// The effects explain the fitted photos and not the held-out ones.
 bool spoils_held_out(const Fitted& fitted, const Floor& floor);
 

@@ -64,6 +64,10 @@ std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted
   return fit(workspace, form, start, from_there);
 }
 
+double over_floor(const Fitted& fitted, const Floor& floor) {
+  return over_floor(fitted, floor, false) + over_floor(fitted, floor, true);
+}
+
 /// Most of what was left goes with the form; where another effect is missing, a little more than
 /// its values cost goes with any.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
