@@ -55,6 +55,16 @@ std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
   return losers;
 }
 
+/// Who was refitted, and by how much each scores above `chosen`.
+std::vector<Rival> rivals_of(const Contest& contest, double chosen) {
+  std::vector<Rival> out;
+  for (const Refit& one : contest.refits) {
+    const Evaluation& left = one.fitted.evaluation;
+    out.push_back({one.effect, one.score - chosen, left.chi(false), left.chi(true)});
+  }
+  return out;
+}
+
 /// The loop: one step after the other, until nothing is left to add or to swap.
 class Search {
  public:
@@ -74,7 +84,7 @@ class Search {
     while (true) {
       if (auto failure = diagnose_newest()) return *failure;
       if (together_) {
-        out_.steps.push_back(*std::exchange(together_, std::nullopt));
+        stand_in(*std::exchange(together_, std::nullopt));
         continue;
       }
       if (out_.steps.size() >= most_steps) break;
@@ -93,6 +103,8 @@ class Search {
       if (auto* failure = std::get_if<NumericalFailure>(&other)) return *failure;
       if (!std::get<bool>(other)) break;
     }
+    // Questions that were stopped have no answer: neither has the run.
+    if (options_.fit.cancel && *options_.fit.cancel) return NumericalFailure{"", 0.0, "cancelled"};
     return finish();
   }
 
@@ -101,6 +113,12 @@ class Search {
   using WentOn = std::variant<bool, NumericalFailure>;
 
   Step& newest() { return out_.steps.back(); }
+
+  /// A step with other effects than the last contest chose: who lost it has lost to another model.
+  void stand_in(Step step) {
+    losers_.clear();
+    out_.steps.push_back(std::move(step));
+  }
 
   std::optional<NumericalFailure> diagnose_newest() {
     Step& step = newest();
@@ -116,6 +134,7 @@ class Search {
   /// `room`: for how many effects more.
   WentOn next_step(int room) {
     mesh_refitted_ = false;
+    refused_.clear();
     auto widened = widened_form(false);
     if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
     if (std::get<bool>(widened)) return true;
@@ -123,7 +142,7 @@ class Search {
     if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis)) return false;
     if (auto better = swap_for_better(workspace_, step.fitted, out_.floor, base_, refused_swaps_,
                                       options_, events_)) {
-      out_.steps.push_back(swapped_step(std::move(*better)));
+      stand_in(swapped_step(std::move(*better)));
       return true;
     }
     auto refitted = refit_leaders(workspace_, step, options_, events_);
@@ -140,7 +159,7 @@ class Search {
     if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
                                        refused_swaps_, options_, events_);
         found && refused_by(step, found->second.in).empty()) {
-      add_two(*found->first, std::move(contest.raced), swapped_step(std::move(found->second)));
+      add_two(*found->first, contest, swapped_step(std::move(found->second)));
       return true;
     }
     refused_ = why_refused(step, contest.before, contest.refits.front());
@@ -202,13 +221,14 @@ class Search {
     return false;
   }
 
-  void add_two(const Refit& first, std::vector<Raced> raced, Step second) {
+  void add_two(const Refit& first, Contest& contest, Step second) {
     Step leading;
     leading.name = leading.added = first.effect;
-    leading.raced = std::move(raced);
+    leading.rivals = rivals_of(contest, first.score);
+    leading.raced = std::move(contest.raced);
     leading.fitted = first.fitted;
     together_ = std::move(second);
-    out_.steps.push_back(std::move(leading));
+    stand_in(std::move(leading));
   }
 
   /// Where the best alone does not stand.
@@ -226,7 +246,7 @@ class Search {
     Step second;
     second.name = second.added = pair->second.effect;
     second.fitted = std::move(pair->second.fitted);
-    add_two(pair->first, std::move(contest.raced), std::move(second));
+    add_two(pair->first, contest, std::move(second));
     return true;
   }
 
@@ -235,13 +255,10 @@ class Search {
     Step next;
     next.name = next.added = winner.effect;
     next.raced = std::move(contest.raced);
+    next.rivals = rivals_of(contest, winner.score);
     std::vector<const Refit*> equals;
-    for (const auto& rival : contest.refits) {
-      const Evaluation& left = rival.fitted.evaluation;
-      next.rivals.push_back(
-          {rival.effect, rival.score - winner.score, left.chi(false), left.chi(true)});
+    for (const auto& rival : contest.refits)
       if (&rival != &winner && rival.score > winner.score - kTie) equals.push_back(&rival);
-    }
     next.fitted = std::move(winner.fitted);
     losers_.clear();
     if (spoils_held_out(next.fitted, out_.floor))
@@ -304,7 +321,7 @@ class Search {
     next.name = next.added = lighter->fitted.form.ingredients.back()->name();
     next.dropped = {next.added, lighter->effect};
     next.fitted = std::move(lighter->fitted);
-    out_.steps.push_back(std::move(next));
+    stand_in(std::move(next));
     return true;
   }
 
@@ -328,7 +345,7 @@ class Search {
                                  options_, events_);
       if (!asked) continue;
       if (asked->better) {
-        out_.steps.push_back(swapped_step(std::move(*asked->better)));
+        stand_in(swapped_step(std::move(*asked->better)));
         settle_tie(out_.tie, effects_in(newest().fitted.form));
         return true;
       }

@@ -51,7 +51,6 @@ struct DiscoverOptions {
   int leaders = 3;  ///< effects refitted to the end at each step
   int max_effects = 4;
   std::vector<std::string> tie;  ///< of the steps before the one that discover_from() starts at
-  const std::atomic<bool>* cancel = nullptr;
 };
 
 /// A leader of the race, refitted to the end.

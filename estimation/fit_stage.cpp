@@ -104,14 +104,15 @@ class Reporter final : public ceres::IterationCallback {
   /// refused step that changed next to nothing has met the same limit. A structured misfit moves
   /// the parameters by more than noise does: the limit grows with its square.
   bool done(const ceres::IterationSummary& summary) {
+    // What `cost_` promises is of the point that it saw last: here, of the refused one.
+    if (!summary.step_is_successful && summary.iteration > 0)
+      return std::abs(summary.cost_change) < 1e-4 * summary.cost || gives_up();
     if (stage_.level > 1 && cost_.promised() < kCoarse * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
     if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
-    if (!summary.step_is_successful)
-      return summary.iteration > 0 &&
-             (std::abs(summary.cost_change) < 1e-4 * summary.cost || gives_up());
+    if (summary.iteration == 0) return false;
     if (cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2())) return true;
-    return stage_.level != 1 && summary.iteration > 0 && creeps(summary);
+    return creeps(summary);
   }
 
   /// Two steps in a row that gained nothing that counts. Of a structured misfit, whose effective

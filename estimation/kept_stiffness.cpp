@@ -1,7 +1,7 @@
 #include "estimation/kept_stiffness.h"
 
 #include <algorithm>
-#include <cmath>
+#include <vector>
 
 #include "estimation/normal_equations.h"
 
@@ -9,12 +9,9 @@ namespace hookeye {
 
 namespace {
 
-/// Of the base law, by element; empty: the same everywhere.
-const VectorXd& weights(const Model& model) { return model.energy.parts.front().weight; }
-
-double median(VectorXd values) {
-  double* middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
@@ -26,10 +23,16 @@ VectorXd with_stiffness_of(const Model& model, const ModelForm& form, VectorXd p
   if (model.energy.parts.empty() || there.energy.parts.empty() ||
       there.scene->body->mesh.size() != elements)
     return p;
-  VectorXd log_ratio = VectorXd::Zero(elements);
-  if (weights(model).size()) log_ratio += weights(model).array().log().matrix();
-  if (weights(there).size()) log_ratio -= weights(there).array().log().matrix();
-  const double factor = std::exp(median(log_ratio));
+  const auto weight = [](const Model& of, Eigen::Index e) {
+    const VectorXd& all = of.energy.parts.front().weight;
+    return all.size() ? all[e] : 1.0;
+  };
+  std::vector<double> ratio;  // where the law is: other groups of elements may follow another
+  for (Eigen::Index e = 0; e < elements; ++e)
+    if (weight(model, e) > 0.0 && weight(there, e) > 0.0)
+      ratio.push_back(weight(model, e) / weight(there, e));
+  if (ratio.empty()) return p;
+  const double factor = median(std::move(ratio));
   const auto parameters = form.parameters();
   for (Eigen::Index i = 0; i < p.size(); ++i)
     if (const Parameter& one = parameters[static_cast<size_t>(i)]; is_modulus(one))

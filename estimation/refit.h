@@ -25,7 +25,7 @@ struct Racer {
   std::string effect;
   ModelForm form;
   Trial trial;
-  std::optional<Trial> next;  ///< after one step more, where it was needed to choose a form
+  std::optional<Trial> next;  ///< after one step more: of the first four within reach
   double chi() const { return trial.chi_fit + trial.chi_validate; }
   /// The part of it that is no noise, on fitted and on held-out photos; at least what
   /// kLeftByRenderers times the floor is.

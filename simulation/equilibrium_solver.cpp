@@ -146,6 +146,7 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
     if (!state.factorize()) {
       problem.tangent(x, s, true, state.K);
       if (!state.factorize()) {
+        out.converged = false;
         out.reason = "the tangent is singular: something is not held";
         return out;
       }

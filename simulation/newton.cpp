@@ -113,7 +113,10 @@ double relative_error(const Problem& problem, const NewtonState& state, const Ve
     largest = std::max(largest, 1e-5 * size * state.K.diagonal().cwiseAbs().maxCoeff());
   }
   double error = 0;
-  for (int u : state.free) error = std::max(error, std::abs(R[u]));
+  for (int u : state.free) {
+    if (!std::isfinite(R[u])) return std::numeric_limits<double>::infinity();
+    error = std::max(error, std::abs(R[u]));
+  }
   return largest > 0 ? error / largest : error;
 }
 
@@ -134,6 +137,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
       out.converged = true;
       return out;
     }
+    if (!std::isfinite(out.error)) return {false, out.error, "the residual is not finite"};
     if (i == goal.max_iterations) break;
     if (i == 0) reuse = factored && (goal.reuse_factor || out.error < kNear);
     ++state.iterations;
@@ -157,7 +161,10 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     if (found.step == 0) {
       if (out.error <= 100 * goal.tolerance && out.error <= 1e-7) {  // rounding stops it
         out.converged = out.error <= 10 * goal.tolerance;
-        if (out.converged) return out;
+        if (out.converged) {
+          state.set_tangent(problem, q, goal.s);  // it may be the projected one
+          return out;
+        }
       }
       out.reason = found.inverted_element >= 0
                        ? fmt::format("every step inverts element {}", found.inverted_element)

@@ -115,7 +115,6 @@ DiscoverOptions discover_options() {
   DiscoverOptions options;
   options.fit = fit_options();
   options.diagnosis = diagnosis_options();
-  options.cancel = options.fit.cancel;
   return options;
 }
 

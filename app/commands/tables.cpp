@@ -183,6 +183,9 @@ std::string sureness(const json& step) {
   if (nearest.empty())
     return fmt::format("how sure: no other got near enough to {} in the trial to be refitted",
                        added);
+  if (behind < -kTie)
+    return fmt::format("how sure: alone {} does better; {} was chosen with what the next step has",
+                       nearest, added);
   if (behind < kTie)
     return fmt::format(
         "how sure: {} does as well (behind by {:.1f}); `hookeye plan` tells which "
@@ -230,9 +233,9 @@ std::string choice_table(const json& before, const json& step, double floor) {
   return "\n" +
          wrapped(fmt::format(
              "why {}: what the effects that stood out leave, in multiples of the noise floor "
-             "(tried: after two steps of its refit, in half-size photos, -: not, as its linear "
-             "step "
-             "promised too little beside the first; behind: in the refits' log likelihood less the "
+             "(tried: after one or two steps of its refit, in half-size photos, -: not, as it "
+             "promised too little or had no equilibrium; behind: in the refits' log likelihood "
+             "less the "
              "price of their parameters, below {:.0f} is a tie)",
              added, kTie)) +
          choice_rows(before, step, floor) + wrapped(sureness(step) + resemblance(before, added), 2);

@@ -119,7 +119,7 @@ class StiffnessField final : public Effect {
     refitted.apply(values, with);
     VectorXd factor = with.energy.parts[0].weight;
     if (const VectorXd& before = one.energy.parts[0].weight; before.size() > 0)
-      factor = factor.cwiseQuotient(before);
+      factor = (before.array() > 0.0).select(factor.cwiseQuotient(before), 1.0);
     if (factor.size() == 0) factor = VectorXd::Ones(model.scene->body->mesh.size());
     return further_grades(model, factor.array().log());
   }

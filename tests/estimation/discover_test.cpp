@@ -311,8 +311,23 @@ TEST(Discover, CancelledSaysSo) {
   const ModelForm form = base_form(small.scene);
   std::atomic<bool> cancel{true};
   DiscoverOptions options;
-  options.fit.cancel = options.diagnosis.cancel = options.cancel = &cancel;
+  options.fit.cancel = options.diagnosis.cancel = &cancel;
   const auto result = hookeye::discover(workspace, form, form.initial(), options);
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  EXPECT_EQ(std::get<NumericalFailure>(result).reason, "cancelled");
+}
+
+/// Whoever stops a search that has its steps and still asks about them gets no verdict.
+TEST(Discover, StoppedAtItsLastQuestionsHasNoVerdict) {
+  const SmallScene small({.same_renderer = true});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  std::atomic<bool> cancel{false};
+  DiscoverOptions options;
+  options.fit.cancel = options.diagnosis.cancel = &cancel;
+  DiscoverEvents events;
+  events.step = [&](const Step&) { cancel = true; };
+  const auto result = hookeye::discover(workspace, form, form.initial(), options, events);
   ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
   EXPECT_EQ(std::get<NumericalFailure>(result).reason, "cancelled");
 }

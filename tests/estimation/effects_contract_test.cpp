@@ -368,6 +368,20 @@ TEST(StiffnessField, TheSmallerFormIsThePlaceAndTheRestGoesToTheModulus) {
   }
 }
 
+/// Where the first law is not, it has no stiffness to keep.
+TEST(KeptStiffness, IsThatOfTheElementsThatHaveTheLaw) {
+  Model model = base_model();
+  const auto elements = model.scene->body->mesh.size();
+  VectorXd& weight = model.energy.parts[0].weight;
+  weight = VectorXd::Constant(elements, 1.5);
+  weight.head(elements * 2 / 3).setZero();
+  const ModelForm form = base();
+  const VectorXd kept = with_stiffness_of(model, form, form.initial());
+  EXPECT_NEAR(kept[0], 1.5 * form.initial()[0], 1e-12);
+  weight.setZero();
+  EXPECT_EQ(with_stiffness_of(model, form, form.initial()), form.initial());
+}
+
 }  // namespace
 
 }  // namespace hookeye::test

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "estimation/effect.h"
 #include "tests/estimation/small_capture.h"
 
@@ -36,6 +38,14 @@ TEST(Evaluation, AFailedOneLeavesNothingBehind) {
   const auto direct = misfits(small, {0.02, 0.021});
   EXPECT_NEAR(way[2], direct[1], 1e-6 * direct[1]);
   for (int again = 0; again < 3; ++again) EXPECT_EQ(misfits(small, {0.02, 1e-6, 0.021}), way);
+}
+
+/// No number is no equilibrium, wherever the last one ended.
+TEST(Evaluation, OfNoNumberFails) {
+  const SmallScene small({});
+  const auto way = misfits(small, {0.02, std::numeric_limits<double>::quiet_NaN(), 0.021});
+  EXPECT_EQ(way[1], 0.0);
+  EXPECT_NEAR(way[2], misfits(small, {0.02, 0.021})[1], 1e-6 * way[2]);
 }
 
 int newton_iterations(const Evaluation& evaluation) {
