@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/diagnosis_sums.h"
+
 namespace hookeye {
 
 bool numerical(const std::string& effect) {
@@ -257,7 +259,8 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
     return with.effect + " was refitted, but what it takes away does not pay for its parameters";
   if (!held_out_allows(with.fitted, step.fitted, floor, least))
     return with.effect + " was refitted, but the held-out examples speak against it";
-  if (fell(false) < least && moves_photos)
+  const double sensors = measured_r2(step.fitted.evaluation) - measured_r2(with.fitted.evaluation);
+  if (fell(false) < least && moves_photos && !sensors_speak(sensors, step.diagnosis))
     return with.effect + " was refitted, but takes away less than renderers and meshes err by";
   const auto leaves = [&](bool held_out) {
     const double before = over_floor(step.fitted, floor, held_out);
@@ -265,7 +268,7 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
   };
   const double left = std::min(leaves(false), leaves(true));
   if (moves_photos && !numerical(with.effect) && !at_floor(with.fitted, floor) &&
-      left > 1.0 - kWorthAName)
+      !sensors_speak(sensors, step.diagnosis) && left > 1.0 - kWorthAName)
     return fmt::format(
         "{} was refitted, but leaves {:.0f} % of what is over the floor: what is there takes more",
         with.effect, 100.0 * left);

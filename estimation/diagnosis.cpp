@@ -69,6 +69,14 @@ std::string where_seen(const Scene& scene, const Evaluation& evaluation, const V
   return fmt::format("; seen in {}, most in '{}'", who, most->first);
 }
 
+/// "; forces and positions would be off by 1.1 instead of 3.9 times their told noise"
+std::string seen_by_sensors(double before, double after, double count) {
+  const auto off = [&](double r2) { return std::sqrt(r2 / std::max(count, 1.0)); };
+  return fmt::format(
+      "; forces and positions would be off by {:.1f} instead of {:.1f} times their told noise",
+      off(after), off(before));
+}
+
 struct Context {
   const Fitted& fitted;
   const Scene& scene;
@@ -110,11 +118,16 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   score.standard_error = (inverse * V * inverse).diagonal().cwiseMax(0.0).cwiseSqrt();
   const std::string sentence =
       candidate.effect->sentence(context.model, *candidate.ingredient, score.values);
+  const double before = measured_r2(context.evaluation);
+  const double after = measured_r2(context.evaluation, &step);
+  score.measured_fall = before - after;
   score.why = sensors_alone(*candidate.ingredient)
                   ? sentence + "; seen in the measured forces, not in photos"
                   : fmt::format("{} would remove {:.0f} % of the misfit{}", sentence,
                                 100.0 * score.explains,
                                 where_seen(context.scene, context.evaluation, step));
+  if (!sensors_alone(*candidate.ingredient) && score.measured_fall >= 2.0 * kNameable)
+    score.why += seen_by_sensors(before, after, sums.measured_count);
   return score;
 }
 
@@ -231,10 +244,15 @@ std::string conclusion(const Diagnosis& diagnosis) {
       all.front(), fmt::join(all.begin() + 1, all.end(), ", "));
 }
 
+bool sensors_speak(double fall, const Diagnosis& diagnosis) {
+  return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= kNameable;
+}
+
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
          ((score.best && sensors_alone(*score.best)) ||
-          score.fall >= least_fall(diagnosis, score.effect));
+          score.fall >= least_fall(diagnosis, score.effect) ||
+          sensors_speak(score.measured_fall, diagnosis));
 }
 
 namespace {

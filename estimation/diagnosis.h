@@ -31,7 +31,9 @@ struct EffectScore {
   double explains = 0.0;           ///< predicted share of (chi^2 - floor^2) removed, fitted photos
   double explains_held_out = 0.0;  ///< the same step on the held-out photos
   double fall = 0.0;               ///< predicted fall of chi^2 on the fitted photos
-  /// As much of it could be the mesh's own error: Diagnosis::mesh_fall, or, of an effect on
+  /// Predicted fall of the sum of squares of fitted forces, moments and positions over told noise.
+  double measured_fall = 0.0;
+  /// As much of `fall` could be the mesh's own error: Diagnosis::mesh_fall, or, of an effect on
   /// brightness alone, what it could imitate of that.
   double mesh_fall = 0.0;
   double evidence = 0.0;  ///< log marginal likelihood over the current model
@@ -103,13 +105,16 @@ constexpr int kPictured = 5;
 /// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
 /// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error.
 double least_fall(const Diagnosis& diagnosis, const std::string& effect);
+/// `fall` of the sum of squares of measured values over told noise is kNameable in log-likelihood,
+/// noise being what is told and what an ever finer mesh would change: no renderer errs in a force.
+bool sensors_speak(double fall, const Diagnosis& diagnosis);
 /// It changes what sensors show and nothing in the photos.
 bool sensors_alone(const Ingredient& ingredient);
 /// It changes how bright or sharp photos are, and nothing of where they show the body.
 bool brightness_alone(const Ingredient& ingredient);
-/// Testable, above the simulated gate, and, where it is seen in photos, above the renderer's and
-/// the mesh's own errors. (The mesh's own effect is not held to the latter: it is not offered
-/// then.)
+/// Testable, above the simulated gate, and, where it is seen in photos alone, above the renderer's
+/// and the mesh's own errors; or sensors speak for it (sensors_speak). (The mesh's own effect is
+/// not held to the mesh's error: it is not offered then.)
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 /// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
 /// or because the information criterion puts them before it (method.md, 3 and 5). Without the

@@ -18,6 +18,7 @@ json effect_json(const EffectScore& score) {
   out["explains"] = score.explains;
   out["explains_held_out"] = score.explains_held_out;
   out["fall"] = score.fall;
+  out["measured_fall"] = score.measured_fall;
   out["mesh_fall"] = score.mesh_fall;
   out["dof"] = score.dof;
   out["evidence"] = score.evidence;
@@ -85,6 +86,7 @@ EffectScore score_from_json(const json& one, const Model& model) {
   score.explains = one.at("explains");
   score.explains_held_out = one.at("explains_held_out");
   score.fall = one.at("fall");
+  score.measured_fall = one.value("measured_fall", 0.0);
   score.mesh_fall = one.value("mesh_fall", 0.0);
   score.evidence = one.at("evidence");
   score.bic = one.value("bic", score.evidence);

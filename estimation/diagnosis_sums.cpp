@@ -49,15 +49,20 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
     if (example.held_out) continue;
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd JtJ = measured.J.transpose() * measured.J;
-      for (EffectiveSums* sums : {&out.effective, &out.measured}) {
-        sums->H += JtJ;
-        sums->s += measured.J.transpose() * measured.r;
-        sums->r2 += measured.r.squaredNorm();
-        sums->count += 3.0;
-      }
+      const double r2 = measured.r.squaredNorm();
+      const auto add = [&](EffectiveSums& sums, double deviation2) {
+        sums.H += deviation2 * JtJ;
+        sums.s += deviation2 * measured.J.transpose() * measured.r;
+        sums.r2 += deviation2 * r2;
+        sums.count += 3.0;
+      };
+      // One noise holds for all sums: a sensor's deviation counts as much as a cell's at the floor.
+      const double cell2 = out.effective.floor2;
+      add(out.effective, cell2);
+      add(out.measured, 1.0);
       out.measured_count += 3.0;
-      out.noise += std::max(1.0, measured.r.squaredNorm() / 3.0) * JtJ;
-      out.null_noise += JtJ;
+      out.noise += cell2 * cell2 * std::max(1.0, r2 / 3.0) * JtJ;
+      out.null_noise += cell2 * cell2 * JtJ;
     }
   }
   out.fitted = normal_equations(evaluation, false);
@@ -69,6 +74,15 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
       (example.held_out ? out.held_count : out.photo_count) += 3.0;
     }
   return out;
+}
+
+double measured_r2(const Evaluation& evaluation, const VectorXd* step) {
+  double sum = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& measured : example.measured)
+      if (!example.held_out)
+        sum += (step ? Eigen::Vector3d(measured.r + measured.J * *step) : measured.r).squaredNorm();
+  return sum;
 }
 
 double without_base(const EffectiveSums& sums, int base) {

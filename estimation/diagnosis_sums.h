@@ -28,6 +28,10 @@ struct DiagnosisSums {
 
 DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor);
 
+/// Sum of squares of fitted forces, moments and positions over told noise; after a step of all
+/// columns, where there is one.
+double measured_r2(const Evaluation& evaluation, const VectorXd* step = nullptr);
+
 /// |r|^2 less what the first `base` columns alone would still gain.
 double without_base(const EffectiveSums& sums, int base);
 

@@ -73,6 +73,17 @@ TEST(Leaders, WhatRenderersErrByIsNotNamed) {
   EXPECT_THAT(leaders(found), ElementsAre("gravity"));
 }
 
+TEST(Leaders, WhatSensorsSpeakForIsNamedThoughNoPhotoMoves) {
+  Diagnosis found = of({scored("softening", 50.0)});
+  found.effects[0].fall = 0.0, found.floor.chi = 2.0;
+  found.effects[0].measured_fall = 2.0 * kNameable - 0.1;
+  EXPECT_THAT(leaders(found), IsEmpty());
+  found.effects[0].measured_fall = 2.0 * kNameable + 0.1;
+  EXPECT_THAT(leaders(found), ElementsAre("softening"));
+  found.mesh_in_measured = 1.0;  // a finer mesh would change as much as they scatter
+  EXPECT_THAT(leaders(found), IsEmpty());
+}
+
 const char* const kWeight =
     "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9650}}\n";
 
@@ -303,7 +314,8 @@ TEST(Verdict, SaysWhichHeldOutLoadShowsWhatIsMissing) {
     }
   ASSERT_NE(held_out, "");
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
-  EXPECT_THAT(why, testing::EndsWith("what is missing shows in held-out photos alone, most in '" +
+  EXPECT_THAT(why, testing::EndsWith("held-out photos alone show what is missing, or what the "
+                                     "values are not known well enough for, most in '" +
                                      held_out +
                                      "': fit it too (without use: validate), with another load "
                                      "held out"));

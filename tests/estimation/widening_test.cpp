@@ -104,6 +104,20 @@ TEST(Widening, CreepOfTwoLoadsIsNotLeftToSoftening) {
               testing::StartsWith("free levelling off"));
 }
 
+/// Softened before loads whose motion is told: no fitted photo shows it, their forces do, and the
+/// held-out photos. (Forces know its value less well than photos would.)
+TEST(Forces, TellOfASofteningThatNoFittedPhotoShows) {
+  const test::SmallScene small(
+      {.recipe = recipe("{effect: softening, variant: from press on, values: {softening.d: 0.12}}",
+                        kPressAndTwist)});
+  const Discovery discovery = test::discover(small);
+  EXPECT_THAT(discovery.missing, ElementsAre("softening")) << discovery.sentence;
+  const Fitted& last = discovery.steps.back().fitted;
+  EXPECT_LT(last.low[1], 0.12);
+  EXPECT_GT(last.high[1], 0.12);
+  EXPECT_GT(last.low[1], 0.05);
+}
+
 TEST(Widening, SwellingFromOneSide) {
   const Fitted fitted = found(
       "{effect: swelling, variant: free gradient, values: {swelling.s: 0.01, swelling.gx: 0.04, "
