@@ -9,11 +9,6 @@
 
 namespace hookeye {
 
-bool numerical(const std::string& effect) {
-  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
-  return found && found->group() == EffectGroup::numerical;
-}
-
 bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
   return fitted.evaluation.chi(false) <= times * floor.chi &&
          fitted.evaluation.chi(true) <= times * floor.chi;

@@ -10,9 +10,6 @@
 
 namespace hookeye {
 
-/// The effect stands for errors of the computation.
-bool numerical(const std::string& effect);
-
 /// Within `times` the floor on the fitted photos and on the held-out ones. The default is what
 /// texture and shading errors of another renderer leave at most.
 constexpr double kAtFloor = 1.3;

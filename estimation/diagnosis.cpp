@@ -220,15 +220,11 @@ std::vector<std::string> leaders(const Diagnosis& diagnosis) {
   std::vector<const EffectScore*> named;
   for (const EffectScore& score : diagnosis.effects)
     if (nameable(score, diagnosis)) named.push_back(&score);
-  const auto numerical = [](const EffectScore* score) {
-    const Effect* effect = find_effect(score->effect);
-    return effect && effect->group() == EffectGroup::numerical;
-  };
   std::vector<std::string> out;
   for (const EffectScore* score : named) {
     const EffectScore* first = named.front();
     const bool ties = score->evidence > first->evidence - kTie || score->bic > first->bic;
-    if (score == first || (ties && !numerical(score) && !numerical(first)))
+    if (score == first || (ties && !numerical(score->effect) && !numerical(first->effect)))
       out.push_back(score->effect);
   }
   return out;
@@ -244,6 +240,11 @@ std::string conclusion(const Diagnosis& diagnosis) {
       all.front(), fmt::join(all.begin() + 1, all.end(), ", "));
 }
 
+bool numerical(const std::string& effect) {
+  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
+  return found && found->group() == EffectGroup::numerical;
+}
+
 bool sensors_speak(double fall, const Diagnosis& diagnosis) {
   return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= kNameable;
 }
@@ -252,7 +253,7 @@ bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
          ((score.best && sensors_alone(*score.best)) ||
           score.fall >= least_fall(diagnosis, score.effect) ||
-          sensors_speak(score.measured_fall, diagnosis));
+          (!numerical(score.effect) && sensors_speak(score.measured_fall, diagnosis)));
 }
 
 namespace {

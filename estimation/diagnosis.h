@@ -105,6 +105,8 @@ constexpr int kPictured = 5;
 /// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
 /// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error.
 double least_fall(const Diagnosis& diagnosis, const std::string& effect);
+/// The effect stands for errors of the computation.
+bool numerical(const std::string& effect);
 /// `fall` of the sum of squares of measured values over told noise is kNameable in log-likelihood,
 /// noise being what is told and what an ever finer mesh would change: no renderer errs in a force.
 bool sensors_speak(double fall, const Diagnosis& diagnosis);
@@ -113,8 +115,9 @@ bool sensors_alone(const Ingredient& ingredient);
 /// It changes how bright or sharp photos are, and nothing of where they show the body.
 bool brightness_alone(const Ingredient& ingredient);
 /// Testable, above the simulated gate, and, where it is seen in photos alone, above the renderer's
-/// and the mesh's own errors; or sensors speak for it (sensors_speak). (The mesh's own effect is
-/// not held to the mesh's error: it is not offered then.)
+/// and the mesh's own errors; or sensors speak for it (sensors_speak; of the mesh they have
+/// mesh_in_measured). (The mesh's own effect is not held to the mesh's error: it is not offered
+/// then.)
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 /// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
 /// or because the information criterion puts them before it (method.md, 3 and 5). Without the

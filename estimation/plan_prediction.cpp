@@ -48,10 +48,7 @@ std::vector<std::string> column_names(const ModelForm& form) {
 /// The fitted model without its numerical effects: what they change is little beside what is
 /// planned, and each new load would have to be solved on another mesh too.
 Model without_numerical(Model model) {
-  std::erase_if(model.applied, [](const auto& one) {
-    const Effect* effect = find_effect(one.first->name());
-    return effect && effect->group() == EffectGroup::numerical;
-  });
+  std::erase_if(model.applied, [](const auto& one) { return numerical(one.first->name()); });
   return model;
 }
 
