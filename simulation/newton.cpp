@@ -161,10 +161,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     if (found.step == 0) {
       if (out.error <= 100 * goal.tolerance && out.error <= 1e-7) {  // rounding stops it
         out.converged = out.error <= 10 * goal.tolerance;
-        if (out.converged) {
-          state.set_tangent(problem, q, goal.s);  // it may be the projected one
-          return out;
-        }
+        if (out.converged) return out;
       }
       out.reason = found.inverted_element >= 0
                        ? fmt::format("every step inverts element {}", found.inverted_element)
