@@ -201,6 +201,15 @@ void rank(Contest& contest, const Step& step) {
                    [](auto& a, auto& b) { return a.score > b.score; });
 }
 
+std::vector<Rival> rivals_of(const Contest& contest, double chosen) {
+  std::vector<Rival> out;
+  for (const Refit& one : contest.refits) {
+    const Evaluation& left = one.fitted.evaluation;
+    out.push_back({one.effect, one.score - chosen, left.chi(false), left.chi(true)});
+  }
+  return out;
+}
+
 std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
                                                                 const Step& step,
                                                                 const Contest& contest,
@@ -238,8 +247,8 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
 
 /// Of a misfit that effects had nothing to do with they explain 4 % in the median and 22 % in one
 /// of four (linear steps of base models, bench/blind --small): where much is left, what takes less
-/// than a tenth of the fitted photos' and of the held-out ones' may be part of what has no name.
-/// Of ten effects of one size the first takes as much.
+/// than a tenth of the fitted photos', of the held-out ones' and of the sensors' may be part of
+/// what has no name. Of ten effects of one size the first takes as much.
 constexpr double kWorthAName = 0.1;
 
 std::string why_refused(const Step& step, double before, const Refit& with) {
@@ -254,16 +263,18 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
     return with.effect + " was refitted, but what it takes away does not pay for its parameters";
   if (!held_out_allows(with.fitted, step.fitted, floor, least))
     return with.effect + " was refitted, but the held-out examples speak against it";
-  const double sensors = measured_r2(step.fitted.evaluation) - measured_r2(with.fitted.evaluation);
-  if (fell(false) < least && moves_photos && !sensors_speak(sensors, step.diagnosis))
+  const double before_r2 = measured_r2(step.fitted.evaluation);
+  const double after_r2 = measured_r2(with.fitted.evaluation);
+  const bool speak = sensors_speak(before_r2 - after_r2, step.diagnosis);
+  if (fell(false) < least && moves_photos && !speak)
     return with.effect + " was refitted, but takes away less than renderers and meshes err by";
   const auto leaves = [&](bool held_out) {
     const double before = over_floor(step.fitted, floor, held_out);
     return before > 0.0 ? over_floor(with.fitted, floor, held_out) / before : 1.0;
   };
-  const double left = std::min(leaves(false), leaves(true));
+  const double left = std::min({leaves(false), leaves(true), speak ? after_r2 / before_r2 : 1.0});
   if (moves_photos && !numerical(with.effect) && !at_floor(with.fitted, floor) &&
-      !sensors_speak(sensors, step.diagnosis) && left > 1.0 - kWorthAName)
+      left > 1.0 - kWorthAName)
     return fmt::format(
         "{} was refitted, but leaves {:.0f} % of what is over the floor: what is there takes more",
         with.effect, 100.0 * left);

@@ -43,6 +43,9 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
 /// of the best of them, and sorts them.
 void rank(Contest& contest, const Step& step);
 
+/// Who was refitted, and by how much each scores above `chosen`.
+std::vector<Rival> rivals_of(const Contest& contest, double chosen);
+
 /// Refits the leaders of a race and ranks them.
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const DiscoverOptions& options,

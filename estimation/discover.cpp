@@ -55,16 +55,6 @@ std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
   return losers;
 }
 
-/// Who was refitted, and by how much each scores above `chosen`.
-std::vector<Rival> rivals_of(const Contest& contest, double chosen) {
-  std::vector<Rival> out;
-  for (const Refit& one : contest.refits) {
-    const Evaluation& left = one.fitted.evaluation;
-    out.push_back({one.effect, one.score - chosen, left.chi(false), left.chi(true)});
-  }
-  return out;
-}
-
 /// The loop: one step after the other, until nothing is left to add or to swap.
 class Search {
  public:

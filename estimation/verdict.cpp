@@ -58,8 +58,7 @@ std::string shown_by_held_out(const Fitted& fitted) {
   if (!worst || worst->photos.empty()) return "";
   return fmt::format(
       ", and held-out photos alone show what is missing, or what the values are not known well "
-      "enough "
-      "for, most in '{}': fit it too (without use: validate), with another load held out",
+      "enough for, most in '{}': fit it too (without use: validate), with another load held out",
       fitted.form.scene->capture.examples[worst->example].name);
 }
 

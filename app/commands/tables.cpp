@@ -235,8 +235,7 @@ std::string choice_table(const json& before, const json& step, double floor) {
              "why {}: what the effects that stood out leave, in multiples of the noise floor "
              "(tried: after one or two steps of its refit, in half-size photos, -: not, as it "
              "promised too little or had no equilibrium; behind: in the refits' log likelihood "
-             "less the "
-             "price of their parameters, below {:.0f} is a tie)",
+             "less the price of their parameters, below {:.0f} is a tie)",
              added, kTie)) +
          choice_rows(before, step, floor) + wrapped(sureness(step) + resemblance(before, added), 2);
 }
