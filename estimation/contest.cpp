@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimation/diagnosis_sums.h"
+#include "estimation/evidence.h"
 
 namespace hookeye {
 
@@ -23,16 +24,6 @@ bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
   return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
          fitted.evaluation.chi(true) > kAtFloor * floor.chi;
 }
-
-namespace {
-
-/// The 99.9 % point of chi^2 with n degrees of freedom (Wilson and Hilferty 1931).
-double chi2_point(double n) {
-  constexpr double kNormal999 = 3.0902;
-  return n * std::pow(1.0 - 2.0 / (9.0 * n) + kNormal999 * std::sqrt(2.0 / (9.0 * n)), 3);
-}
-
-}  // namespace
 
 bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::string* why) {
   const double noise2 = 1.0 + diagnosis.mesh_in_measured;

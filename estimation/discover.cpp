@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "estimation/contest.h"
+#include "estimation/fit_to_all.h"
 #include "estimation/swaps.h"
 #include "estimation/widening.h"
 
@@ -77,6 +78,11 @@ class Search {
         stand_in(*std::exchange(together_, std::nullopt));
         continue;
       }
+      auto to_all = fit_to_all(workspace_, newest().fitted, newest().diagnosis, options_.fit);
+      if (auto* failure = std::get_if<NumericalFailure>(&to_all)) return *failure;
+      out_.all = std::get<std::optional<FitToAll>>(std::move(to_all));
+      const FitToAll* all = out_.all ? &*out_.all : nullptr;
+      if (all && only_numerical_left(newest().fitted, newest().diagnosis, all)) break;
       if (out_.steps.size() >= most_steps) break;
       const auto added = std::ssize(newest().fitted.form.ingredients) - start;
       const int room = options_.max_effects - static_cast<int>(added);
@@ -349,7 +355,10 @@ class Search {
     const Step& last = newest();
     out_.missing = effects_in(last.fitted.form);
     settle_tie(out_.tie, out_.missing);
-    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why);
+    const FitToAll* all = out_.all ? &*out_.all : nullptr;
+    if (all && out_.tie.empty())
+      out_.tie = tie_of_all(workspace_, *all, out_.steps, out_.floor, base_, options_, events_);
+    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all);
     out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
     return std::move(out_);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -82,6 +83,8 @@ struct Discovery {
   std::string sentence;              ///< one line: what was missing, how sure, what else
   std::vector<std::string> missing;  ///< effects in the last step's model, as they were added
   std::vector<std::string> tie;      ///< effects that could not be told apart
+  /// Where the held-out photos are missed by values alone: not a step, as they stay held out.
+  std::optional<FitToAll> all;
   Floor floor;
 };
 

@@ -187,6 +187,11 @@ double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd
   return best;
 }
 
+double chi2_point(double n) {
+  constexpr double kNormal999 = 3.0902;
+  return n * std::pow(1.0 - 2.0 / (9.0 * n) + kNormal999 * std::sqrt(2.0 / (9.0 * n)), 3);
+}
+
 double log_mean_exp(const Eigen::VectorXd& values) {
   const double largest = values.maxCoeff();
   return largest + std::log((values.array() - largest).exp().mean());

@@ -40,6 +40,13 @@ json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& v
   return all;
 }
 
+json to_json(const FitToAll& all) {
+  return {{"chi_fit", all.chi_fit},
+          {"chi_validate", all.chi_validate},
+          {"parameters", parameters_json(all.fitted.form.parameters(), all.fitted.p,
+                                         &all.fitted.low, &all.fitted.high)}};
+}
+
 json timeline_entry(const Step& step) {
   const Fitted& fitted = step.fitted;
   const double held = fitted.evaluation.chi(true);

@@ -21,6 +21,8 @@ Diagnosis diagnosis_from_json(const nlohmann::json& document, const Model& model
 nlohmann::json to_json(const Plan& plan);
 /// Without the forces at the nodes, which are in the vtu.
 nlohmann::json to_json(const std::vector<FreeForm>& fields);
+/// chi by use, and all parameters.
+nlohmann::json to_json(const FitToAll& all);
 /// The step's entry of run.json.
 nlohmann::json timeline_entry(const Step& step);
 /// metrics.json: chi, rms_px and whiteness of every photo, by camera, example and region, measured

@@ -11,8 +11,10 @@
 
 namespace hookeye {
 
-bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis) {
-  return at_floor(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis) &&
+bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis, const FitToAll* all) {
+  const bool left =
+      !all && (!at_floor(fitted, diagnosis.floor) || !measured_explained(fitted, diagnosis));
+  return !left &&
          std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
            return numerical(effect.effect) || !nameable(effect, diagnosis);
          });
@@ -62,6 +64,16 @@ std::string shown_by_held_out(const Fitted& fitted) {
       fitted.form.scene->capture.examples[worst->example].name);
 }
 
+/// The effects are right for all that is seen; held-out photos are missed by values.
+std::string held_out_by_values(const FitToAll& all, const Floor& floor) {
+  return fmt::format(
+      ", {:.2f} and {:.2f} where the held-out ones are fitted too: the fitted ones alone do not "
+      "know "
+      "the values well enough to predict them. Fitted to all, {}. To have these, fit the held-out "
+      "examples too (without use: validate), with another load held out",
+      all.chi_fit / floor.chi, all.chi_validate / floor.chi, fmt::join(all.hardly_known, ", "));
+}
+
 bool seen(const Fitted& fitted) {
   return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
                      [](const auto& example) { return !example.photos.empty(); });
@@ -70,13 +82,13 @@ bool seen(const Fitted& fitted) {
 }  // namespace
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
-              std::string* why) {
+              std::string* why, const FitToAll* all) {
   const double chi = fitted.evaluation.chi(false), held_out = fitted.evaluation.chi(true);
   const auto standing =
-      only_numerical_left(fitted, diagnosis) ? std::vector<std::string>() : leaders(diagnosis);
+      only_numerical_left(fitted, diagnosis, all) ? std::vector<std::string>() : leaders(diagnosis);
   std::string sensors;
-  const bool photos = at_floor(fitted, diagnosis.floor);
-  const bool measured = measured_explained(fitted, diagnosis, &sensors);
+  const bool photos = all || at_floor(fitted, diagnosis.floor);
+  const bool measured = all || measured_explained(fitted, diagnosis, &sensors);
   if (why) {
     *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
                        held_out > 0.0
@@ -84,6 +96,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
                                          seen(fitted) ? "photos" : "values")
                            : "");
     if (!sensors.empty()) *why += ", but " + sensors;
+    if (all) *why += held_out_by_values(*all, diagnosis.floor);
     if (!standing.empty())
       *why += fmt::format(", and {} still stand{} out", fmt::join(standing, " and "),
                           standing.size() == 1 ? "s" : "");

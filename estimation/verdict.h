@@ -14,14 +14,24 @@ namespace hookeye {
 enum class Verdict { explained, unexplained, ambiguous };
 const char* to_string(Verdict verdict);
 
-/// What the diagnosis of the newest model says about the run.
+/// The model with all examples fitted, where that leaves fitted and held-out photos at the floor
+/// though the values of the fitted ones alone miss the held-out ones (fit_to_all.h).
+struct FitToAll {
+  Fitted fitted;                             ///< in a scene that holds nothing out
+  double chi_fit = 0.0, chi_validate = 0.0;  ///< by what the capture uses the examples for
+  /// "creep.tau 1.5 (here 2.31, 0.849 .. 6.98)": the values that the fitted examples know least.
+  std::vector<std::string> hardly_known;
+};
+
+/// What the diagnosis of the newest model says about the run. `all`: null where there is none.
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
-              std::string* why);
+              std::string* why, const FitToAll* all = nullptr);
 
 /// The photos are explained but for what a finer mesh would change. That is told beside the
 /// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
 /// times all that was fitted before, and name nothing.
-bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis);
+bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis,
+                         const FitToAll* all = nullptr);
 
 /// What each effect of the model is at its fitted values, in the order in which they were added:
 /// "gravity: self-weight, 9.8 m/s2 towards (0.15, 0.09, -0.98)".

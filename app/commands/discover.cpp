@@ -64,6 +64,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     timeline["missing"] = found.missing;
     timeline["tie"] = found.tie;
     timeline["hint"] = too_little_to_name(found.steps.back().diagnosis);
+    timeline.erase("fitted_to_all");
+    if (found.all) timeline["fitted_to_all"] = to_json(*found.all);
     tell_floor(timeline, found.floor);
   });
   session.document = run.timeline();

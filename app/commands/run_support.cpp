@@ -130,7 +130,8 @@ namespace {
 /// written, so that no kill leaves it beside a step that it does not mean.
 void drop_verdict(Run& run) {
   run.update([](nlohmann::json& timeline) {
-    for (const char* key : {"verdict", "sentence", "missing", "tie", "hint"}) timeline.erase(key);
+    for (const char* key : {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all"})
+      timeline.erase(key);
   });
 }
 

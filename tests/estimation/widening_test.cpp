@@ -92,7 +92,8 @@ TEST(Widening, CreepThatLevelsOff) {
 }
 
 /// Two loads tell one ratio of stiffnesses: softening, creep that only grows and creep that levels
-/// off explain them alike. The held-out photos tell which came nearest.
+/// off explain them alike. The held-out photos tell which came nearest, and that with other values
+/// it would explain them too.
 TEST(Widening, CreepOfTwoLoadsIsNotLeftToSoftening) {
   const test::SmallScene small(
       {.recipe = recipe("{effect: creep, variant: free levelling off of the compliance, values: "
@@ -102,10 +103,16 @@ TEST(Widening, CreepOfTwoLoadsIsNotLeftToSoftening) {
   EXPECT_THAT(discovery.missing, ElementsAre("creep"));
   EXPECT_THAT(discovery.steps.back().fitted.form.ingredients.back()->variant(),
               testing::StartsWith("free levelling off"));
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+  EXPECT_THAT(discovery.sentence, testing::HasSubstr("creep.tau"));
+  ASSERT_TRUE(discovery.all);
+  EXPECT_NEAR(discovery.all->fitted.p[1], 0.2, 0.01);
+  EXPECT_NEAR(discovery.all->fitted.p[2], 1.2, 0.1);
 }
 
 /// Softened before loads whose motion is told: no fitted photo shows it, their forces do, and the
-/// held-out photos. (Forces know its value less well than photos would.)
+/// held-out photos. Forces know its value less well than photos would: those that are held out are
+/// missed by as much as that makes.
 TEST(Forces, TellOfASofteningThatNoFittedPhotoShows) {
   const test::SmallScene small(
       {.recipe = recipe("{effect: softening, variant: from press on, values: {softening.d: 0.12}}",
@@ -116,6 +123,10 @@ TEST(Forces, TellOfASofteningThatNoFittedPhotoShows) {
   EXPECT_LT(last.low[1], 0.12);
   EXPECT_GT(last.high[1], 0.12);
   EXPECT_GT(last.low[1], 0.05);
+  EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
+  if (at_floor(last, discovery.floor)) return;  // as noise has it
+  ASSERT_TRUE(discovery.all) << discovery.sentence;
+  EXPECT_NEAR(discovery.all->fitted.p[1], 0.12, 0.002);
 }
 
 TEST(Widening, SwellingFromOneSide) {
