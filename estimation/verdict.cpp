@@ -59,8 +59,9 @@ std::string shown_by_held_out(const Fitted& fitted) {
     if (example.held_out && (!worst || chi2(example) > chi2(*worst))) worst = &example;
   if (!worst || worst->photos.empty()) return "";
   return fmt::format(
-      ", and held-out photos alone show what is missing, or what the values are not known well "
-      "enough for, most in '{}': fit it too (without use: validate), with another load held out",
+      ", and what is missing shows in held-out photos alone, most in '{}': no values that the "
+      "fitted "
+      "ones allow explain it. Fit it too (without use: validate), with another load held out",
       fitted.form.scene->capture.examples[worst->example].name);
 }
 

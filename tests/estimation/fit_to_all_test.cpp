@@ -1,7 +1,6 @@
 // Held-out photos that are missed: by values that are hardly known, or by a wrong model?
 #include "estimation/fit_to_all.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -15,36 +14,13 @@
 namespace hookeye {
 namespace {
 
-/// A motion that is told: photos hardly show a body that has softened before it, its force does.
-test::SmallScene softened(const char* last) {
-  return test::SmallScene({.recipe = fmt::format(R"(hookeye_recipe: 1
-seed: 7
-title: small block
-body:
-  shape: block
-  size: [20, 16, 34]
-  bumps: 0.05
-  facet: 7
-  mesh: {{edge: 8}}
-  density: 1.07e-9
-  texture: {{texel: 0.12, speckle: 1.4}}
-material:
-  law: neo-hookean
-  true: {{mu: 0.02, kappa_over_mu: 10}}
-  told: {{mu: 0.02}}
-  fit: [mu]
-cameras: {{count: 2, size: [200, 260], distance: 6, focal: 950}}
-examples:
-  rest: {{}}
-  pull: {{force: [0, 0, 0.3]}}
-  side: {{force: [0.012, 0.006, 0]}}
-  press: {{{}}}
-  poke: {{use: validate, force: [-0.008, 0.01, 0.12]}}
-hidden:
-  - {{effect: softening, variant: from press on, values: {{softening.d: 0.12}}}}
-truth: {{edge_factor: 1, rays_per_axis: 4, visibility_rays: 256}}
-)",
-                                                 last)});
+/// Before its last load the body has softened. Photos of a motion that is told hardly show that,
+/// its force does.
+test::SmallScene softened(const std::string& last) {
+  return test::SmallScene({.hidden = "hidden:\n  - {effect: softening, variant: from press on, "
+                                     "values: {softening.d: 0.12}}\n",
+                           .seed = 7,
+                           .loads = "  press: {" + last + "}\n"});
 }
 
 /// The capture's own model, fitted, and the effect from its null in the form `variant`.
@@ -122,32 +98,11 @@ TEST(FitToAll, ValuesThatAreWellKnownExcuseNothing) {
 /// Creep that levels off, two loads of it: softening explains those and, whatever its value, not
 /// the third.
 TEST(FitToAll, AWrongEffectIsNotLetOff) {
-  const test::SmallScene small({.recipe = R"(hookeye_recipe: 1
-seed: 7
-title: small block
-body:
-  shape: block
-  size: [20, 16, 34]
-  bumps: 0.05
-  facet: 7
-  mesh: {edge: 8}
-  density: 1.07e-9
-  texture: {texel: 0.12, speckle: 1.4}
-material:
-  law: neo-hookean
-  true: {mu: 0.02, kappa_over_mu: 10}
-  told: {mu: 0.02}
-  fit: [mu]
-cameras: {count: 2, size: [200, 260], distance: 6, focal: 950}
-examples:
-  rest: {}
-  pull: {force: [0, 0, 0.3]}
-  side: {force: [0.012, 0.006, 0]}
-  poke: {use: validate, force: [-0.008, 0.01, 0.12]}
-hidden:
-  - {effect: creep, variant: free levelling off of the compliance, values: {creep.c: 0.2, creep.tau: 1.2}}
-truth: {edge_factor: 1, rays_per_axis: 4, visibility_rays: 256}
-)"});
+  const test::SmallScene small(
+      {.hidden = "hidden:\n  - {effect: creep, variant: free levelling off of the compliance, "
+                 "values: {creep.c: 0.2, creep.tau: 1.2}}\n",
+       .seed = 7,
+       .loads = ""});
   Workspace workspace(small.scene);
   const Fitted wrong = fitted_with(workspace, *small.scene, "softening", "from side on");
   Diagnosis diagnosis;
@@ -158,7 +113,7 @@ truth: {edge_factor: 1, rays_per_axis: 4, visibility_rays: 256}
 }
 
 TEST(FitToAll, WhereNothingIsHeldOutNothingIsAsked) {
-  const test::SmallScene small(test::SmallCapture{});
+  const test::SmallScene small({});
   auto scene = std::make_shared<Scene>(*small.scene);
   scene->capture.examples.back().validate = false;
   Workspace workspace(scene);

@@ -30,9 +30,8 @@ examples:
   rest: {}
   pull: {force: [0, 0, 0.3]}
   side: {force: [0.012, 0.006, 0]}
-  twist: {rotate: 20}
-  poke: {use: validate, force: [-0.008, 0.01, 0.12]}
-)" + capture.hidden +
+)" + capture.loads +
+         "  poke: {use: validate, force: [-0.008, 0.01, 0.12]}\n" + capture.hidden +
          "truth: {edge_factor: " + capture.truth_mesh +
          (capture.same_renderer ? ", rays_per_axis: 3, visibility_rays: 64}\n"
                                 : ", rays_per_axis: 4, visibility_rays: 256}\n");

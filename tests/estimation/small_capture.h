@@ -15,11 +15,13 @@ struct SmallCapture {
   std::string truth_mesh = "1";  ///< edge of the truth's mesh over the told one
   bool same_renderer = false;    ///< the truth's rays are those of the fit: noise alone is left
   unsigned seed = 5;             ///< of texture and noise
-  std::string recipe = "";       ///< another body: the whole recipe, instead of all above
+  /// Lines of `examples:` after the pull and the bend, before the poke that is held out.
+  std::string loads = "  twist: {rotate: 20}\n";
+  std::string recipe = "";  ///< another body: the whole recipe, instead of all above
 };
 
-/// Two cameras of 200 x 260 px; rest, pull, side, twist; poke held out. The truth is solved on the
-/// told mesh unless said, so that what is missing is what was hidden.
+/// Two cameras of 200 x 260 px; rest, pull, side, `loads`; poke held out. The truth is solved on
+/// the told mesh unless said, so that what is missing is what was hidden.
 class SmallScene {
  public:
   explicit SmallScene(const SmallCapture& capture);

@@ -2,7 +2,6 @@
 // that the score asks for, the others by the forms that a standing effect goes on to.
 #include "estimation/widening.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/estimation/small_capture.h"
@@ -12,46 +11,19 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Loads that pull, bend and press; one held out.
-std::string recipe(const std::string& hidden, const char* more) {
-  return fmt::format(R"(hookeye_recipe: 1
-seed: 5
-title: small block
-body:
-  shape: block
-  size: [20, 16, 34]
-  bumps: 0.05
-  facet: 7
-  mesh: {{edge: 8}}
-  density: 1.07e-9
-  texture: {{texel: 0.12, speckle: 1.4}}
-material:
-  law: neo-hookean
-  true: {{mu: 0.02, kappa_over_mu: 10}}
-  told: {{mu: 0.02}}
-  fit: [mu]
-cameras: {{count: 2, size: [200, 260], distance: 6, focal: 950}}
-examples:
-  rest: {{}}
-  pull: {{force: [0, 0, 0.3]}}
-  side: {{force: [0.012, 0.006, 0]}}
-  {}
-  poke: {{use: validate, force: [-0.008, 0.01, 0.12]}}
-hidden:
-  - {}
-truth: {{edge_factor: 1, rays_per_axis: 4, visibility_rays: 256}}
-)",
-                     more, hidden);
+/// `hidden` and the loads `more` after a pull and a bend.
+test::SmallCapture hiding(const std::string& hidden, const char* more) {
+  return {.hidden = "hidden:\n  - " + hidden + "\n", .loads = more};
 }
 
-const char* const kPressAndTwist = "press: {move: [0, 0, -0.06]}\n  twist: {rotate: 20}";
+const char* const kPressAndTwist = "  press: {move: [0, 0, -0.06]}\n  twist: {rotate: 20}\n";
 const char* const kMoreForces =
-    "lift: {force: [0, 0, 0.2]}\n  bend: {force: [-0.01, 0.004, 0.1]}\n  twist: {rotate: 20}";
+    "  lift: {force: [0, 0, 0.2]}\n  bend: {force: [-0.01, 0.004, 0.1]}\n  twist: {rotate: 20}\n";
 
 /// The whole search names `effect` alone, in the form `variant`, and comes to the floor.
 Fitted found(const std::string& hidden, const std::string& effect, const std::string& variant,
              const char* more = kPressAndTwist) {
-  const test::SmallScene small({.recipe = recipe(hidden, more)});
+  const test::SmallScene small(hiding(hidden, more));
   const Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, ElementsAre(effect));
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
@@ -96,9 +68,9 @@ TEST(Widening, CreepThatLevelsOff) {
 /// it would explain them too.
 TEST(Widening, CreepOfTwoLoadsIsNotLeftToSoftening) {
   const test::SmallScene small(
-      {.recipe = recipe("{effect: creep, variant: free levelling off of the compliance, values: "
-                        "{creep.c: 0.2, creep.tau: 1.2}}",
-                        kPressAndTwist)});
+      hiding("{effect: creep, variant: free levelling off of the compliance, values: "
+             "{creep.c: 0.2, creep.tau: 1.2}}",
+             kPressAndTwist));
   const Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, ElementsAre("creep"));
   EXPECT_THAT(discovery.steps.back().fitted.form.ingredients.back()->variant(),
@@ -114,9 +86,8 @@ TEST(Widening, CreepOfTwoLoadsIsNotLeftToSoftening) {
 /// held-out photos. Forces know its value less well than photos would: those that are held out are
 /// missed by as much as that makes.
 TEST(Forces, TellOfASofteningThatNoFittedPhotoShows) {
-  const test::SmallScene small(
-      {.recipe = recipe("{effect: softening, variant: from press on, values: {softening.d: 0.12}}",
-                        kPressAndTwist)});
+  const test::SmallScene small(hiding(
+      "{effect: softening, variant: from press on, values: {softening.d: 0.12}}", kPressAndTwist));
   const Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, ElementsAre("softening")) << discovery.sentence;
   const Fitted& last = discovery.steps.back().fitted;
