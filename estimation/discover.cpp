@@ -81,8 +81,6 @@ class Search {
       auto to_all = fit_to_all(workspace_, newest().fitted, newest().diagnosis, options_.fit);
       if (auto* failure = std::get_if<NumericalFailure>(&to_all)) return *failure;
       out_.all = std::get<std::optional<FitToAll>>(std::move(to_all));
-      const FitToAll* all = out_.all ? &*out_.all : nullptr;
-      if (all && only_numerical_left(newest().fitted, newest().diagnosis, all)) break;
       if (out_.steps.size() >= most_steps) break;
       const auto added = std::ssize(newest().fitted.form.ingredients) - start;
       const int room = options_.max_effects - static_cast<int>(added);
@@ -100,7 +98,8 @@ class Search {
       if (!std::get<bool>(other)) break;
     }
     // Questions that were stopped have no answer: neither has the run.
-    if (options_.fit.cancel && *options_.fit.cancel) return NumericalFailure{"", 0.0, "cancelled"};
+    if (!cancelled()) ask_all_again();
+    if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
     return finish();
   }
 
@@ -109,6 +108,8 @@ class Search {
   using WentOn = std::variant<bool, NumericalFailure>;
 
   Step& newest() { return out_.steps.back(); }
+  const FitToAll* all() const { return out_.all ? &*out_.all : nullptr; }
+  bool cancelled() const { return options_.fit.cancel && *options_.fit.cancel; }
 
   /// A step with other effects than the last contest chose: who lost it has lost to another model.
   void stand_in(Step step) {
@@ -135,7 +136,7 @@ class Search {
     if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
     if (std::get<bool>(widened)) return true;
     Step& step = newest();
-    if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis)) return false;
+    if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis, all())) return false;
     if (auto better = swap_for_better(workspace_, step.fitted, out_.floor, base_, refused_swaps_,
                                       options_, events_)) {
       stand_in(swapped_step(std::move(*better)));
@@ -197,7 +198,7 @@ class Search {
   WentOn widened_loser() {
     const Fitted& last = newest().fitted;
     const std::vector<Refit> losers = std::exchange(losers_, {});
-    if (!spoils_held_out(last, out_.floor)) return false;
+    if (out_.all || !spoils_held_out(last, out_.floor)) return false;
     for (const Refit& loser : losers) {
       const size_t at = loser.fitted.form.ingredients.size() - 1;
       if (numerical(loser.effect) || !spoils_held_out(loser.fitted, out_.floor) ||
@@ -285,7 +286,7 @@ class Search {
   /// guide, and a step with it may have no equilibrium.
   WentOn settled_mesh(int room) {
     const Step& step = newest();
-    if (room <= 0 || mesh_refitted_ || at_floor(step.fitted, out_.floor)) return false;
+    if (room <= 0 || mesh_refitted_ || out_.all || at_floor(step.fitted, out_.floor)) return false;
     for (const EffectScore& score : step.diagnosis.effects) {
       if (!numerical(score.effect) || !score.testable ||
           score.evidence < std::max(kNameable, step.diagnosis.gate))
@@ -350,15 +351,22 @@ class Search {
     return false;
   }
 
+  /// Where held-out photos were missed by values alone, they tell rivals apart by being fitted.
+  void ask_all_again() {
+    if (!out_.all) return;
+    settle_tie(out_.tie, effects_in(newest().fitted.form));
+    std::vector<Contested> past = options_.past;
+    for (const Step& step : out_.steps) past.push_back({step.added, step.dropped, step.rivals});
+    out_.tie =
+        tie_of_all(workspace_, *out_.all, past, out_.tie, out_.floor, base_, options_, events_);
+  }
+
   Discovery finish() {
     std::string why;
     const Step& last = newest();
     out_.missing = effects_in(last.fitted.form);
     settle_tie(out_.tie, out_.missing);
-    const FitToAll* all = out_.all ? &*out_.all : nullptr;
-    if (all && out_.tie.empty())
-      out_.tie = tie_of_all(workspace_, *all, out_.steps, out_.floor, base_, options_, events_);
-    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all);
+    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
     out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
     return std::move(out_);
   }

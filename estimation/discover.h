@@ -46,19 +46,28 @@ double refit_score(const Fitted& fitted, const Yardstick& yardstick);
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor,
                      double least = 0.0);
 
-struct DiscoverOptions {
-  FitOptions fit;
-  DiagnosisOptions diagnosis;
-  int leaders = 3;  ///< effects refitted to the end at each step
-  int max_effects = 4;
-  std::vector<std::string> tie;  ///< of the steps before the one that discover_from() starts at
-};
-
 /// A leader of the race, refitted to the end.
 struct Rival {
   std::string effect;
   double score = 0.0;  ///< refit_score minus the winner's
   double chi_fit = 0.0, chi_validate = 0.0;
+};
+
+/// Who won a contest, what left the model for it and who stood in it.
+struct Contested {
+  std::string added;
+  std::vector<std::string> dropped;
+  std::vector<Rival> rivals;
+};
+
+struct DiscoverOptions {
+  FitOptions fit;
+  DiagnosisOptions diagnosis;
+  int leaders = 3;  ///< effects refitted to the end at each step
+  int max_effects = 4;
+  /// Of the steps up to the one that discover_from() starts at, that one with them.
+  std::vector<std::string> tie;
+  std::vector<Contested> past;
 };
 
 /// One step of a run.

@@ -43,8 +43,8 @@ json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& v
 json to_json(const FitToAll& all) {
   return {{"chi_fit", all.chi_fit},
           {"chi_validate", all.chi_validate},
-          {"parameters", parameters_json(all.fitted.form.parameters(), all.fitted.p,
-                                         &all.fitted.low, &all.fitted.high)}};
+          {"parameters",
+           parameters_json(all.fitted.form.parameters(), all.fitted.p, nullptr, nullptr)}};
 }
 
 json timeline_entry(const Step& step) {

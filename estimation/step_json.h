@@ -21,7 +21,7 @@ Diagnosis diagnosis_from_json(const nlohmann::json& document, const Model& model
 nlohmann::json to_json(const Plan& plan);
 /// Without the forces at the nodes, which are in the vtu.
 nlohmann::json to_json(const std::vector<FreeForm>& fields);
-/// chi by use, and all parameters.
+/// chi by use, and all parameters, without intervals: those would have to reach for the mesh.
 nlohmann::json to_json(const FitToAll& all);
 /// The step's entry of run.json.
 nlohmann::json timeline_entry(const Step& step);

@@ -47,7 +47,7 @@ std::string hidden_by_mesh(const Diagnosis& diagnosis) {
   return "";
 }
 
-/// Fitted photos that are explained know no more: what is missing shows in held-out ones alone.
+/// Fitted photos that are explained know no more: the user hears which held-out ones do.
 std::string shown_by_held_out(const Fitted& fitted) {
   const ExampleEvaluation* worst = nullptr;
   const auto chi2 = [](const ExampleEvaluation& example) {
@@ -60,8 +60,9 @@ std::string shown_by_held_out(const Fitted& fitted) {
   if (!worst || worst->photos.empty()) return "";
   return fmt::format(
       ", and what is missing shows in held-out photos alone, most in '{}': no values that the "
-      "fitted "
-      "ones allow explain it. Fit it too (without use: validate), with another load held out",
+      "fitted ones allow were found to explain it. Fit it too (without use: validate), with "
+      "another "
+      "load held out",
       fitted.form.scene->capture.examples[worst->example].name);
 }
 

@@ -51,19 +51,23 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   DiscoverOptions options = discover_options();
   options.diagnosis.without = arguments.without;
   const bool resumed = !run.steps().empty();
-  for (const auto& step : run.timeline().value("steps", nlohmann::json::array()))
+  for (const auto& step : run.timeline().value("steps", nlohmann::json::array())) {
     if (auto tied = tied_in(step); tied.size() > 1) options.tie = std::move(tied);
+    options.past.push_back(contested_in(step));
+  }
   const DiscoverEvents on = events(run, bench, resumed);
   const ModelForm form = base_form(bench.scene);
   const Discovery found =
       value_or_fail(resumed ? discover_from(bench.workspace, newest_step(run, bench), options, on)
                             : discover(bench.workspace, form, form.initial(), options, on));
+  // What held-out photos alone show there are the values.
+  const std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
   run.update([&](nlohmann::json& timeline) {
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;
     timeline["missing"] = found.missing;
     timeline["tie"] = found.tie;
-    timeline["hint"] = too_little_to_name(found.steps.back().diagnosis);
+    timeline["hint"] = hint;
     timeline.erase("fitted_to_all");
     if (found.all) timeline["fitted_to_all"] = to_json(*found.all);
     tell_floor(timeline, found.floor);
@@ -81,8 +85,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));
   session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));
-  if (const auto hint = too_little_to_name(found.steps.back().diagnosis); !hint.empty())
-    session.say("{}", wrapped(hint));
+  if (!hint.empty()) session.say("{}", wrapped(hint));
   if (found.verdict == Verdict::unexplained)
     tell_free_form(run, bench, found.steps.back(), session);
   say_pictures(run.steps().back(), session);

@@ -111,6 +111,15 @@ std::vector<std::string> tied_in(const nlohmann::json& step) {
   return tied;
 }
 
+Contested contested_in(const nlohmann::json& step) {
+  Contested out;
+  if (!step.at("added").is_null()) out.added = step.at("added");
+  out.dropped = step.value("dropped", std::vector<std::string>());
+  for (const auto& rival : step.value("rivals", nlohmann::json::array()))
+    out.rivals.push_back({rival.at("effect"), rival.at("score"), rival.at("chi_fit"), 0.0});
+  return out;
+}
+
 DiscoverOptions discover_options() {
   DiscoverOptions options;
   options.fit = fit_options();

@@ -43,6 +43,8 @@ std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest);
 /// Effects that the refits of a step of `run.json` could not tell apart, the added one first; one
 /// alone is no tie.
 std::vector<std::string> tied_in(const nlohmann::json& step);
+/// Who stood in its contest.
+Contested contested_in(const nlohmann::json& step);
 
 DiscoverOptions discover_options();
 

@@ -190,10 +190,11 @@ class JudgedRun : public FittedRun {
     changed["verdict"] = "explained";
     changed["sentence"] = "missing: nothing";
     changed["missing"] = changed["tie"] = json::array();
+    changed["fitted_to_all"] = {{"chi_fit", 1.0}};
     write("run/run.json", changed.dump(2));
   }
   void expect_unjudged() const {
-    for (const char* key : {"verdict", "sentence", "missing", "tie"})
+    for (const char* key : {"verdict", "sentence", "missing", "tie", "fitted_to_all"})
       EXPECT_FALSE(timeline().contains(key)) << key;
   }
 };

@@ -227,10 +227,11 @@ TEST(Verdict, SaysWhichHeldOutLoadShowsWhatIsMissing) {
     }
   ASSERT_NE(held_out, "");
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
-  EXPECT_THAT(why, testing::EndsWith("what is missing shows in held-out photos alone, most in '" +
-                                     held_out +
-                                     "': no values that the fitted ones allow explain it. Fit it "
-                                     "too (without use: validate), with another load held out"));
+  EXPECT_THAT(why,
+              testing::EndsWith(
+                  "what is missing shows in held-out photos alone, most in '" + held_out +
+                  "': no values that the fitted ones allow were found to "
+                  "explain it. Fit it too (without use: validate), with another load held out"));
 }
 
 /// Far from the floor an effect has to take a tenth of what is over it, of the fitted photos or of
