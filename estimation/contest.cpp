@@ -201,6 +201,17 @@ std::vector<Rival> rivals_of(const Contest& contest, double chosen) {
   return out;
 }
 
+std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
+  const double won = std::pow(then.fitted.evaluation.chi(false), 2);
+  const double taken = won - std::pow(last.evaluation.chi(false), 2);
+  std::vector<std::string> losers;
+  for (const Rival& rival : then.rivals)
+    if (rival.effect != then.added && !numerical(rival.effect) &&
+        std::pow(rival.chi_fit, 2) - won < taken)
+      losers.push_back(rival.effect);
+  return losers;
+}
+
 std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
                                                                 const Step& step,
                                                                 const Contest& contest,

@@ -46,6 +46,10 @@ void rank(Contest& contest, const Step& step);
 /// Who was refitted, and by how much each scores above `chosen`.
 std::vector<Rival> rivals_of(const Contest& contest, double chosen);
 
+/// Those that lost the contest of `then` by less of chi^2 than what later steps took away. (Not the
+/// nearest alone: of creep and softening, which fit alike, held-out photos may refuse it.)
+std::vector<std::string> narrow_losers(const Step& then, const Fitted& last);
+
 /// Refits the leaders of a race and ranks them.
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const DiscoverOptions& options,

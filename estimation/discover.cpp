@@ -43,19 +43,6 @@ void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& m
     tie.clear();
 }
 
-/// Those that lost the contest of `then` by less of chi^2 than what later steps took away. (Not the
-/// nearest alone: of creep and softening, which fit alike, held-out photos may refuse it.)
-std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
-  const double won = std::pow(then.fitted.evaluation.chi(false), 2);
-  const double taken = won - std::pow(last.evaluation.chi(false), 2);
-  std::vector<std::string> losers;
-  for (const Rival& rival : then.rivals)
-    if (rival.effect != then.added && !numerical(rival.effect) &&
-        std::pow(rival.chi_fit, 2) - won < taken)
-      losers.push_back(rival.effect);
-  return losers;
-}
-
 /// The loop: one step after the other, until nothing is left to add or to swap.
 class Search {
  public:
