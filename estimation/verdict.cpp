@@ -12,9 +12,9 @@
 namespace hookeye {
 
 bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis, const FitToAll* all) {
-  const bool left =
-      !all && (!at_floor(fitted, diagnosis.floor) || !measured_explained(fitted, diagnosis));
-  return !left &&
+  const bool explained =
+      all || (at_floor(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis));
+  return explained &&
          std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
            return numerical(effect.effect) || !nameable(effect, diagnosis);
          });
@@ -61,8 +61,7 @@ std::string shown_by_held_out(const Fitted& fitted) {
   return fmt::format(
       ", and what is missing shows in held-out photos alone, most in '{}': no values that the "
       "fitted ones allow were found to explain it. Fit it too (without use: validate), with "
-      "another "
-      "load held out",
+      "another load held out",
       fitted.form.scene->capture.examples[worst->example].name);
 }
 
@@ -70,9 +69,8 @@ std::string shown_by_held_out(const Fitted& fitted) {
 std::string held_out_by_values(const FitToAll& all, const Floor& floor) {
   return fmt::format(
       ", {:.2f} and {:.2f} where the held-out ones are fitted too: the fitted ones alone do not "
-      "know "
-      "the values well enough to predict them. Fitted to all, {}. To have these, fit the held-out "
-      "examples too (without use: validate), with another load held out",
+      "know the values well enough to predict them. Fitted to all, {}. To have these, fit the "
+      "held-out examples too (without use: validate), with another load held out",
       all.chi_fit / floor.chi, all.chi_validate / floor.chi, fmt::join(all.hardly_known, ", "));
 }
 

@@ -9,6 +9,7 @@
 #include "estimation/effect.h"
 #include "estimation/evidence.h"
 #include "estimation/normal_equations.h"
+#include "estimation/step_json.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -79,6 +80,16 @@ TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
   EXPECT_LT(all->chi_fit, kAtFloor * floor.chi);
   EXPECT_LT(all->chi_validate, kAtFloor * floor.chi);
   EXPECT_THAT(all->hardly_known, testing::ElementsAre(testing::StartsWith("softening.d 0.1")));
+  const nlohmann::json told = to_json(*all);
+  EXPECT_EQ(told.at("chi_validate"), all->chi_validate);
+  EXPECT_EQ(told.at("parameters").back().at("name"), "softening.d");
+  EXPECT_EQ(told.at("parameters").back().at("value"), all->fitted.p[d]);
+  // Had the fitted photos been explained far better, these values would give that up.
+  for (auto& example : fitted.evaluation.examples)
+    for (auto& photo : example.photos)
+      if (!example.held_out) photo.r2 *= 0.5;
+  const auto again = fit_to_all(workspace, fitted, diagnosis, {});
+  EXPECT_FALSE(std::get<std::optional<FitToAll>>(again));
 }
 
 /// The photos of a free load know the softening: what held-out ones are missed by then is another
