@@ -45,7 +45,8 @@ class ReducedCost final : public ceres::CostFunction {
         failure_ = *failure;
         return false;
       }
-      cached_ = condense(scope_.of(std::get<Evaluation>(result)), scaling_.dp_dx(p));
+      const NormalEquations sums = scope_.of(std::get<Evaluation>(result));
+      cached_ = condense(within_bounds(sums, scaling_, p), scaling_.dp_dx(p));
       cached_x_ = x;
     }
     Eigen::Map<VectorXd>(r, x.size()) = cached_.z;

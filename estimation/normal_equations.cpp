@@ -42,6 +42,56 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& H, const std::vector<bool>& keep)
   return kept.asDiagonal() * H * kept.asDiagonal();
 }
 
+namespace {
+
+/// -1: at its lower bound, 1: at the upper one, 0: free to move. (A bound comes back from its
+/// logarithm a little off.)
+int bound_at(const Scaling& scaling, int i, double value) {
+  const Parameter& parameter = scaling.parameters[i];
+  const double near = 1e-9 * (parameter.positive ? std::abs(value) : parameter.typical);
+  return value <= parameter.low + near ? -1 : value >= parameter.high - near ? 1 : 0;
+}
+
+}  // namespace
+
+NormalEquations within_bounds(const NormalEquations& sums, const Scaling& scaling,
+                              const VectorXd& p) {
+  const auto n = static_cast<int>(p.size());
+  std::vector<int> bound(n);
+  std::vector<bool> moves(n);
+  for (int i = 0; i < n; ++i) bound[i] = bound_at(scaling, i, p[i]), moves[i] = bound[i] == 0;
+  const VectorXd scale = scaling.dp_dx(p);
+  const auto of_moving = [&] {
+    NormalEquations out = sums;
+    out.JtJ = part_of(sums.JtJ, moves);
+    for (int i = 0; i < n; ++i)
+      if (!moves[i]) out.Jtr[i] = 0.0;
+    return out;
+  };
+  for (int round = 0; round < 3 * n; ++round) {
+    const CondensedResidual condensed = condense(of_moving(), scale);
+    const VectorXd dx = -condensed.R.completeOrthogonalDecomposition().solve(condensed.z);
+    int leaves = -1, enters = -1;  // the one that goes farthest out; the one that is held most
+    const VectorXd g = scale.cwiseProduct(sums.Jtr + sums.JtJ * scale.cwiseProduct(dx));
+    for (int i = 0; i < n; ++i) {
+      if (bound[i] == 0) continue;
+      if (moves[i] && bound[i] * dx[i] > 0.0 &&
+          (leaves < 0 || std::abs(dx[i]) > std::abs(dx[leaves])))
+        leaves = i;
+      if (!moves[i] && bound[i] * g[i] > 0.0 &&
+          (enters < 0 || std::abs(g[i]) > std::abs(g[enters])))
+        enters = i;
+    }
+    if (leaves >= 0)
+      moves[leaves] = false;
+    else if (enters >= 0)
+      moves[enters] = true;
+    else
+      break;
+  }
+  return of_moving();
+}
+
 CondensedResidual condense(const NormalEquations& sums, const VectorXd& scale) {
   const Eigen::MatrixXd H = scale.asDiagonal() * sums.JtJ * scale.asDiagonal();
   const VectorXd g = scale.cwiseProduct(sums.Jtr);

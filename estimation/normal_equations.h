@@ -50,6 +50,13 @@ std::vector<bool> of_held_out(const Capture& capture, const std::vector<Paramete
 /// The rows and columns of H where `keep` is set; zero elsewhere.
 Eigen::MatrixXd part_of(const Eigen::MatrixXd& H, const std::vector<bool>& keep);
 
+/// The sums of those parameters that the Gauss-Newton step from p moves, least squares within the
+/// bounds on which some of them stand (Lawson and Hanson 1974, ch. 23): those that would leave
+/// stay, and the others' step knows it. Taken with all and cut off at the bounds, a step on which
+/// many depend (what a finer mesh changes) leads elsewhere.
+NormalEquations within_bounds(const NormalEquations& sums, const Scaling& scaling,
+                              const VectorXd& p);
+
 /// (z, rho) with Jacobian (R, 0): R^T R = J^T J, R^T z = J^T r, rho^2 = |r|^2 - |z|^2. R from the
 /// eigenvectors, so that singular directions cost nothing and stay put.
 struct CondensedResidual {

@@ -255,5 +255,46 @@ TEST(Condense, SingularDirectionsCostNothingAndStayPut) {
   EXPECT_NEAR((all.J.transpose() * (all.J * dx + all.r)).norm(), 0.0, 1e-6);
 }
 
+/// Least squares within bounds against all choices of who stays.
+TEST(WithinBounds, MovesWhomTheBoundedStepMoves) {
+  constexpr int n = 5;
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    // Nearly one direction: the unbounded step says little of the bounded one.
+    Eigen::MatrixXd J(8, n);
+    const VectorXd common = VectorXd::NullaryExpr(8, [&] { return normal(random); });
+    for (int i = 0; i < n; ++i)
+      J.col(i) = common + 0.3 * VectorXd::NullaryExpr(8, [&] { return normal(random); });
+    const VectorXd r = VectorXd::NullaryExpr(8, [&] { return normal(random); });
+    NormalEquations sums{J.transpose() * J, J.transpose() * r, r.squaredNorm()};
+    Scaling scaling;
+    VectorXd p = VectorXd::Zero(n);
+    for (int i = 0; i < n; ++i)
+      scaling.parameters.push_back({"p" + std::to_string(i), "", "", 0.0, i % 2 ? -1e9 : 0.0,
+                                    i == 1 ? 0.0 : 1e9, 1.0 + i, false});
+    double least = std::numeric_limits<double>::infinity();
+    VectorXd best;
+    for (int mask = 0; mask < 1 << n; ++mask) {  // who moves
+      Eigen::MatrixXd some = J;
+      for (int i = 0; i < n; ++i)
+        if (!(mask >> i & 1)) some.col(i).setZero();
+      const VectorXd step = -some.completeOrthogonalDecomposition().solve(r);
+      bool within = true;
+      for (int i = 0; i < n; ++i)
+        within &= step[i] >= scaling.parameters[i].low - 1e-12 &&
+                  step[i] <= scaling.parameters[i].high + 1e-12;
+      if (within && (J * step + r).squaredNorm() < least)
+        least = (J * step + r).squaredNorm(), best = step;
+    }
+    const VectorXd scale = scaling.dp_dx(p);
+    const CondensedResidual condensed = condense(within_bounds(sums, scaling, p), scale);
+    const VectorXd step = -scale.cwiseProduct(
+        VectorXd(condensed.R.completeOrthogonalDecomposition().solve(condensed.z)));
+    EXPECT_LT((step - best).norm(), 1e-6 * (1.0 + best.norm())) << repeat;
+    EXPECT_NEAR(condensed.rho * condensed.rho, least, 1e-9 * (1.0 + least)) << repeat;
+  }
+}
+
 }  // namespace
 }  // namespace hookeye
