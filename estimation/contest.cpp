@@ -55,6 +55,13 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::s
   return fine;
 }
 
+bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
+  return numerical(effect) &&
+         std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
+           return score.effect == effect && score.explains > 0.5;
+         });
+}
+
 namespace {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
@@ -68,16 +75,6 @@ const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
         }))
       return &score;
   return nullptr;
-}
-
-/// A numerical error that would remove at least half of the misfit. The finer mesh was solved for
-/// the score: where it leaves more than that, something larger is missing, and the mesh is asked
-/// after it.
-bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
-  return numerical(effect) &&
-         std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
-           return score.effect == effect && score.explains > 0.5;
-         });
 }
 
 /// The first `most` of a race and the effect of the largest evidence: who is slow in two steps may
@@ -135,9 +132,58 @@ bool mesh_kept_its_word(const Step& step, const Fitted& refitted) {
   return r2(step.fitted) - r2(refitted) >= 0.5 * mesh->explains * structured;
 }
 
+/// Adds to `racers` those that get farther beside the newest effect from where they stood before
+/// it was added; of one effect the better start runs on.
+std::optional<NumericalFailure> let_beaten_run(Workspace& workspace, const Beaten& beaten,
+                                               const DiscoverOptions& options,
+                                               const DiscoverEvents& events,
+                                               std::vector<Racer>& racers) {
+  const auto& scores = beaten.before.diagnosis.effects;
+  const auto won = std::find_if(scores.begin(), scores.end(),
+                                [&](const auto& score) { return score.effect == beaten.winner; });
+  if (won == scores.end()) return {};
+  auto beside =
+      race_beside(workspace, beaten.before.fitted, *won, beaten.racers, options.fit, events.tried);
+  if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
+  for (Racer& racer : std::get<std::vector<Racer>>(beside)) {
+    const auto same = std::find_if(racers.begin(), racers.end(), [&](const Racer& other) {
+      return other.effect == racer.effect;
+    });
+    if (same == racers.end())
+      racers.push_back(std::move(racer));
+    else if (racer.chi() < same->chi())
+      *same = std::move(racer);
+  }
+  std::stable_sort(racers.begin(), racers.end(),
+                   [](const Racer& a, const Racer& b) { return a.chi() < b.chi(); });
+  return {};
+}
+
 }  // namespace
 
+void LastContest::won(std::string winner, size_t step, std::vector<Racer> racers) {
+  winner_ = std::move(winner), step_ = step, racers_ = std::move(racers);
+}
+
+std::optional<Beaten> LastContest::beaten(const std::vector<Step>& steps) const {
+  if (racers_.empty()) return {};
+  const ModelForm &grown = steps.back().fitted.form, &form = steps[step_].fitted.form;
+  if (grown.scene != form.scene || grown.ingredients.size() != form.ingredients.size() + 1 ||
+      grown.ingredients.back()->name() != winner_ ||
+      !std::equal(form.ingredients.begin(), form.ingredients.end(), grown.ingredients.begin()))
+    return {};
+  return Beaten{steps[step_], winner_, racers_};
+}
+
+std::vector<Raced> raced(const std::vector<Racer>& racers) {
+  std::vector<Raced> out;
+  for (const Racer& racer : racers)
+    out.push_back({racer.effect, racer.trial.chi_fit, racer.trial.chi_validate, racer.trial.floor});
+  return out;
+}
+
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
+                                                      const std::optional<Beaten>& beaten,
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events) {
   Contest out;
@@ -147,9 +193,10 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
   auto raced = race(workspace, step.fitted, entered, options.fit, events.tried);
   if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
   auto& racers = std::get<std::vector<Racer>>(raced);
-  for (const Racer& racer : racers)
-    out.raced.push_back(
-        {racer.effect, racer.trial.chi_fit, racer.trial.chi_validate, racer.trial.floor});
+  if (beaten && !mesh_settles_it(step) &&
+      std::none_of(racers.begin(), racers.end(), [](const Racer& one) { return one.at_floor(); }))
+    if (auto failure = let_beaten_run(workspace, *beaten, options, events, racers)) return *failure;
+  out.racers = racers;
   keep_leaders(racers, entered, options.leaders);
   for (const Racer& racer : racers) {
     // Nothing can do better than the floor; once it is reached only a tie is of use.
@@ -199,6 +246,12 @@ std::vector<Rival> rivals_of(const Contest& contest, double chosen) {
     out.push_back({one.effect, one.score - chosen, left.chi(false), left.chi(true)});
   }
   return out;
+}
+
+double score_above(const Fitted& one, const Fitted& other, const Floor& floor) {
+  const Yardstick yardstick{misfit(one) < misfit(other) ? &one : &other, &floor,
+                            std::min(measured_noise2(one), measured_noise2(other))};
+  return refit_score(one, yardstick) - refit_score(other, yardstick);
 }
 
 std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {

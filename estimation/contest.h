@@ -10,14 +10,17 @@
 
 namespace hookeye {
 
-/// Within `times` the floor on the fitted photos and on the held-out ones. The default is what
-/// texture and shading errors of another renderer leave at most.
-constexpr double kAtFloor = 1.3;
+/// Within `times` the floor on the fitted photos and on the held-out ones.
 bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);
 /// What chi^2 has over the floor's.
 double over_floor(const Fitted& fitted, const Floor& floor, bool held_out);
 /// The effects explain the fitted photos and not the held-out ones.
 bool spoils_held_out(const Fitted& fitted, const Floor& floor);
+
+/// A numerical error that would remove at least half of the misfit. The finer mesh was solved for
+/// the score: where it leaves more than that, something larger is missing, and the mesh is asked
+/// after it.
+bool may_be_all(const std::string& effect, const Diagnosis& diagnosis);
 
 struct Refit {
   std::string effect;
@@ -26,7 +29,7 @@ struct Refit {
 };
 
 struct Contest {
-  std::vector<Raced> raced;
+  std::vector<Racer> racers;     ///< all that ran, best first
   std::vector<Refit> refits;     ///< best first
   double before = 0.0;           ///< score of the step that they start from
   Fitted reference;              ///< whose correlation all scores are of
@@ -43,15 +46,48 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
 /// of the best of them, and sorts them.
 void rank(Contest& contest, const Step& step);
 
+/// What the racers came to, for the step that is made of them.
+std::vector<Raced> raced(const std::vector<Racer>& racers);
+
 /// Who was refitted, and by how much each scores above `chosen`.
 std::vector<Rival> rivals_of(const Contest& contest, double chosen);
+
+/// refit_score of one less the other's, by the correlation of the one that misses less: what a
+/// wrong effect leaves hangs together, and by that it counts for little.
+double score_above(const Fitted& one, const Fitted& other, const Floor& floor);
 
 /// Those that lost the contest of `then` by less of chi^2 than what later steps took away. (Not the
 /// nearest alone: of creep and softening, which fit alike, held-out photos may refuse it.)
 std::vector<std::string> narrow_losers(const Step& then, const Fitted& last);
 
-/// Refits the leaders of a race and ranks them.
+/// Who lost the contest that the newest effect was added from.
+struct Beaten {
+  const Step& before;  ///< that it was added to
+  std::string winner;
+  const std::vector<Racer>& racers;  ///< the winner among them
+};
+
+/// The same over the steps of a search.
+class LastContest {
+ public:
+  /// `winner` was added to the model of the step of this index.
+  void won(std::string winner, size_t step, std::vector<Racer> racers);
+  /// Other effects stand than the contest chose.
+  void forget() { racers_.clear(); }
+  /// Empty: the newest of `steps` does not have the winner, in whatever form, as the one thing
+  /// more.
+  std::optional<Beaten> beaten(const std::vector<Step>& steps) const;
+
+ private:
+  size_t step_ = 0;
+  std::string winner_;
+  std::vector<Racer> racers_;
+};
+
+/// Refits the leaders of a race and ranks them. Where nobody comes to the floor, the beaten run
+/// too, with their winner from where they stood before it (race_beside); empty: there are none.
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
+                                                      const std::optional<Beaten>& beaten,
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events);
 

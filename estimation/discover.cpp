@@ -101,6 +101,7 @@ class Search {
   /// A step with other effects than the last contest chose: who lost it has lost to another model.
   void stand_in(Step step) {
     losers_.clear();
+    last_contest_.forget();
     out_.steps.push_back(std::move(step));
   }
 
@@ -129,7 +130,8 @@ class Search {
       stand_in(swapped_step(std::move(*better)));
       return true;
     }
-    auto refitted = refit_leaders(workspace_, step, options_, events_);
+    auto refitted =
+        refit_leaders(workspace_, step, last_contest_.beaten(out_.steps), options_, events_);
     if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
     Contest& contest = std::get<Contest>(refitted);
     mesh_refitted_ = std::any_of(contest.refits.begin(), contest.refits.end(),
@@ -153,12 +155,14 @@ class Search {
   }
 
   /// Before another effect is asked for those that stand are asked for a wider form, the newest
-  /// first; a mesh that stands out is settled before them, or has been asked.
+  /// first; a mesh that stands out and may be all that is missing is settled before them, or has
+  /// been asked. (A form has to take half of what is left, too.)
   WentOn widened_form(bool mesh_was_asked) {
     const Step& step = newest();
     const auto& all = step.fitted.form.ingredients;
     for (const EffectScore& score : step.diagnosis.effects)
-      if (!mesh_was_asked && numerical(score.effect) && nameable(score, step.diagnosis))
+      if (!mesh_was_asked && may_be_all(score.effect, step.diagnosis) &&
+          nameable(score, step.diagnosis))
         return false;
     for (size_t at = all.size(); at-- > base_;) {
       const std::string name = all[at]->name();
@@ -209,7 +213,7 @@ class Search {
     Step leading;
     leading.name = leading.added = first.effect;
     leading.rivals = rivals_of(contest, first.score);
-    leading.raced = std::move(contest.raced);
+    leading.raced = raced(contest.racers);
     leading.fitted = first.fitted;
     together_ = std::move(second);
     stand_in(std::move(leading));
@@ -238,7 +242,7 @@ class Search {
     Refit& winner = contest.refits.front();
     Step next;
     next.name = next.added = winner.effect;
-    next.raced = std::move(contest.raced);
+    next.raced = raced(contest.racers);
     next.rivals = rivals_of(contest, winner.score);
     std::vector<const Refit*> equals;
     for (const auto& rival : contest.refits)
@@ -265,6 +269,7 @@ class Search {
     }
     if (!equals.empty() && out_.tie.empty()) out_.tie.push_back(next.added);
     for (const Refit* rival : equals) out_.tie.push_back(rival->effect);
+    last_contest_.won(next.added, out_.steps.size() - 1, std::move(contest.racers));
     out_.steps.push_back(std::move(next));
   }
 
@@ -367,6 +372,7 @@ class Search {
   bool mesh_refitted_ = false;  ///< in the last contest
   RefusedSwaps refused_swaps_;
   WiderForms wider_;
+  LastContest last_contest_;
   std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
   std::optional<Step> together_;  ///< second of a pair, once the first is written
   std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "estimation/extension.h"
+
 namespace hookeye {
 
 std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
@@ -16,11 +18,6 @@ Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
 }
 
 namespace {
-
-bool remeshes(const Ingredient& ingredient) {
-  const Effect* effect = find_effect(ingredient.name());
-  return effect && effect->remeshes(ingredient.variant());
-}
 
 /// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
 /// with which no effect is idle.
@@ -80,7 +77,7 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
   const double full = refit_score(current, yardstick);
   for (size_t i = first_effect; i + 1 < current.form.ingredients.size(); ++i) {
     const Ingredient& one = *current.form.ingredients[i];
-    if (remeshes(one) || stands(current, offset_of(current.form, i), one.parameters())) continue;
+    if (remeshed_by(one) || stands(current, offset_of(current.form, i), one.parameters())) continue;
     auto lighter = fit_without(workspace, current, i, options.fit);
     if (!lighter) continue;
     const double score = refit_score(*lighter, yardstick);
@@ -97,7 +94,7 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
   for (size_t i = first_effect; i < all.size(); ++i) {
     const auto own = all[i]->parameters();
     const Eigen::Index offset = offset_of(fitted.form, i);
-    bool null = !remeshes(*all[i]);
+    bool null = !remeshed_by(*all[i]);
     for (size_t k = 0; k < own.size(); ++k) {
       const auto at = offset + static_cast<Eigen::Index>(k);
       null = null && fitted.low[at] <= own[k].value && own[k].value <= fitted.high[at];
@@ -159,7 +156,7 @@ struct Without {
 };
 
 bool may_leave(const Ingredient& ingredient) {
-  return find_effect(ingredient.name()) && !remeshes(ingredient);
+  return find_effect(ingredient.name()) && !remeshed_by(ingredient);
 }
 
 std::optional<Without> diagnosed(Workspace& workspace, const Ingredient& dropped,
@@ -197,9 +194,7 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
                                     const DiscoverOptions& options, const DiscoverEvents& events) {
   std::optional<Swap> best;
   if (fitted.form.ingredients.size() < first_effect + 2 || at_floor(fitted, floor)) return best;
-  const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
-  const double pays = refit_score(fitted, yardstick) + kNameable;
-  double enough = pays;
+  double enough = kNameable;
   for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
     if (best && at_floor(best->in.fitted, floor)) break;
     const Ingredient& dropped = *fitted.form.ingredients[i];
@@ -212,8 +207,8 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
       if (refused.contains(asked)) continue;
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
       if (!refit) continue;
-      refit->score = refit_score(refit->fitted, yardstick);
-      if (refit->score < pays || same_form(*refit->fitted.form.ingredients.back(), dropped))
+      refit->score = score_above(refit->fitted, fitted, floor);
+      if (refit->score < kNameable || same_form(*refit->fitted.form.ingredients.back(), dropped))
         refused.emplace(asked, RefusedSwap{refit->fitted.form, refit->fitted.p});
       else if (refit->score >= enough)
         enough = refit->score, best = Swap{dropped.name(), std::move(*refit)};
@@ -224,9 +219,22 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
 
 namespace {
 
+/// Steps in half-size pictures stall where three times what `last` has over the floor remains
+/// (Racer::out_of_reach_of; where a mesh has to adjust, half as much again may still come home).
+bool falls_short(Workspace& workspace, Racer racer, const Racer& last, const TrialScale& scale,
+                 const FitOptions& options) {
+  const auto far = [&] { return racer.structured() > 3.0 * last.structured(); };
+  if (!far()) return false;
+  auto result = follow(workspace, racer.form, racer.trial.p, scale, options);
+  auto* followed = std::get_if<Followed>(&result);
+  if (!followed || !followed->stalled) return false;
+  racer.trial = std::move(followed->trial);
+  return far();
+}
+
 /// Those of `effects` that are within reach of the first of them where it is dropped, or may tie
-/// with it where no more is to be had, refitted.
-std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without,
+/// with it where no more is to be had, refitted, if they may come to what `last` leaves.
+std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without, const Fitted& last,
                                   const std::vector<std::string>& effects, bool ties_alone,
                                   const DiscoverOptions& options, const DiscoverEvents& events) {
   std::vector<Refit> out;
@@ -236,11 +244,16 @@ std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without,
   });
   auto raced = race(workspace, without.fitted, asked, options.fit);
   auto* racers = std::get_if<std::vector<Racer>>(&raced);
-  if (!racers) return out;
+  const auto scale = trial_scale(workspace, last.form, last.p, options.fit);
+  const auto* now = std::get_if<TrialScale>(&scale);
+  if (!racers || !now) return out;
+  const Racer stands{
+      effects.front(), last.form, Trial{last.p, now->chi, now->chi_validate, now->floor}, {}};
   for (const Racer& racer : *racers) {
     const Racer& first = racers->front();
     const bool behind = ties_alone ? !racer.may_tie_with(first) : racer.out_of_reach_of(first);
-    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)))
+    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)) ||
+        falls_short(workspace, racer, stands, *now, options.fit))
       continue;
     auto refitted = told_of_swap(racer.effect, effects.front(), events,
                                  [&] { return refit(workspace, racer, options.fit); });
@@ -281,16 +294,15 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
         workspace, *all[i], lighter ? std::optional(std::move(*lighter)) : std::nullopt, options);
     if (!without) return {};
     const bool ties_alone = at_floor(last, floor, kLeftByRenderers);
-    for (Refit& refit : refit_in_reach(workspace, *without, open, ties_alone, options, events))
+    for (Refit& refit :
+         refit_in_reach(workspace, *without, last, open, ties_alone, options, events))
       refits.push_back(std::move(refit));
   }
-  const Yardstick yardstick{&last, &floor, measured_noise2(last)};
-  const double now = refit_score(last, yardstick);
   TieAsked out;
   for (Refit& refit : refits) {
-    refit.score = refit_score(refit.fitted, yardstick);
-    if (refit.score > now - kTie) out.tie.push_back(refit.effect);
-    if (refit.score > now + kTie && (!out.better || refit.score > out.better->in.score))
+    refit.score = score_above(refit.fitted, last, floor);
+    if (refit.score > -kTie) out.tie.push_back(refit.effect);
+    if (refit.score > kTie && (!out.better || refit.score > out.better->in.score))
       out.better = Swap{tie.front(), std::move(refit)};
   }
   if (out.better)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "estimation/floor.h"
 
@@ -24,7 +25,7 @@ EvaluationOptions half_size(const FitOptions& options) {
 /// Parameters after `share` of the Gauss-Newton step.
 VectorXd after_step(const Scaling& scaling, const VectorXd& p, const NormalEquations& sums,
                     double share) {
-  const CondensedResidual condensed = condense(sums, scaling.dp_dx(p));
+  const CondensedResidual condensed = condense(within_bounds(sums, scaling, p), scaling.dp_dx(p));
   const VectorXd dx = -condensed.R.completeOrthogonalDecomposition().solve(condensed.z) * share;
   return bounded_step(scaling, p, dx);
 }
@@ -81,6 +82,34 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
   }
   return std::get<NumericalFailure>(std::move(seen));  // not even the start: a held-out example
+}
+
+double over_floor(const Trial& trial) {
+  const auto over = [&](double chi) {
+    return std::max(0.0, chi * chi - trial.floor * trial.floor);
+  };
+  return over(trial.chi_fit) + over(trial.chi_validate);
+}
+
+std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const ModelForm& form,
+                                                const VectorXd& start, const TrialScale& scale,
+                                                const FitOptions& options, int steps) {
+  constexpr double kStalled = 0.05;
+  TrialScale any = scale;  // the start may be worse than the model that it is held against
+  any.chi = std::numeric_limits<double>::infinity();
+  Followed out;
+  out.trial.p = start;
+  for (int step = 0; step < steps && !out.stalled; ++step) {
+    auto result = try_step(workspace, form, out.trial.p, any, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (step == 0 || failure->reason == "cancelled") return *failure;
+      break;
+    }
+    const double before = over_floor(out.trial);
+    out.trial = std::get<Trial>(std::move(result));
+    out.stalled = step > 0 && over_floor(out.trial) > (1.0 - kStalled) * before;
+  }
+  return out;
 }
 
 }  // namespace hookeye

@@ -32,4 +32,18 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
                                                const VectorXd& start, const TrialScale& scale,
                                                const FitOptions& options = {});
 
+/// Where steps from `start` lead in half-size pictures, at a small part of a fit's cost.
+struct Followed {
+  Trial trial;
+  /// The last step took less than a twentieth of what was over the floor: it ends about there.
+  bool stalled = false;
+};
+/// At most `steps` of them. Fails where the start has no equilibrium.
+std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const ModelForm& form,
+                                                const VectorXd& start, const TrialScale& scale,
+                                                const FitOptions& options = {}, int steps = 6);
+
+/// What is over the floor of the fitted and of the held-out photos, as chi^2, both together.
+double over_floor(const Trial& trial);
+
 }  // namespace hookeye

@@ -45,9 +45,13 @@ std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
   return effect->further_forms(model_without(fitted, at), narrow, parted(fitted, at).own);
 }
 
-std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow, size_t at,
-                                              const Effect::Further& further,
-                                              const FitOptions& options) {
+/// The model with another form of its ingredient, and where to start it.
+struct Reformed {
+  ModelForm form;
+  VectorXd start;
+};
+
+Reformed reformed(const Fitted& narrow, size_t at, const Effect::Further& further) {
   ModelForm form = narrow.form;
   form.ingredients[at] = further.form;
   const Parted values = parted(narrow, at);
@@ -56,27 +60,39 @@ std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted
   for (Eigen::Index i = 0; i < start.size(); ++i)
     start[i] = std::clamp(start[i], parameters[i].low, parameters[i].high);
   start = with_stiffness_of(narrow.form.realise(narrow.p), form, std::move(start));
+  return {std::move(form), std::move(start)};
+}
+
+std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow,
+                                              const Reformed& other, const FitOptions& options) {
   // From farther off than twice the narrow form's misfit, motions may be beyond full-size pictures.
-  const auto there = assess(workspace, form, start, options);
+  const auto there = assess(workspace, other.form, other.start, options);
   if (const auto* failure = std::get_if<NumericalFailure>(&there)) return *failure;
   FitOptions from_there = options;
   from_there.coarse_to_fine = misfit(std::get<Fitted>(there)) > 2.0 * misfit(narrow);
-  return fit(workspace, form, start, from_there);
+  return fit(workspace, other.form, other.start, from_there);
 }
 
 double over_floor(const Fitted& fitted, const Floor& floor) {
   return over_floor(fitted, floor, false) + over_floor(fitted, floor, true);
 }
 
+/// Half-size pictures, where a few steps cost what one does of a fit, show what pays() asks for,
+/// with a margin: the steps have stalled and four fifths of what is over the floor are left.
+bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale& narrow,
+                  const FitOptions& options) {
+  if (narrow.floor <= 0.0) return false;
+  const auto result = follow(workspace, other.form, other.start, narrow, options);
+  const auto* followed = std::get_if<Followed>(&result);
+  const Trial now{{}, narrow.chi, narrow.chi_validate, narrow.floor};
+  return followed && followed->stalled && over_floor(followed->trial) > 0.8 * over_floor(now);
+}
+
 /// Most of what was left goes with the form; where another effect is missing, a little more than
 /// its values cost goes with any.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
-  const Fitted& reference = misfit(wide) < misfit(narrow) ? wide : narrow;
-  const double noise2 = std::min(measured_noise2(wide), measured_noise2(narrow));
-  const Yardstick yardstick{&reference, &floor, noise2};
   return over_floor(wide, floor) < 0.5 * over_floor(narrow, floor) &&
-         refit_score(wide, yardstick) > refit_score(narrow, yardstick) + kTie &&
-         held_out_allows(wide, narrow, floor);
+         score_above(wide, narrow, floor) > kTie && held_out_allows(wide, narrow, floor);
 }
 
 /// The wide form's plainer one, where it has one that scores as well: all constants of a material
@@ -91,7 +107,7 @@ std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wid
   if (!form) return wide;
   const std::string words = form->name() + " as '" + form->variant() + "'";
   if (events.refitting) events.refitting(words);
-  auto result = fit_in(workspace, wide, at, {form, values}, options);
+  auto result = fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
   if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
     if (cancelled(*failure)) return *failure;
     return wide;
@@ -111,15 +127,19 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
   std::set<std::string> tried = {first};
   for (bool better = true; better && !at_floor(narrow, floor, kLeftByRenderers);) {
     better = false;
+    const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
     Fitted best = narrow;
     for (const auto& further : further_forms(narrow, at)) {
       if (!tried.insert(further.form->variant()).second) continue;
       if (better && at_floor(best, floor, kLeftByRenderers)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
+      const Reformed other = reformed(narrow, at, further);
+      if (gets_nowhere(workspace, other, std::get<TrialScale>(scale), options)) continue;
       if (events.refitting) events.refitting(words);
       FitOptions farther = options;
       farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
-      auto result = fit_in(workspace, narrow, at, further, farther);
+      auto result = fit_in(workspace, narrow, other, farther);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;

@@ -305,6 +305,50 @@ TEST(Contest, PairsAreRefittedTogether) {
   EXPECT_NEAR(s, 0.03, 0.003);
 }
 
+/// A field that was fitted alone has taken on what a soft clamp does. Who lost to it runs beside it
+/// from where neither was fitted.
+TEST(Contest, WhatAFieldTookOverIsFoundBesideIt) {
+  const SmallScene small(
+      {.hidden = "hidden:\n  - {effect: soft_clamp, variant: springs under base, values: "
+                 "{soft_clamp.base.k_normal: 0.003, soft_clamp.base.k_tangent: 0.001}}\n"
+                 "  - {effect: stiffness_field, variant: free gradient, values: "
+                 "{stiffness_field.gx: 0.5, stiffness_field.gz: -0.3}}\n"});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Step before;
+  before.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  before.diagnosis = std::get<Diagnosis>(diagnose(workspace, before.fitted));
+  const auto& scores = before.diagnosis.effects;
+  const auto field = std::find_if(scores.begin(), scores.end(), [](const auto& score) {
+    return score.effect == "stiffness_field";
+  });
+  ASSERT_TRUE(field != scores.end() && field->testable);
+  const auto racers =
+      std::get<std::vector<Racer>>(race(workspace, before.fitted, before.diagnosis, {}));
+  Step step;
+  step.fitted = std::get<Fitted>(add_effect(workspace, before.fitted, *field, {}));
+  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+
+  const auto chi_of_clamp = [](const std::vector<Racer>& ran) {
+    for (const Racer& racer : ran)
+      if (racer.effect == "soft_clamp") return racer.chi();
+    return std::numeric_limits<double>::infinity();
+  };
+  const auto behind =
+      std::get<std::vector<Racer>>(race(workspace, step.fitted, step.diagnosis, {}));
+  const auto beside =
+      std::get<std::vector<Racer>>(race_beside(workspace, before.fitted, *field, racers, {}));
+  EXPECT_LT(chi_of_clamp(beside), 0.3 * chi_of_clamp(behind));
+
+  const Beaten beaten{before, "stiffness_field", racers};
+  const auto contest = std::get<Contest>(refit_leaders(workspace, step, beaten, {}, {}));
+  ASSERT_FALSE(contest.refits.empty());
+  const Refit& best = contest.refits.front();
+  EXPECT_EQ(best.effect, "soft_clamp");
+  EXPECT_THAT(effects_in(best.fitted.form), testing::ElementsAre("stiffness_field", "soft_clamp"));
+  EXPECT_EQ(why_refused(step, contest.before, best), "");
+}
+
 TEST(Discover, CancelledSaysSo) {
   const SmallScene small({.told = "0.02"});
   Workspace workspace(small.scene);
