@@ -219,8 +219,8 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
 
 namespace {
 
-/// Steps in half-size pictures stall where three times what `last` has over the floor remains
-/// (Racer::out_of_reach_of; where a mesh has to adjust, half as much again may still come home).
+/// Steps in half-size pictures stall where three times what `last` has over the floor remains: the
+/// distance from which nobody in a race came to win (Racer::out_of_reach_of).
 bool falls_short(Workspace& workspace, Racer racer, const Racer& last, const TrialScale& scale,
                  const FitOptions& options) {
   const auto far = [&] { return racer.structured() > 3.0 * last.structured(); };
