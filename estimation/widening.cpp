@@ -38,11 +38,20 @@ Model model_without(const Fitted& fitted, size_t at) {
   return without.realise(joined(values.before, VectorXd(), values.after));
 }
 
+/// The effect's further forms; where others were added after it, first the smaller one, which the
+/// refit had asked while they were missing (a stiff place, and what a field took on of a clamp).
 std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
   const Ingredient& narrow = *fitted.form.ingredients[at];
   const Effect* effect = find_effect(narrow.name());
   if (!effect) return {};
-  return effect->further_forms(model_without(fitted, at), narrow, parted(fitted, at).own);
+  const Model without = model_without(fitted, at);
+  const VectorXd own = parted(fitted, at).own;
+  auto forms = effect->further_forms(without, narrow, own);
+  VectorXd fewer = own;
+  if (at + 1 < fitted.form.ingredients.size())
+    if (auto smaller = effect->smaller_form(without, narrow, fewer))
+      forms.insert(forms.begin(), {std::move(smaller), std::move(fewer)});
+  return forms;
 }
 
 /// The model with another form of its ingredient, and where to start it.

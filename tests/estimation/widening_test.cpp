@@ -119,6 +119,33 @@ TEST(Widening, TwoLayers) {
   EXPECT_NEAR(fitted.p[4], 2.0, 0.2);
 }
 
+/// Fitted alone a field takes on what the clamp does, and no one place says as much. Once the clamp
+/// stands beside it, one does.
+TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
+  const test::SmallScene small(
+      {.hidden = "hidden:\n  - {effect: stiffness_field, variant: free blob, values: "
+                 "{stiffness_field.a: -1.5, stiffness_field.x: 3, stiffness_field.y: -2, "
+                 "stiffness_field.z: 18, stiffness_field.radius: 5}}\n"
+                 "  - {effect: soft_clamp, variant: base, values: {soft_clamp.base.normal: 60, "
+                 "soft_clamp.base.tangent: 60}}\n",
+       .loads = kPressAndTwist});
+  Workspace workspace(small.scene);
+  ModelForm form = base_form(small.scene);
+  const size_t at = form.ingredients.size();
+  const Model model = form.realise(form.initial());
+  form.ingredients.push_back(find_effect("stiffness_field")->candidates(model, nullptr).front());
+  form.ingredients.push_back(find_effect("soft_clamp")->candidate(model, "base"));
+  ASSERT_TRUE(form.ingredients.back());
+  ASSERT_THAT(form.ingredients[at]->variant(), testing::StartsWith("field"));
+  const Fitted field = std::get<Fitted>(fit(workspace, form, form.initial()));
+  const Floor floor = measure_floor(*small.scene, field.evaluation);
+  ASSERT_FALSE(at_floor(field, floor, kLeftByRenderers));
+  const Fitted place = std::get<Fitted>(widened(workspace, field, at, floor, {}));
+  EXPECT_EQ(place.form.ingredients[at]->variant(), "free blob");
+  EXPECT_TRUE(at_floor(place, floor));
+  EXPECT_NEAR(place.p[4], 18.0, 0.2);
+}
+
 /// A stiffness that is linear along a direction: its logarithm bends.
 TEST(Widening, GradedStiffness) {
   const Fitted fitted = found(
