@@ -342,4 +342,33 @@ std::string refused_by(const Step& step, Refit with) {
   return why_refused(step, refit_score(step.fitted, yardstick), with);
 }
 
+std::variant<std::optional<Pair>, NumericalFailure> refit_on_finer_mesh(
+    Workspace& workspace, const Step& step, const Contest& contest, const DiscoverOptions& options,
+    const DiscoverEvents& events) {
+  const Refit& best = contest.refits.front();
+  const Floor& floor = step.diagnosis.floor;
+  if (numerical(best.effect) ||
+      over_floor(best.fitted, floor, false) > 0.5 * over_floor(step.fitted, floor, false) ||
+      held_out_allows(best.fitted, step.fitted, floor, least_fall(step.diagnosis, best.effect)))
+    return std::nullopt;
+  const auto diagnosed = diagnose(workspace, best.fitted, options.diagnosis);
+  if (auto* failure = std::get_if<NumericalFailure>(&diagnosed)) return *failure;
+  const auto& diagnosis = std::get<Diagnosis>(diagnosed);
+  for (const EffectScore& score : diagnosis.effects) {
+    if (!numerical(score.effect) || !nameable(score, diagnosis)) continue;
+    const std::string words = best.effect + " and " + score.effect;
+    if (events.refitting) events.refitting(words);
+    auto result = add_effect(workspace, best.fitted, score, options.fit);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (cancelled(*failure)) return *failure;
+      continue;
+    }
+    Fitted& both = std::get<Fitted>(result);
+    if (events.refitted) events.refitted(words, both);
+    if (refused_by(step, {best.effect, both, 0.0}).empty())
+      return Pair{best, {score.effect, std::move(both), 0.0}};
+  }
+  return std::nullopt;
+}
+
 }  // namespace hookeye

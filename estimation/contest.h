@@ -104,6 +104,14 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
                                                                 const DiscoverOptions& options,
                                                                 const DiscoverEvents& events);
 
+/// Held-out photos speak against the best of the contest, which takes more than half of what is
+/// over the floor from the fitted ones: beside so much less the mesh's own error may be all that
+/// they lost. The best and, where a finer mesh stands out beside it, that as the second; empty: it
+/// does not, or with it they speak against the best as well.
+std::variant<std::optional<Pair>, NumericalFailure> refit_on_finer_mesh(
+    Workspace& workspace, const Step& step, const Contest& contest, const DiscoverOptions& options,
+    const DiscoverEvents& events);
+
 /// Why a refit does not stand beside the step that it started from, whose score is `before`; ""
 /// where it does.
 std::string why_refused(const Step& step, double before, const Refit& with);

@@ -24,13 +24,17 @@ std::vector<std::string> effects_in(const ModelForm& form) {
 
 namespace {
 
+Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropped = {}) {
+  Step step;
+  step.name = step.added = std::move(effect);
+  step.dropped = std::move(dropped);
+  step.fitted = std::move(fitted);
+  return step;
+}
+
 /// The step in which one effect took another's place.
 Step swapped_step(Swap swap) {
-  Step step;
-  step.name = step.added = std::move(swap.in.effect);
-  step.dropped = {std::move(swap.out)};
-  step.fitted = std::move(swap.in.fitted);
-  return step;
+  return step_with(std::move(swap.in.effect), std::move(swap.in.fitted), {std::move(swap.out)});
 }
 
 /// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
@@ -173,11 +177,7 @@ class Search {
       if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
       auto& wide = std::get<std::optional<Fitted>>(result);
       if (!wide) continue;
-      Step next;
-      next.name = next.added = name;
-      next.dropped = {name};
-      next.fitted = std::move(*wide);
-      out_.steps.push_back(std::move(next));
+      out_.steps.push_back(step_with(name, std::move(*wide), {name}));
       return true;
     }
     return false;
@@ -223,18 +223,21 @@ class Search {
   WentOn add_pair(Contest& contest, int room) {
     const Step& step = newest();
     if (room < 2) return false;
-    if (at_floor(step.fitted, step.diagnosis.floor) &&
-        measured_explained(step.fitted, step.diagnosis))
-      return false;
-    auto tried = refit_pairs(workspace_, step, contest, options_, events_);
-    if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
-    auto& pair = std::get<std::optional<Pair>>(tried);
-    if (!pair || !why_refused(step, contest.before, pair->second).empty()) return false;
+    auto on_mesh = refit_on_finer_mesh(workspace_, step, contest, options_, events_);
+    if (auto* failure = std::get_if<NumericalFailure>(&on_mesh)) return *failure;
+    auto& pair = std::get<std::optional<Pair>>(on_mesh);
+    if (!pair) {
+      if (at_floor(step.fitted, step.diagnosis.floor) &&
+          measured_explained(step.fitted, step.diagnosis))
+        return false;
+      auto tried = refit_pairs(workspace_, step, contest, options_, events_);
+      if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
+      pair = std::get<std::optional<Pair>>(std::move(tried));
+      if (!pair || !why_refused(step, contest.before, pair->second).empty()) return false;
+    }
     refused_.clear();
-    Step second;
-    second.name = second.added = pair->second.effect;
-    second.fitted = std::move(pair->second.fitted);
-    add_two(pair->first, contest, std::move(second));
+    add_two(pair->first, contest,
+            step_with(std::move(pair->second.effect), std::move(pair->second.fitted)));
     return true;
   }
 
@@ -292,10 +295,7 @@ class Search {
       Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};
       if (events_.refitted) events_.refitted(score.effect, refit.fitted);
       if (!refused_by(step, refit).empty()) continue;
-      Step next;
-      next.name = next.added = score.effect;
-      next.fitted = std::move(refit.fitted);
-      out_.steps.push_back(std::move(next));
+      out_.steps.push_back(step_with(score.effect, std::move(refit.fitted)));
       return true;
     }
     return false;
@@ -306,11 +306,8 @@ class Search {
   bool dropped_unsupported() {
     auto lighter = drop_unsupported(workspace_, newest().fitted, out_.floor, base_, options_);
     if (!lighter || !unsupported_.insert(lighter->effect).second) return false;
-    Step next;
-    next.name = next.added = lighter->fitted.form.ingredients.back()->name();
-    next.dropped = {next.added, lighter->effect};
-    next.fitted = std::move(lighter->fitted);
-    stand_in(std::move(next));
+    const std::string last = lighter->fitted.form.ingredients.back()->name();
+    stand_in(step_with(last, std::move(lighter->fitted), {last, lighter->effect}));
     return true;
   }
 
