@@ -61,7 +61,9 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
       value_or_fail(resumed ? discover_from(bench.workspace, newest_step(run, bench), options, on)
                             : discover(bench.workspace, form, form.initial(), options, on));
   // What held-out photos alone show there are the values.
-  const std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
+  std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
+  if (const auto high = high_floor(found.floor); !high.empty())
+    hint += (hint.empty() ? "" : ". ") + high;
   run.update([&](nlohmann::json& timeline) {
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;

@@ -219,6 +219,19 @@ bool by_hand(const json& step) {
 
 }  // namespace
 
+std::string high_floor(const Floor& floor) {
+  // Photos that other renderers took keep 1.1 to 2.4 times their noise (docs/benchmarks.md).
+  constexpr double kUsual = 3.0;
+  if (floor.source != "rest photos" || floor.chi < kUsual) return "";
+  return fmt::format(
+      "the floor itself is {:.2f} times the told noise: the rest photos are missed by something "
+      "that "
+      "no smooth motion or brightness explains, as blur, gloss, a texture that is off or noise "
+      "that "
+      "was told too low. What is as large as that in every photo passes for noise here",
+      floor.chi);
+}
+
 std::string choice_table(const json& before, const json& step, double floor) {
   if (step.at("added").is_null()) return "";
   const std::string added = step.at("added");

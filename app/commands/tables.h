@@ -18,6 +18,10 @@ std::string steps_table(const nlohmann::json& timeline);
 /// floor, and how sure the choice is. Empty: nothing else stood out.
 std::string choice_table(const nlohmann::json& before, const nlohmann::json& step, double floor);
 
+/// That the rest photos are missed by far more than their told noise, which hides what is wrong
+/// with all photos alike; "" where they are not.
+std::string high_floor(const Floor& floor);
+
 /// "gravity", "strain_stiffening, without softening".
 std::string name_of(const Step& step);
 /// "1.234"; "-" where no photo counts (chi 0), as where nothing is held out.

@@ -117,11 +117,14 @@ struct Form {
   bool hard = false, tilts = false;
   int side = -1;  ///< -1: tilts
   Vector3d out = Vector3d::Zero(), about = Vector3d::Zero();
+  /// Of a hard one. It is written, as the modulus that it was taken from is fitted further.
+  double stiffness = 0.0;
 
   std::string variant() const {
     const char* kind = hard ? "hard plane" : "cushion";
-    if (!tilts) return fmt::format("{} on side {}", kind, kSides[side]);
-    return fmt::format("{} towards {}, tilting about {}", kind, digits(out), digits(about));
+    const std::string how = stiffness > 0.0 ? fmt::format(", stiffness {:g}", stiffness) : "";
+    if (!tilts) return fmt::format("{} on side {}{}", kind, kSides[side], how);
+    return fmt::format("{} towards {}, tilting about {}{}", kind, digits(out), digits(about), how);
   }
   /// `values`: position, stiffness of a cushion, two tilts.
   Plane plane(const VectorXd& values) const {
@@ -135,15 +138,17 @@ struct Form {
 };
 
 std::optional<Form> form_in(const std::string& variant) {
+  const auto n = numbers_in(variant);
   for (const bool hard : {false, true}) {
+    const auto stiffness = [&](size_t at) { return hard && n.size() == at + 1 ? n[at] : 0.0; };
     Form form{.hard = hard};
+    form.stiffness = stiffness(0);
     for (form.side = 0; form.side < 6; ++form.side) {
       form.out = outward(form.side);
       if (variant == form.variant()) return form;
     }
-    const auto n = numbers_in(variant);
-    if (n.size() != 6) continue;
-    form = {hard, true, -1, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (n.size() < 6) continue;
+    form = {hard, true, -1, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, stiffness(6)};
     if (variant == form.variant() && form.out.norm() > 0.0) return form;
   }
   return std::nullopt;
@@ -262,9 +267,21 @@ class FloorContact final : public Effect {
       if (plane.out.dot(outward(side)) < std::cos(kHalfStep)) continue;
       values.conservativeResize(values.size() - 2);
       values[0] = plane.through.dot(outward(side));
-      return refitted(model, {form->hard, false, side, outward(side)});
+      return refitted(model,
+                      {form->hard, false, side, outward(side), Vector3d::Zero(), form->stiffness});
     }
     return nullptr;
+  }
+
+  /// A cushion as stiff as the hard plane is, and free: a corner sinks into what is hard to a face.
+  std::vector<Further> further_forms(const Model& model, const Ingredient& narrow,
+                                     const VectorXd& values) const override {
+    auto form = form_in(narrow.variant());
+    if (!form || !form->hard) return {};
+    VectorXd start(values.size() + 1);
+    start << values[0], form->stiffness, values.tail(values.size() - 1);
+    form->hard = false, form->stiffness = 0.0;
+    return {{refitted(model, *form), start}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -328,10 +345,12 @@ class FloorContact final : public Effect {
             false};
   }
 
-  std::shared_ptr<const Ingredient> refitted(const Model& model, const Form& form) const {
+  std::shared_ptr<const Ingredient> refitted(const Model& model, Form form) const {
     const Scene& scene = *model.scene;
     const Units& units = scene.capture.units;
     const double k = 0.1 * initial_shear_modulus(model.energy) / body_size(scene).size;
+    // A traction of mu/5 sinks into a hard one by 0.2 % of the size.
+    if (form.hard && form.stiffness <= 0.0) form.stiffness = rounded(1e3 * k);
     IngredientSpec spec;
     spec.name = name();
     spec.variant = form.variant();
@@ -348,9 +367,8 @@ class FloorContact final : public Effect {
            0.0, -0.8, 0.8, 0.05, false});
     }
     spec.touches = {.loading = true};
-    // A traction of mu/5 sinks into a hard one by 0.2 % of the size.
-    spec.apply = [form, hard = 1e3 * k](const VectorXd& values, Model& m) {
-      stand(m, form.plane(values), form.hard ? hard : values[1]);
+    spec.apply = [form](const VectorXd& values, Model& m) {
+      stand(m, form.plane(values), form.hard ? form.stiffness : values[1]);
     };
     return make_ingredient(std::move(spec));
   }

@@ -12,6 +12,7 @@ namespace {
 
 const char* const kGradient = "free gradient";
 const char* const kLayers = "free layers across";
+const char* const kBall = "free ball";
 /// Divisions of an element's edges whose nodes stand for its inside.
 const int kDivisions = 4;
 
@@ -36,23 +37,50 @@ VectorXd gradient_field(const Scene& scene, const VectorXd& values) {
   return u.array() * (1.0 + values[3] * u.array());
 }
 
-/// Log of the mean over every element of exp(a s), s rising from 0 to 1 through the plane as the
-/// logistic function; values a, angle1, angle2, offset, thickness.
-VectorXd layers_field(const Scene& scene, const Vector3d& across, const VectorXd& values) {
+/// Log of the mean over every element of exp(a s), s = 1 / (1 + exp(-t)) rising from 0 to 1 where
+/// t(X) passes 0.
+template <class Through>
+VectorXd stepped(const TetMesh& mesh, double a, const Through& t) {
   static const Eigen::Matrix4Xd inside = points_inside();
-  const TetMesh& mesh = scene.body->mesh;
+  VectorXd log_factor(mesh.size());
+  for (int e = 0; e < mesh.size(); ++e) {
+    Eigen::Matrix<double, 3, 4> corners;
+    for (int k = 0; k < 4; ++k) corners.col(k) = mesh.X.col(mesh.elements(k, e));
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < inside.cols(); ++i)
+      sum += std::exp(a / (1.0 + std::exp(-t(Vector3d(corners * inside.col(i))))));
+    log_factor[e] = std::log(sum / static_cast<double>(inside.cols()));
+  }
+  return log_factor;
+}
+
+/// Beyond a plane; values a, angle1, angle2, offset, thickness.
+VectorXd layers_field(const Scene& scene, const Vector3d& across, const VectorXd& values) {
   const Vector3d centre = body_size(scene).centre;
   const auto [first, second] = normal_axes(across);
   const Vector3d n = rotation_of(values[1] * first + values[2] * second) * across.normalized();
-  VectorXd log_factor(mesh.size());
-  for (int e = 0; e < mesh.size(); ++e) {
-    Eigen::RowVector4d t;
-    for (int k = 0; k < 4; ++k)
-      t[k] = (n.dot(mesh.X.col(mesh.elements(k, e)) - centre) - values[3]) / values[4];
-    const Eigen::ArrayXd s = 1.0 / (1.0 + (-(t * inside).array()).exp());
-    log_factor[e] = std::log((values[0] * s).exp().mean());
-  }
-  return log_factor;
+  return stepped(scene.body->mesh, values[0],
+                 [&](const Vector3d& X) { return (n.dot(X - centre) - values[3]) / values[4]; });
+}
+
+/// Within a ball; values a, its centre, radius, thickness of its edge.
+VectorXd ball_field(const Scene& scene, const VectorXd& values) {
+  const Vector3d centre = values.segment<3>(1);
+  return stepped(scene.body->mesh, values[0],
+                 [&](const Vector3d& X) { return (values[4] - (X - centre).norm()) / values[5]; });
+}
+
+/// Over which a jump is smeared: thinner is a jump to every mesh, thicker than the body a gradient.
+Parameter thickness(const Model& model) {
+  const double size = body_size(*model.scene).size;
+  return {"stiffness_field.thickness",
+          model.scene->capture.units.length,
+          "over which the stiffness changes",
+          0.05 * size,
+          0.01 * size,
+          size,
+          0.05 * size,
+          true};
 }
 
 std::shared_ptr<const Ingredient> gradient() {
@@ -85,12 +113,23 @@ std::shared_ptr<const Ingredient> layers(const Model& model, const Vector3d& acr
       {"stiffness_field.angle2", "rad", "second angle of the plane", 0.0, -3.2, 3.2, 0.2, false},
       {"stiffness_field.offset", length, "place of the plane from the body's middle", 0.0,
        -0.5 * body.size, 0.5 * body.size, 0.1 * body.size, false},
-      // thinner than that is a jump to every mesh; thicker than the body a gradient
-      {"stiffness_field.thickness", length, "over which the stiffness changes", 0.05 * body.size,
-       0.01 * body.size, body.size, 0.05 * body.size, true}};
+      thickness(model)};
   spec.touches = {.energy = true};
   spec.apply = [across](const VectorXd& v, Model& m) {
     if (v[0] != 0.0) scale_energy(m, layers_field(*m.scene, across, v));
+  };
+  return make_ingredient(std::move(spec));
+}
+
+std::shared_ptr<const Ingredient> ball(const Model& model) {
+  IngredientSpec spec;
+  spec.name = "stiffness_field";
+  spec.variant = kBall;
+  spec.parameters = free_place(model);
+  spec.parameters.push_back(thickness(model));
+  spec.touches = {.energy = true};
+  spec.apply = [](const VectorXd& v, Model& m) {
+    if (v[0] != 0.0) scale_energy(m, ball_field(*m.scene, v));
   };
   return make_ingredient(std::move(spec));
 }
@@ -134,12 +173,27 @@ void scale_energy(Model& model, const VectorXd& log_factor) {
     part.weight = part.weight.size() == 0 ? factor : VectorXd(part.weight.cwiseProduct(factor));
 }
 
+std::vector<Parameter> free_place(const Model& model) {
+  const BodySize body = body_size(*model.scene);
+  const std::string length = model.scene->capture.units.length;
+  std::vector<Parameter> all = {
+      {"stiffness_field.a", "", "log of the stiffness factor", 0.0, -4.0, 4.0, 0.3, false}};
+  for (int i = 0; i < 3; ++i)
+    all.push_back({fmt::format("stiffness_field.{}", "xyz"[i]), length,
+                   fmt::format("centre of the place, {}", "xyz"[i]), body.centre[i], body.low[i],
+                   body.high[i], 0.1 * body.size, false});
+  all.push_back({"stiffness_field.radius", length, "radius of the place", 0.12 * body.size,
+                 0.02 * body.size, body.size, 0.1 * body.size, true});
+  return all;
+}
+
 bool is_graded(const std::string& variant) {
-  return variant == kGradient || starts_with(variant, kLayers);
+  return variant == kGradient || variant == kBall || starts_with(variant, kLayers);
 }
 
 std::shared_ptr<const Ingredient> graded_form(const Model& model, const std::string& variant) {
   if (variant == kGradient) return gradient();
+  if (variant == kBall) return ball(model);
   const auto n = numbers_in(variant);
   if (!starts_with(variant, kLayers) || n.size() != 3) return nullptr;
   return layers(model, Vector3d(n[0], n[1], n[2]));
@@ -161,6 +215,14 @@ std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& 
           {layers(model, across), in_layers}};
 }
 
+Effect::Further ball_like(const Model& model, const VectorXd& blob) {
+  VectorXd values(6);
+  values << blob[0] / std::sqrt(8.0), blob.segment<3>(1),
+      std::cbrt(6.0 * std::sqrt(EIGEN_PI)) * blob[4], 0.0;
+  values[5] = 0.1 * values[4];
+  return {ball(model), values};
+}
+
 std::string graded_sentence(const Model& model, const Ingredient& ingredient,
                             const VectorXd& values) {
   const std::string length = model.scene->capture.units.length;
@@ -171,6 +233,10 @@ std::string graded_sentence(const Model& model, const Ingredient& ingredient,
                        vector_text(g.norm() > 0.0 ? Vector3d(g.normalized()) : g),
                        figure(field.minCoeff()), figure(field.maxCoeff()));
   }
+  if (ingredient.variant() == kBall)
+    return fmt::format("a ball {} times as stiff as the rest, of radius {} {} around {}",
+                       figure(std::exp(values[0])), figure(values[4]), length,
+                       vector_text(values.segment<3>(1), 1));
   const auto n = numbers_in(ingredient.variant());
   const Vector3d across(n.at(0), n.at(1), n.at(2));
   const auto [first, second] = normal_axes(across);

@@ -9,6 +9,7 @@ namespace hookeye {
 namespace {
 
 const int kFieldBumps = 16, kBlobs = 16;
+const char* const kFreeBlob = "free blob";
 
 /// Element forces of what a field scales. At its null that is every part, for a candidate comes
 /// last; once it is in, the parts with weights (an effect added after it appends its part without
@@ -48,7 +49,7 @@ std::pair<Vector3d, double> likest_blob(const TetMesh& mesh, const std::vector<V
 }
 
 /// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
-/// The refit may go on to one that changes along a direction, or in two layers
+/// The refit may go on to one that changes along a direction, in two layers or within a ball
 /// (graded_stiffness.h).
 class StiffnessField final : public Effect {
  public:
@@ -59,7 +60,7 @@ class StiffnessField final : public Effect {
     return "Some part of the body is stiffer or softer than the rest: an inclusion, a void, "
            "uneven cure. A field can imitate much else (soft clamps, wrong loads), so it is "
            "believed only where one blob, or held-out examples, say the same. The refit goes on to "
-           "a stiffness that changes along a direction and to two layers.";
+           "a ball with an edge, to a stiffness that changes along a direction and to two layers.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -75,7 +76,7 @@ class StiffnessField final : public Effect {
 
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    if (variant == "free blob") return free_blob(model);
+    if (variant == kFreeBlob) return free_blob(model);
     if (auto graded = graded_form(model, variant)) return graded;
     if (const auto place = blob_in(variant))
       return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>());
@@ -121,7 +122,9 @@ class StiffnessField final : public Effect {
     if (const VectorXd& before = one.energy.parts[0].weight; before.size() > 0)
       factor = (before.array() > 0.0).select(factor.cwiseQuotient(before), 1.0);
     if (factor.size() == 0) factor = VectorXd::Ones(model.scene->body->mesh.size());
-    return further_grades(model, factor.array().log());
+    auto all = further_grades(model, factor.array().log());
+    if (refitted.variant() == kFreeBlob) all.insert(all.begin(), ball_like(model, values));
+    return all;
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -193,19 +196,10 @@ class StiffnessField final : public Effect {
   }
 
   std::shared_ptr<const Ingredient> free_blob(const Model& model) const {
-    const BodySize body = body_size(*model.scene);
-    const std::string length = model.scene->capture.units.length;
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = "free blob";
-    spec.parameters = {amplitude("stiffness_field.a")};
-    for (int i = 0; i < 3; ++i)
-      spec.parameters.push_back({fmt::format("stiffness_field.{}", "xyz"[i]), length,
-                                 fmt::format("centre of the blob, {}", "xyz"[i]), body.centre[i],
-                                 body.low[i], body.high[i], 0.1 * body.size, false});
-    spec.parameters.push_back({"stiffness_field.radius", length, "radius of the blob",
-                               0.12 * body.size, 0.02 * body.size, body.size, 0.1 * body.size,
-                               true});
+    spec.variant = kFreeBlob;
+    spec.parameters = free_place(model);
     spec.touches = {.energy = true};
     spec.apply = [](const VectorXd& v, Model& m) {
       if (v[0] == 0.0) return;

@@ -68,6 +68,14 @@ TEST(Text, ADiagnosisFitsAHundredColumns) {
   EXPECT_THAT(text, HasSubstr("a word or two"));
 }
 
+/// Photos that are blurred from rest on are at "the floor" of such photos.
+TEST(Text, AFloorFarAboveTheToldNoiseIsTold) {
+  EXPECT_EQ(high_floor({.chi = 2.4, .source = "rest photos"}), "");
+  EXPECT_EQ(high_floor({.chi = 5.44, .source = "noise model"}), "");
+  EXPECT_THAT(high_floor({.chi = 5.44, .source = "rest photos"}),
+              HasSubstr("5.44 times the told noise"));
+}
+
 /// Effects that stood out are told whether they were tried or not.
 TEST(Text, AChoiceTellsWhoWasNotTried) {
   const auto before = nlohmann::json::parse(R"({"diagnosis": [

@@ -10,16 +10,8 @@
 namespace hookeye {
 namespace {
 
+using test::base_step;
 using test::SmallScene;
-
-/// The base model, fitted and diagnosed.
-Step base_step(Workspace& workspace) {
-  const ModelForm form = base_form(workspace.scene().shared_from_this());
-  Step step;
-  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
-  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
-  return step;
-}
 
 /// Two effects of which each alone leaves much: refitted together they take it all.
 TEST(Contest, PairsAreRefittedTogether) {

@@ -67,8 +67,7 @@ TEST(Fit, ComesHomeFromAModulusThatIsAGuess) {
 TEST(Intervals, ReachForTheFinerMesh) {
   const SmallScene small({.told = "0.021", .truth_mesh = "0.5", .same_renderer = true});
   Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  Fitted fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  Fitted fitted = test::base_fit(workspace);
   const Diagnosis diagnosis = std::get<Diagnosis>(diagnose(workspace, fitted));
   ASSERT_EQ(diagnosis.mesh_shift.size(), 1);
   const double off = 0.02 - fitted.p[0], low = fitted.low[0], high = fitted.high[0];

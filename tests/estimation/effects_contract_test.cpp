@@ -321,11 +321,14 @@ TEST(Catalogue, SmallerFormsSayTheSameWhereOneValueStandsOut) {
     for (Eigen::Index k = 0; k < nulls.size(); ++k) {
       VectorXd values = nulls;
       values[k] = some_values(*c.ingredient)[k];
-      // a hard floor is the cushion that is a thousand times as stiff as it is declared
-      if (c.ingredient->variant().rfind("cushion", 0) == 0) values[1] = 1e3 * nulls[1];
       VectorXd fewer = values;
       const auto smaller = c.effect->smaller_form(base_model(), *c.ingredient, fewer);
       if (!smaller) break;
+      if (c.ingredient->variant().rfind("cushion", 0) == 0) {
+        // a hard floor is the cushion that is as stiff as it says, a thousand times the declared
+        values[1] = numbers_in(smaller->variant()).back();
+        EXPECT_NEAR(values[1], 1e3 * nulls[1], 0.1 * nulls[1]);
+      }
       EXPECT_LT(smaller->parameters().size(), c.ingredient->parameters().size()) << c.label();
       const ModelForm form = extended(base(), c.ingredient), other = extended(base(), smaller);
       const VectorXd expected = signature(form.realise(with_values(form, values)), q);
@@ -335,6 +338,34 @@ TEST(Catalogue, SmallerFormsSayTheSameWhereOneValueStandsOut) {
     }
   }
   EXPECT_GT(tried, 0);
+}
+
+/// The modulus that a hard floor's stiffness was taken from is fitted further: read back, it is the
+/// same floor.
+TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
+  const Effect& effect = *find_effect("floor_contact");
+  VectorXd values = Eigen::Vector2d(12.0, 1e-4);
+  const auto cushion = effect.candidate(base_model(), "cushion on side +x");
+  ASSERT_TRUE(cushion);
+  const auto hard = effect.smaller_form(base_model(), *cushion, values);
+  ASSERT_TRUE(hard);
+  const Model stiffer = base().realise(2.0 * base().initial());
+  ASSERT_GT(initial_shear_modulus(stiffer.energy),
+            1.5 * initial_shear_modulus(base_model().energy));
+  const auto read = effect.candidate(stiffer, hard->variant());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->variant(), hard->variant());
+  const VectorXd q = deformed_state(*block_scene());
+  const ModelForm form = extended(base(), hard), other = extended(base(), read);
+  EXPECT_EQ(signature(form.realise(with_values(form, values)), q),
+            signature(other.realise(with_values(other, values)), q));
+  // and as soft as it is, it is the cushion that a refit goes on to
+  const auto further = effect.further_forms(base_model(), *hard, values);
+  ASSERT_EQ(further.size(), 1u);
+  EXPECT_EQ(further[0].form->variant(), cushion->variant());
+  const ModelForm wide = extended(base(), further[0].form);
+  EXPECT_EQ(signature(wide.realise(with_values(wide, further[0].values)), q),
+            signature(form.realise(with_values(form, values)), q));
 }
 
 /// A stiff place in a field whose other values are all the same: that is the modulus' own.

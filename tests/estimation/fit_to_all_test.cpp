@@ -25,11 +25,9 @@ test::SmallScene softened(const std::string& last) {
 }
 
 /// The capture's own model, fitted, and the effect from its null in the form `variant`.
-Fitted fitted_with(Workspace& workspace, const Scene& scene, const std::string& effect,
-                   const std::string& variant) {
-  const ModelForm form = base_form(scene.shared_from_this());
-  const Fitted base = std::get<Fitted>(fit(workspace, form, form.initial()));
-  ModelForm with = form;
+Fitted fitted_with(Workspace& workspace, const std::string& effect, const std::string& variant) {
+  const Fitted base = test::base_fit(workspace);
+  ModelForm with = base.form;
   with.ingredients.push_back(find_effect(effect)->candidate(realised(base), variant));
   VectorXd start(base.p.size() + 1);
   start << base.p, 0.05;
@@ -44,7 +42,7 @@ double held_out_r2(Workspace& workspace, const Fitted& fitted, const VectorXd& p
 TEST(FitToAll, TheSpreadIsWhatHeldOutPhotosShowOfTheValuesErrors) {
   const test::SmallScene small = softened("move: [0, 0, -0.06]");
   Workspace workspace(small.scene);
-  const Fitted fitted = fitted_with(workspace, *small.scene, "softening", "from press on");
+  const Fitted fitted = fitted_with(workspace, "softening", "from press on");
   const auto V =
       parameter_covariance(fitted.evaluation, fitted.form.parameters(), fitted.p).determined;
   // One value is hardly known: a standard deviation of it, with what goes with it of the others.
@@ -62,7 +60,7 @@ TEST(FitToAll, TheSpreadIsWhatHeldOutPhotosShowOfTheValuesErrors) {
 TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
   const test::SmallScene small = softened("move: [0, 0, -0.06]");
   Workspace workspace(small.scene);
-  Fitted fitted = fitted_with(workspace, *small.scene, "softening", "from press on");
+  Fitted fitted = fitted_with(workspace, "softening", "from press on");
   Diagnosis diagnosis;
   const Floor& floor = diagnosis.floor = measure_floor(*small.scene, fitted.evaluation);
   // Two standard deviations off, as one of twenty captures is.
@@ -97,7 +95,7 @@ TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
 TEST(FitToAll, ValuesThatAreWellKnownExcuseNothing) {
   const test::SmallScene small = softened("force: [0, 0.01, 0.2]");
   Workspace workspace(small.scene);
-  const Fitted wrong = fitted_with(workspace, *small.scene, "creep", "steadily with the order");
+  const Fitted wrong = fitted_with(workspace, "creep", "steadily with the order");
   Diagnosis diagnosis;
   Floor& floor = diagnosis.floor = measure_floor(*small.scene, wrong.evaluation);
   // As if the fitted photos were explained: they are not by this.
@@ -118,7 +116,7 @@ TEST(FitToAll, WhatNoValueExplainsIsNotLetOff) {
       for (LoadSpec& load : example.loads)
         *load.force += 0.012 * load.force->norm() * Vector3d::UnitX();
   Workspace workspace(scene);
-  const Fitted fitted = fitted_with(workspace, *scene, "softening", "from press on");
+  const Fitted fitted = fitted_with(workspace, "softening", "from press on");
   Diagnosis diagnosis;
   const Floor& floor = diagnosis.floor = measure_floor(*scene, fitted.evaluation);
   ASSERT_TRUE(spoils_held_out(fitted, floor));
@@ -137,7 +135,7 @@ class CreepOfTwoLoads : public testing::Test {
                 .loads = ""}),
         workspace_(small_.scene) {}
   Fitted fitted_with(const std::string& effect, const std::string& variant) {
-    return hookeye::fitted_with(workspace_, *small_.scene, effect, variant);
+    return hookeye::fitted_with(workspace_, effect, variant);
   }
   test::SmallScene small_;
   Workspace workspace_;
@@ -161,7 +159,7 @@ TEST_F(CreepOfTwoLoads, TellsItsRivalsApartWhereAllAreFitted) {
   for (ExampleSpec& example : scene->capture.examples) example.validate = false;
   Workspace workspace(scene);
   FitToAll all;
-  all.fitted = hookeye::fitted_with(workspace, *scene, "softening", "from side on");
+  all.fitted = hookeye::fitted_with(workspace, "softening", "from side on");
   const Floor floor = measure_floor(*scene, all.fitted.evaluation);
   const size_t base = base_form(scene).ingredients.size();
   const auto tie = [&](const std::vector<Contested>& past) {
@@ -174,7 +172,7 @@ TEST_F(CreepOfTwoLoads, TellsItsRivalsApartWhereAllAreFitted) {
   // Whoever took the winner's place answers for it.
   EXPECT_THAT(tie({{"gravity", {}, {creep}}, {"softening", {"gravity"}, {}}}),
               testing::ElementsAre("softening", "creep"));
-  all.fitted = hookeye::fitted_with(workspace, *scene, "creep", "steadily with the order");
+  all.fitted = hookeye::fitted_with(workspace, "creep", "steadily with the order");
   EXPECT_THAT(tie({{"creep", {}, {{"softening", -1.0, floor.chi, 5.0}}}}), testing::IsEmpty());
 }
 

@@ -13,12 +13,8 @@
 namespace hookeye {
 namespace {
 
+using test::base_fit;
 using test::SmallScene;
-
-Fitted base_fit(Workspace& workspace) {
-  const ModelForm form = base_form(workspace.scene().shared_from_this());
-  return std::get<Fitted>(fit(workspace, form, form.initial()));
-}
 
 /// A weight is a body force that is the same everywhere and in all examples.
 TEST(FreeForm, FindsAWeightWithoutItsName) {

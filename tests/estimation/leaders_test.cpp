@@ -1,6 +1,7 @@
 // What a diagnosis names: what leads, what ties with it, what is too little.
 #include <gmock/gmock.h>
 
+#include "estimation/contest.h"
 #include "estimation/diagnosis.h"
 #include "estimation/verdict.h"
 
@@ -50,6 +51,16 @@ TEST(Leaders, TiesAreDeclared) {
   // The information criterion of its best form puts one before the leader.
   EXPECT_THAT(leaders(of({scored("gravity", 50.0, 40.0), scored("pressure", 40.0, 41.0)})),
               ElementsAre("gravity", "pressure"));
+}
+
+TEST(Leaders, TheMeshMayBeAllWhereItExplainsMoreThanHalf) {
+  EffectScore mesh = scored("mesh_resolution", 50.0), weight = scored("gravity", 60.0);
+  mesh.explains = 0.6, weight.explains = 0.9;
+  EXPECT_TRUE(may_be_all("mesh_resolution", of({weight, mesh})));
+  EXPECT_FALSE(may_be_all("gravity", of({weight, mesh}))) << "no error of the computation";
+  mesh.explains = 0.4;
+  EXPECT_FALSE(may_be_all("mesh_resolution", of({weight, mesh})));
+  EXPECT_FALSE(may_be_all("mesh_resolution", of({weight})));
 }
 
 TEST(Leaders, TheMeshTiesWithNobody) {

@@ -46,6 +46,19 @@ SmallScene::SmallScene(const SmallCapture& capture) {
   scene = load_scene(read_capture(std::get<Synthesis>(made).capture));
 }
 
+Fitted base_fit(Workspace& workspace) {
+  const ModelForm form = base_form(workspace.scene().shared_from_this());
+  return std::get<Fitted>(fit(workspace, form, form.initial()));
+}
+
+Step base_step(Workspace& workspace) {
+  Step step;
+  step.name = "base";
+  step.fitted = base_fit(workspace);
+  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+  return step;
+}
+
 Discovery discover(const SmallScene& small, const DiscoverOptions& options) {
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);

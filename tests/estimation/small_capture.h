@@ -31,6 +31,10 @@ class SmallScene {
   TemporaryFolder folder_;
 };
 
+/// The capture's own model, fitted; as a step, diagnosed too.
+Fitted base_fit(Workspace& workspace);
+Step base_step(Workspace& workspace);
+
 /// The whole search in it; throws where it fails.
 Discovery discover(const SmallScene& small, const DiscoverOptions& options = {});
 

@@ -22,10 +22,9 @@ Discovery explained(const test::SmallCapture& capture, const std::vector<std::st
 }
 
 /// The model with these fitted, one after the other, and what was diagnosed before the last.
-Step with_effects(Workspace& workspace, const ModelForm& form,
-                  const std::vector<std::string>& effects) {
+Step with_effects(Workspace& workspace, const std::vector<std::string>& effects) {
   Step step;
-  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
+  step.fitted = test::base_fit(workspace);
   for (const std::string& effect : effects) {
     step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
     const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
@@ -82,15 +81,14 @@ TEST(Swaps, ARefusedOneIsNotAskedTwice) {
            "\n  - {effect: creep, variant: steadily with the order, values: {creep.c: 0.812}}\n",
        .seed = 3});
   Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  const Step step = with_effects(workspace, form, {"creep", "gravity"});
+  const size_t first = base_form(small.scene).ingredients.size();
+  const Step step = with_effects(workspace, {"creep", "gravity"});
   RefusedSwaps refused;
   const auto asked = [&] {
     std::vector<std::string> words;
     DiscoverEvents events;
     events.refitting = [&](const std::string& one) { words.push_back(one); };
-    swap_for_better(workspace, step.fitted, step.diagnosis.floor, form.ingredients.size(), refused,
-                    {}, events);
+    swap_for_better(workspace, step.fitted, step.diagnosis.floor, first, refused, {}, events);
     return words;
   };
   EXPECT_THAT(asked(), testing::Contains("softening in place of creep"));
@@ -101,7 +99,7 @@ TEST(Swaps, ARefusedOneIsNotAskedTwice) {
     DiscoverEvents events;
     events.refitting = [&](const std::string&) { ++*refits; };
     const auto of = ask_tie_again(workspace, step.fitted, {"creep", "softening"},
-                                  step.diagnosis.floor, form.ingredients.size(), known, {}, events);
+                                  step.diagnosis.floor, first, known, {}, events);
     return of.has_value() && of->tie.empty() && !of->better;
   };
   int with = 0, without = 0;
@@ -117,10 +115,9 @@ TEST(Swaps, WhatIsNotSupportedLeaves) {
   const test::SmallScene small(
       {.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9000}}\n"});
   Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  const Step step = with_effects(workspace, form, {"gravity", "swelling"});
+  const size_t first = base_form(small.scene).ingredients.size();
+  const Step step = with_effects(workspace, {"gravity", "swelling"});
   ASSERT_THAT(effects_in(step.fitted.form), testing::ElementsAre("gravity", "swelling"));
-  const size_t first = form.ingredients.size();
   const Floor floor = step.diagnosis.floor;
   const auto lighter = drop_unsupported(workspace, step.fitted, floor, first, {});
   ASSERT_TRUE(lighter.has_value());

@@ -16,20 +16,11 @@ using testing::ElementsAre;
 const char* const kWeight =
     "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9650}}\n";
 
-Step fitted_base(Workspace& workspace, const ModelForm& form) {
-  Step step;
-  step.name = "base";
-  step.fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
-  return step;
-}
-
 /// A swollen body explains part of a weight. Once the weight is found it does nothing, and goes.
 TEST(Discover, AnEarlierEffectThatALaterOneMakesIdleIsDropped) {
   const SmallScene small({.hidden = kWeight});
   Workspace workspace(small.scene);
-  const ModelForm form = base_form(small.scene);
-  Step step = fitted_base(workspace, form);
-  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+  Step step = test::base_step(workspace);
   const auto swelling =
       std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
                    [](const EffectScore& score) { return score.effect == "swelling"; });
@@ -311,10 +302,7 @@ TEST(Diagnose, APhotoThatIsTooBrightFromTheStartIsNoCorrelatedNoise) {
     const SmallScene small(
         {.hidden = std::string("hidden:\n  - {effect: ") + hidden + ", rms_px: 1.5}\n"});
     Workspace workspace(small.scene);
-    const ModelForm form = base_form(small.scene);
-    const Step step = fitted_base(workspace, form);
-    const auto diagnosis = diagnose(workspace, step.fitted);
-    const Diagnosis& found = std::get<Diagnosis>(diagnosis);
+    const Diagnosis found = test::base_step(workspace).diagnosis;
     EXPECT_LT(found.gate, 0.1 * found.effects[0].evidence) << hidden;
     EXPECT_THAT(leaders(found), ElementsAre(found.effects[0].effect));
     EXPECT_THAT(hidden, testing::StartsWith(found.effects[0].effect));
