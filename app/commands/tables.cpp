@@ -225,10 +225,8 @@ std::string high_floor(const Floor& floor) {
   if (floor.source != "rest photos" || floor.chi < kUsual) return "";
   return fmt::format(
       "the floor itself is {:.2f} times the told noise: the rest photos are missed by something "
-      "that "
-      "no smooth motion or brightness explains, as blur, gloss, a texture that is off or noise "
-      "that "
-      "was told too low. What is as large as that in every photo passes for noise here",
+      "that no smooth motion or brightness explains, as blur, gloss, a texture that is off or "
+      "noise that was told too low. What is as large as that in every photo passes for noise here",
       floor.chi);
 }
 

@@ -1,11 +1,15 @@
 // Forms of one effect: names that may stand beside one another, sentences that tell which form it
-// is, and plainer forms that say the same.
+// is, smaller and plainer forms that say the same, and where wider ones start.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
+#include "estimation/effects/graded_stiffness.h"
 #include "estimation/effects_scene.h"
+#include "estimation/kept_stiffness.h"
 
 namespace hookeye::test {
 
@@ -94,6 +98,92 @@ TEST(Catalogue, PlainerFormsSayTheSameWithoutTheirNumbers) {
       tried.insert(effect->name());
     }
   EXPECT_EQ(tried, (std::set<std::string>{"floor_contact", "light_direction"}));
+}
+
+/// The modulus that a hard floor's stiffness was taken from is fitted further: read back, it is the
+/// same floor.
+TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
+  const Effect& effect = *find_effect("floor_contact");
+  VectorXd values = Eigen::Vector2d(12.0, 1e-4);
+  const auto cushion = effect.candidate(base_model(), "cushion on side +x");
+  ASSERT_TRUE(cushion);
+  const auto hard = effect.smaller_form(base_model(), *cushion, values);
+  ASSERT_TRUE(hard);
+  const Model stiffer = base().realise(2.0 * base().initial());
+  ASSERT_GT(initial_shear_modulus(stiffer.energy),
+            1.5 * initial_shear_modulus(base_model().energy));
+  const auto read = effect.candidate(stiffer, hard->variant());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->variant(), hard->variant());
+  const VectorXd q = deformed_state(*block_scene());
+  const ModelForm form = extended(base(), hard), other = extended(base(), read);
+  EXPECT_EQ(signature(form.realise(with_values(form, values)), q),
+            signature(other.realise(with_values(other, values)), q));
+  // and as soft as it is, it is the cushion that a refit goes on to
+  const auto further = effect.further_forms(base_model(), *hard, values);
+  ASSERT_EQ(further.size(), 1u);
+  EXPECT_EQ(further[0].form->variant(), cushion->variant());
+  const ModelForm wide = extended(base(), further[0].form);
+  EXPECT_EQ(signature(wide.realise(with_values(wide, further[0].values)), q),
+            signature(form.realise(with_values(form, values)), q));
+}
+
+/// A stiff place in a field whose other values are all the same: that is the modulus' own.
+TEST(StiffnessField, TheSmallerFormIsThePlaceAndTheRestGoesToTheModulus) {
+  const Model& model = base_model();
+  const Effect& effect = *find_effect("stiffness_field");
+  const auto field = effect.candidates(model, nullptr).front();
+  const auto n = static_cast<Eigen::Index>(field->parameters().size());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    VectorXd values = VectorXd::Constant(n, 0.8);
+    values[k] += 0.6;
+    const ModelForm larger = extended(base(), field);
+    const VectorXd p = with_values(larger, values);
+    VectorXd few = values;
+    const auto blob = effect.smaller_form(model, *field, few);
+    ASSERT_TRUE(blob);
+    const auto centre = numbers_in(field->variant());
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(few[1 + i], centre[static_cast<size_t>(1 + 3 * k + i)], 1e-9) << k;
+    EXPECT_NEAR(few[0], 0.6, 0.35) << k;
+    const ModelForm smaller = extended(base(), blob);
+    const Model large = larger.realise(p);
+    const VectorXd start = with_stiffness_of(large, smaller, with_values(smaller, few));
+    const VectorXd& w_large = large.energy.parts[0].weight;
+    VectorXd ratio = p[0] * w_large;
+    const Model small = smaller.realise(start);
+    ratio = ratio.cwiseQuotient(start[0] * small.energy.parts[0].weight);
+    std::sort(ratio.begin(), ratio.end());
+    EXPECT_NEAR(ratio[ratio.size() / 2], 1.0, 1e-9) << k;
+    EXPECT_GT(start[0], 1.3 * p[0]) << k;
+  }
+}
+
+/// Where the first law is not, it has no stiffness to keep.
+TEST(KeptStiffness, IsThatOfTheElementsThatHaveTheLaw) {
+  Model model = base_model();
+  const auto elements = model.scene->body->mesh.size();
+  VectorXd& weight = model.energy.parts[0].weight;
+  weight = VectorXd::Constant(elements, 1.5);
+  weight.head(elements * 2 / 3).setZero();
+  const ModelForm form = base();
+  const VectorXd kept = with_stiffness_of(model, form, form.initial());
+  EXPECT_NEAR(kept[0], 1.5 * form.initial()[0], 1e-12);
+  weight.setZero();
+  EXPECT_EQ(with_stiffness_of(model, form, form.initial()), form.initial());
+}
+
+/// The integral over space of the logarithm, and of that squared, are the Gaussian's.
+TEST(StiffnessField, ABallStartsWhereItIsMostLikeAPlace) {
+  VectorXd blob(5);
+  blob << -1.3, 2.0, 3.0, 15.0, 4.0;
+  const Effect::Further further = ball_like(base_model(), blob);
+  EXPECT_EQ(further.form->variant(), "free ball");
+  const double a = further.values[0], radius = further.values[4];
+  const double volume = 4.0 / 3.0 * EIGEN_PI * std::pow(radius, 3), R3 = std::pow(blob[4], 3);
+  EXPECT_NEAR(a * volume, blob[0] * std::pow(2.0 * EIGEN_PI, 1.5) * R3, 1e-9 * volume);
+  EXPECT_NEAR(a * a * volume, blob[0] * blob[0] * std::pow(EIGEN_PI, 1.5) * R3, 1e-9 * volume);
+  EXPECT_EQ(further.values.segment<3>(1), blob.segment<3>(1));
 }
 
 }  // namespace
