@@ -55,9 +55,9 @@ class Effect {
   virtual std::shared_ptr<const Ingredient> plainer_form(const Model& model,
                                                          const Ingredient& refitted,
                                                          Eigen::VectorXd& values) const;
-  /// Forms to try once the refitted one leaves more than noise, likeliest first: other functions of
-  /// the same meaning (fibres that only pull, creep that levels off), none of which the score asks
-  /// for. `model` is without the effect. Each starts where it is most like `refitted`.
+  /// Forms to try once the refitted one leaves more than noise, likeliest first: others of the same
+  /// meaning (fibres that only pull, creep that levels off), each started where it is most like
+  /// `refitted`, or the same form started in another valley. `model` is without the effect.
   struct Further {
     std::shared_ptr<const Ingredient> form;
     Eigen::VectorXd values;

@@ -140,7 +140,9 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
     if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
     Fitted best = narrow;
     for (const auto& further : further_forms(narrow, at)) {
-      if (!tried.insert(further.form->variant()).second) continue;
+      const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
+      if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second)
+        continue;
       if (better && at_floor(best, floor, kLeftByRenderers)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
       const Reformed other = reformed(narrow, at, further);
@@ -175,7 +177,7 @@ std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitt
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   Fitted& wide = std::get<Fitted>(result);
   const std::string form = form_of(*wide.form.ingredients[at]);
-  if (form == narrow) return std::nullopt;
+  if (form == narrow && wide.p == fitted.p) return std::nullopt;
   came_to_.insert(form);
   return std::move(wide);
 }

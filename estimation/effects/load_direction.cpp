@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -65,22 +67,11 @@ class LoadDirection final : public Effect {
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     const auto& examples = model.scene->capture.examples;
-    std::vector<int> loaded;
-    for (size_t e = 0; e < examples.size(); ++e)
-      if (!leading_force(examples[e]).isZero(0.0) &&
-          (ingredient.variant() == "in all" || ingredient.variant() == "in " + examples[e].name))
-        loaded.push_back(static_cast<int>(e));
+    const std::vector<int> loaded = turned_examples(model, ingredient.variant());
     if (loaded.empty()) return "the load is misaligned";
     const Vector3d force = leading_force(examples[loaded.front()]);
-    std::vector<Vector3d> axes;
-    if (ingredient.variant() == "in all") {
-      axes = common_axes(model, loaded);
-    } else {
-      const auto [first, second] = normal_axes(force);
-      axes = {first, second};
-    }
-    Vector3d w = Vector3d::Zero();
-    for (size_t i = 0; i < axes.size(); ++i) w += values[i] * axes[i];
+    const auto axes = axes_of(model, loaded, ingredient.variant());
+    const Vector3d w = turn_about(axes, values);
     const Vector3d now = rotation_of(w) * force;
     const double angle = std::atan2(force.cross(now).norm(), force.dot(now));
     if (ingredient.variant() == "in all")
@@ -92,7 +83,69 @@ class LoadDirection final : public Effect {
                        vector_text(now.normalized()));
   }
 
+  /// The same turn from the other side. A slender body bends under what pushes it sideways and
+  /// hardly gives along its length: of a load that points far from where it was told a refit
+  /// settles the part across, and may keep the part along with the wrong sign.
+  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
+                                     const VectorXd& values) const override {
+    const auto loaded = turned_examples(model, refitted.variant());
+    auto form = candidate(model, refitted.variant());
+    if (loaded.empty() || !form) return {};
+    const auto axes = axes_of(model, loaded, refitted.variant());
+    if (axes.size() != 2) return {};
+    const Vector3d told = leading_force(model.scene->capture.examples[loaded.front()]);
+    const Vector3d now = rotation_of(turn_about(axes, values)) * told;
+    const Vector3d along = long_axis(*model.scene);
+    const Vector3d mirrored = now - 2.0 * along.dot(now) * along;
+    const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(told, mirrored));
+    VectorXd start(2);
+    for (int i = 0; i < 2; ++i) {
+      start[i] = turn.angle() * turn.axis().dot(axes[i]);
+      if (std::abs(start[i]) > kMostTurn) return {};
+    }
+    return {{std::move(form), std::move(start)}};
+  }
+
  private:
+  static constexpr double kMostTurn = 1.6;  ///< about one axis [rad]
+
+  /// The direction in which the body is longest: of its elements' centres, by volume.
+  static Vector3d long_axis(const Scene& scene) {
+    const Matrix3Xd X = element_centres(scene.body->mesh);
+    const VectorXd V = element_volumes(scene.body->mesh);
+    const Vector3d centre = X * V / V.sum();
+    const Matrix3Xd from_centre = X.colwise() - centre;
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(from_centre * V.asDiagonal() *
+                                                          from_centre.transpose())
+        .eigenvectors()
+        .col(2);
+  }
+
+  /// The examples whose loads a variant turns.
+  static std::vector<int> turned_examples(const Model& model, const std::string& variant) {
+    const auto& examples = model.scene->capture.examples;
+    std::vector<int> turned;
+    for (size_t e = 0; e < examples.size(); ++e)
+      if (!leading_force(examples[e]).isZero(0.0) &&
+          (variant == "in all" || variant == "in " + examples[e].name))
+        turned.push_back(static_cast<int>(e));
+    return turned;
+  }
+
+  static std::vector<Vector3d> axes_of(const Model& model, const std::vector<int>& turned,
+                                       const std::string& variant) {
+    if (variant == "in all") return common_axes(model, turned);
+    const auto [first, second] =
+        normal_axes(leading_force(model.scene->capture.examples[turned.front()]));
+    return {first, second};
+  }
+
+  static Vector3d turn_about(const std::vector<Vector3d>& axes, const VectorXd& angles) {
+    Vector3d w = Vector3d::Zero();
+    for (size_t i = 0; i < axes.size(); ++i) w += angles[i] * axes[i];
+    return w;
+  }
+
   /// Two axes where all forces are parallel (a turn about them changes nothing), else three.
   static std::vector<Vector3d> common_axes(const Model& model, const std::vector<int>& loaded) {
     const auto& examples = model.scene->capture.examples;
@@ -113,11 +166,10 @@ class LoadDirection final : public Effect {
       spec.parameters.push_back({fmt::format("load_direction.{}.angle{}", variant.substr(3), i + 1),
                                  "rad",
                                  fmt::format("turn of the load about {}", vector_text(axes[i])),
-                                 0.0, -1.6, 1.6, 0.05, false});
+                                 0.0, -kMostTurn, kMostTurn, 0.05, false});
     spec.touches = {.loading = true};
     spec.apply = [examples, axes](const VectorXd& values, Model& m) {
-      Vector3d w = Vector3d::Zero();
-      for (size_t i = 0; i < axes.size(); ++i) w += values[i] * axes[i];
+      const Vector3d w = turn_about(axes, values);
       for (int e : examples) tilt(m, e, w);
     };
     return make_ingredient(std::move(spec));

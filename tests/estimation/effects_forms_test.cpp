@@ -128,6 +128,30 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
             signature(form.realise(with_values(form, values)), q));
 }
 
+/// The block is longest along z: the part of the load across stays, the part along changes sides.
+/// A pull along z that is a few degrees off has no other side within the bounds.
+TEST(LoadDirection, StartsAgainAsItsMirrorImage) {
+  const Effect& effect = *find_effect("load_direction");
+  const auto towards = [&](const Ingredient& form, const VectorXd& values) {
+    const std::string said = effect.sentence(base_model(), form, values);
+    const auto figures = numbers_in(said.substr(said.find("towards")));
+    return Vector3d(figures.at(0), figures.at(1), figures.at(2));
+  };
+  const auto bend = effect.candidate(base_model(), "in bend");
+  ASSERT_TRUE(bend);
+  const Eigen::Vector2d values(0.7, -0.3);
+  const auto further = effect.further_forms(base_model(), *bend, values);
+  ASSERT_EQ(further.size(), 1u);
+  EXPECT_EQ(further[0].form->variant(), bend->variant());
+  const Vector3d then = towards(*bend, values), now = towards(*further[0].form, further[0].values);
+  EXPECT_GT(std::abs(then.z()), 0.2);
+  EXPECT_LT((now - then.cwiseProduct(Vector3d(1, 1, -1))).norm(), 0.02);
+  const auto pull = effect.candidate(base_model(), "in pull");
+  ASSERT_TRUE(pull);
+  EXPECT_THAT(effect.further_forms(base_model(), *pull, Eigen::Vector2d(0.05, 0.02)),
+              testing::IsEmpty());
+}
+
 /// A stiff place in a field whose other values are all the same: that is the modulus' own.
 TEST(StiffnessField, TheSmallerFormIsThePlaceAndTheRestGoesToTheModulus) {
   const Model& model = base_model();

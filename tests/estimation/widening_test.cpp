@@ -146,6 +146,37 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
   EXPECT_NEAR(place.p[4], 18.0, 0.2);
 }
 
+/// Told across, the load points up more than across. From below, the refit keeps the part along the
+/// body with the wrong sign.
+TEST(Widening, ALoadThatPointsFarFromWhereItWasTold) {
+  const test::SmallScene small(
+      hiding("{effect: load_direction, variant: in side, values: {load_direction.side.angle1: 0.3, "
+             "load_direction.side.angle2: 1.2}}",
+             kPressAndTwist));
+  Workspace workspace(small.scene);
+  ModelForm form = base_form(small.scene);
+  const Effect& effect = *find_effect("load_direction");
+  const Model base = form.realise(form.initial());
+  const size_t at = form.ingredients.size();
+  form.ingredients.push_back(effect.candidate(base, "in side"));
+  const auto mirrored =
+      effect.further_forms(base, *form.ingredients[at], Eigen::Vector2d(0.3, 1.2));
+  ASSERT_EQ(mirrored.size(), 1u);
+  VectorXd start = form.initial();
+  start.tail<2>() = mirrored[0].values;
+  const Fitted wrong = std::get<Fitted>(fit(workspace, form, start));
+  const Floor floor = measure_floor(*small.scene, wrong.evaluation);
+  ASSERT_FALSE(at_floor(wrong, floor));
+  const FitOptions options;
+  const DiscoverEvents events;
+  WiderForms wider(workspace, options, events);
+  const auto asked = std::get<std::optional<Fitted>>(wider.ask(wrong, at, floor));
+  ASSERT_TRUE(asked);
+  EXPECT_TRUE(at_floor(*asked, floor));
+  EXPECT_NEAR(asked->p[1], 0.3, 0.01);
+  EXPECT_NEAR(asked->p[2], 1.2, 0.01);
+}
+
 /// A stiffness that is linear along a direction: its logarithm bends.
 TEST(Widening, GradedStiffness) {
   const Fitted fitted = found(
