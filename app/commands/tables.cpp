@@ -191,24 +191,27 @@ std::string sureness(const json& step) {
         "how sure: {} does as well (behind by {:.1f}); `hookeye plan` tells which "
         "photos would separate the two",
         nearest, behind);
-  return fmt::format("how sure: {}, the next, is behind by {:.1f}: odds of 10^{:.0f} to one",
-                     nearest, behind, behind / std::log(10.0));
+  // Tails of a likelihood are trusted as little as anyone's: beyond a million the number says
+  // nothing.
+  const std::string odds =
+      behind > std::log(1e6) ? "more than a million" : fmt::format("{:.0f}", std::exp(behind));
+  return fmt::format("how sure: {}, the next, is behind by {:.1f}: odds of {} to one", nearest,
+                     behind, odds);
 }
 
-/// What changes the photos much as the added effect does, by the diagnosis before it.
+/// What can imitate the change that the added effect makes, by the diagnosis before it. (Not whose
+/// change it can imitate: gravity may bend a body as a pressure does, and stretch it besides.)
 std::string resemblance(const json& before, const std::string& added) {
+  const json score = entry_of(before.value("diagnosis", json::array()), added);
+  if (!score.contains("confusion")) return "";
   std::vector<std::string> names;
-  for (const auto& score : before.value("diagnosis", json::array()))
-    for (const auto& other : score.value("confusion", json::array())) {
-      const std::string a = score.at("effect"), b = other.at("effect");
-      if (a != added && b != added) continue;
-      const std::string name =
-          fmt::format("{} (cosine {:.3f})", a == added ? b : a, number_in(other, "cosine"));
-      if (names.size() < 4 && std::find(names.begin(), names.end(), name) == names.end())
-        names.push_back(name);
-    }
-  return names.empty() ? ""
-                       : fmt::format("; most alike in these photos: {}", fmt::join(names, ", "));
+  for (const auto& other : score.at("confusion"))
+    if (names.size() < 4)
+      names.push_back(fmt::format("{} (cosine {:.3f})", other.at("effect").get<std::string>(),
+                                  number_in(other, "cosine")));
+  return names.empty()
+             ? "; none of the others can imitate it in these photos (cosine below 0.9)"
+             : fmt::format("; what can imitate it in these photos: {}", fmt::join(names, ", "));
 }
 
 bool by_hand(const json& step) {

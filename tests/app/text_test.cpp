@@ -79,7 +79,9 @@ TEST(Text, AFloorFarAboveTheToldNoiseIsTold) {
 /// Effects that stood out are told whether they were tried or not.
 TEST(Text, AChoiceTellsWhoWasNotTried) {
   const auto before = nlohmann::json::parse(R"({"diagnosis": [
-      {"effect": "gravity", "evidence": 365.3}, {"effect": "pressure", "evidence": 89.2},
+      {"effect": "gravity", "evidence": 365.3, "confusion": []},
+      {"effect": "pressure", "evidence": 89.2,
+       "confusion": [{"effect": "gravity", "cosine": 0.997}]},
       {"effect": "creep", "evidence": 2.0}]})");
   auto step = nlohmann::json::parse(R"({"added": "gravity", "chi_fit": 1.0, "raced": [
       {"effect": "gravity", "chi_fit": 0.5, "chi_validate": 0.5, "floor": 0.5}]})");
@@ -88,8 +90,26 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
   EXPECT_THAT(text, testing::ContainsRegex("pressure +89.2 +-"));
   EXPECT_THAT(text, testing::Not(HasSubstr("creep")));
   EXPECT_THAT(text, HasSubstr("no other got near enough to gravity"));
+  EXPECT_THAT(text, HasSubstr("none of the others"));
   step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
   EXPECT_EQ(choice_table(before, step, 1.0), "");
+}
+
+/// What can imitate the added effect, not what it can imitate; odds that a likelihood can tell.
+TEST(Text, AChoiceTellsWhatElseItCouldHaveBeen) {
+  const auto before = nlohmann::json::parse(R"({"diagnosis": [
+      {"effect": "gravity", "evidence": 16.9, "confusion": [{"effect": "swelling", "cosine": 0.931}]},
+      {"effect": "pressure", "evidence": 16.7, "confusion": [{"effect": "gravity", "cosine": 0.99}]}
+      ]})");
+  auto step = nlohmann::json::parse(R"({"added": "gravity", "chi_fit": 1.0,
+      "raced": [{"effect": "gravity", "chi_fit": 0.5, "chi_validate": 0.5, "floor": 0.5}],
+      "rivals": [{"effect": "gravity", "score": 0.0}, {"effect": "pressure", "score": -5.3}]})");
+  const std::string near = choice_table(before, step, 1.0);
+  EXPECT_THAT(near, HasSubstr("pressure, the next, is behind by 5.3: odds of 200 to one"));
+  EXPECT_THAT(near, HasSubstr("swelling (cosine 0.931)"));
+  EXPECT_THAT(near, testing::Not(HasSubstr("0.990")));
+  step["rivals"][1]["score"] = -7309.8;
+  EXPECT_THAT(choice_table(before, step, 1.0), HasSubstr("odds of more than a million to one"));
 }
 
 }  // namespace
