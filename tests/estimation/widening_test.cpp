@@ -146,35 +146,70 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
   EXPECT_NEAR(place.p[4], 18.0, 0.2);
 }
 
+/// Fitted in the form `variant` from `start`, which is not the floor, an effect goes on to another.
+class WiderForm : public testing::Test {
+ protected:
+  std::optional<Fitted> ask(const std::string& hidden, const std::string& effect,
+                            const std::string& variant, const VectorXd& start) {
+    small_.emplace(hiding(hidden, kPressAndTwist));
+    Workspace workspace(small_->scene);
+    ModelForm form = base_form(small_->scene);
+    const size_t at = form.ingredients.size();
+    form.ingredients.push_back(
+        find_effect(effect)->candidate(form.realise(form.initial()), variant));
+    if (!form.ingredients.back()) return std::nullopt;
+    VectorXd p = form.initial();
+    p.tail(start.size()) = start;
+    const FitOptions options;
+    const DiscoverEvents events;
+    const Fitted narrow = std::get<Fitted>(fit(workspace, form, p, options));
+    const Floor floor = measure_floor(*small_->scene, narrow.evaluation);
+    EXPECT_FALSE(at_floor(narrow, floor));
+    auto wide = std::get<std::optional<Fitted>>(
+        WiderForms(workspace, options, events).ask(narrow, at, floor));
+    EXPECT_TRUE(!wide || at_floor(*wide, floor));
+    return wide;
+  }
+
+ private:
+  std::optional<test::SmallScene> small_;
+};
+
 /// Told across, the load points up more than across. From below, the refit keeps the part along the
 /// body with the wrong sign.
-TEST(Widening, ALoadThatPointsFarFromWhereItWasTold) {
-  const test::SmallScene small(
-      hiding("{effect: load_direction, variant: in side, values: {load_direction.side.angle1: 0.3, "
-             "load_direction.side.angle2: 1.2}}",
-             kPressAndTwist));
-  Workspace workspace(small.scene);
-  ModelForm form = base_form(small.scene);
-  const Effect& effect = *find_effect("load_direction");
-  const Model base = form.realise(form.initial());
-  const size_t at = form.ingredients.size();
-  form.ingredients.push_back(effect.candidate(base, "in side"));
-  const auto mirrored =
-      effect.further_forms(base, *form.ingredients[at], Eigen::Vector2d(0.3, 1.2));
-  ASSERT_EQ(mirrored.size(), 1u);
-  VectorXd start = form.initial();
-  start.tail<2>() = mirrored[0].values;
-  const Fitted wrong = std::get<Fitted>(fit(workspace, form, start));
-  const Floor floor = measure_floor(*small.scene, wrong.evaluation);
-  ASSERT_FALSE(at_floor(wrong, floor));
-  const FitOptions options;
-  const DiscoverEvents events;
-  WiderForms wider(workspace, options, events);
-  const auto asked = std::get<std::optional<Fitted>>(wider.ask(wrong, at, floor));
+TEST_F(WiderForm, ALoadIsAskedForItsMirrorImage) {
+  const auto asked =
+      ask("{effect: load_direction, variant: in side, values: {load_direction.side.angle1: 1.2, "
+          "load_direction.side.angle2: 0.3}}",
+          "load_direction", "in side", Eigen::Vector2d(-1.2, 0.3));
   ASSERT_TRUE(asked);
-  EXPECT_TRUE(at_floor(*asked, floor));
-  EXPECT_NEAR(asked->p[1], 0.3, 0.01);
-  EXPECT_NEAR(asked->p[2], 1.2, 0.01);
+  EXPECT_NEAR(asked->p[1], 1.2, 0.01);
+  EXPECT_NEAR(asked->p[2], 0.3, 0.01);
+}
+
+TEST_F(WiderForm, APlaceIsAskedForAnEdge) {
+  VectorXd start(5);
+  start << -1.0, 2.0, -1.0, 18.0, 4.0;
+  const auto asked =
+      ask("{effect: stiffness_field, variant: free ball, values: {stiffness_field.a: -2, "
+          "stiffness_field.x: 3, stiffness_field.y: -2, stiffness_field.z: 18, "
+          "stiffness_field.radius: 8, stiffness_field.thickness: 0.5}}",
+          "stiffness_field", "free blob", start);
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->form.ingredients.back()->variant(), "free ball");
+  EXPECT_NEAR(asked->p[4], 18.0, 0.1);
+  EXPECT_NEAR(asked->p[5], 8.0, 0.2);
+}
+
+TEST_F(WiderForm, AHardPlaneIsAskedForACushion) {
+  const auto asked = ask(
+      "{effect: floor_contact, variant: cushion on side +x, values: {floor_contact.position: 10.5, "
+      "floor_contact.k: 0.001}}",
+      "floor_contact", "hard plane on side +x", VectorXd::Constant(1, 11.0));
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->form.ingredients.back()->variant(), "cushion on side +x");
+  EXPECT_NEAR(asked->p[1], 10.5, 0.1);
+  EXPECT_NEAR(asked->p[2], 0.001, 1e-4);
 }
 
 /// A stiffness that is linear along a direction: its logarithm bends.
