@@ -211,11 +211,11 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
       fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
     }
     auto result = refit(workspace, racer, fit);
+    if (events.refitted) events.refitted(racer.effect, result);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;  // a model without equilibrium explains nothing
     }
-    if (events.refitted) events.refitted(racer.effect, std::get<Fitted>(result));
     refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
   }
@@ -287,12 +287,12 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
       FitOptions warm = options.fit;
       warm.coarse_to_fine = false;
       auto result = fit(workspace, form, p, warm);
+      if (events.refitted) events.refitted(both, result);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;
       }
       auto& fitted = std::get<Fitted>(result);
-      if (events.refitted) events.refitted(both, fitted);
       const double score = refit_score(fitted, yardstick);
       if (!best || score > best->second.score)
         best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
@@ -359,12 +359,12 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_on_finer_mesh(
     const std::string words = best.effect + " and " + score.effect;
     if (events.refitting) events.refitting(words);
     auto result = add_effect(workspace, best.fitted, score, options.fit);
+    if (events.refitted) events.refitted(words, result);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;
     }
     Fitted& both = std::get<Fitted>(result);
-    if (events.refitted) events.refitted(words, both);
     if (refused_by(step, {best.effect, both, 0.0}).empty())
       return Pair{best, {score.effect, std::move(both), 0.0}};
   }

@@ -288,12 +288,12 @@ class Search {
         continue;
       if (events_.refitting) events_.refitting(score.effect);
       auto result = add_effect(workspace_, step.fitted, score, options_.fit);
+      if (events_.refitted) events_.refitted(score.effect, result);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (failure->reason == "cancelled") return *failure;
         continue;
       }
       Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};
-      if (events_.refitted) events_.refitted(score.effect, refit.fitted);
       if (!refused_by(step, refit).empty()) continue;
       out_.steps.push_back(step_with(score.effect, std::move(refit.fitted)));
       return true;

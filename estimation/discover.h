@@ -102,7 +102,8 @@ struct DiscoverEvents {
   std::function<void(const Step&)> step;
   std::function<void(const Racer&)> tried;
   std::function<void(const std::string& effect)> refitting;
-  std::function<void(const std::string& effect, const Fitted&)> refitted;
+  std::function<void(const std::string& effect, const std::variant<Fitted, NumericalFailure>&)>
+      refitted;
 };
 
 std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const ModelForm& form,

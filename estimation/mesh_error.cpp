@@ -95,9 +95,9 @@ void tell_of_mesh(const Fitted& fitted, const Evaluation& evaluation, const Diag
   const std::string moved = moved_by_mesh(fitted, next);
   if (!moved.empty())
     out.mesh_note = fmt::format(
-        "{} would move {}; the intervals reach there, and adding mesh_resolution fits on it",
+        "{} would move {}; the intervals allow for it (add mesh_resolution to fit on it)",
         linear ? std::string("quadratic tetrahedra")
-               : fmt::format("a mesh of {} times the edge", kFinerEdge),
+               : fmt::format("a finer mesh, {} times the edge,", kFinerEdge),
         moved);
 }
 
@@ -118,8 +118,8 @@ void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
   const std::string moved = moved_by_mesh(fitted, (1.0 - next) * out.mesh_shift);
   if (!moved.empty())
     out.mesh_note = fmt::format(
-        "a still finer mesh would move {}, by what the refinement changed; the intervals reach "
-        "there",
+        "a still finer mesh would move {}, by what the refinement changed; the intervals allow for "
+        "it",
         moved);
 }
 

@@ -171,12 +171,12 @@ std::optional<Without> diagnosed(Workspace& workspace, const Ingredient& dropped
 template <class Fit>
 std::optional<Refit> told_of_swap(const std::string& in, const std::string& out,
                                   const DiscoverEvents& events, const Fit& fit) {
-  const std::string words = in + (in == out ? " anew" : " in place of " + out);
+  const std::string words = in + (in == out ? ", started again" : " in place of " + out);
   if (events.refitting) events.refitting(words);
   auto result = fit();
+  if (events.refitted) events.refitted(words, result);
   auto* refitted = std::get_if<Fitted>(&result);
   if (!refitted) return {};
-  if (events.refitted) events.refitted(words, *refitted);
   return Refit{in, std::move(*refitted), 0.0};
 }
 

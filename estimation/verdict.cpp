@@ -90,11 +90,12 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   const bool photos = all || at_floor(fitted, diagnosis.floor);
   const bool measured = all || measured_explained(fitted, diagnosis, &sensors);
   if (why) {
-    *why = fmt::format("what is left is {:.2f} times the noise floor{}", chi / diagnosis.floor.chi,
-                       held_out > 0.0
-                           ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
-                                         seen(fitted) ? "photos" : "values")
-                           : "");
+    *why = fmt::format(
+        "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
+        held_out > 0.0 ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
+                                     seen(fitted) ? "photos" : "values")
+                       : "",
+        photos ? "" : fmt::format(", more than {:g}", kAtFloor));
     if (!sensors.empty()) *why += ", but " + sensors;
     if (all) *why += held_out_by_values(*all, diagnosis.floor);
     if (!standing.empty())
@@ -140,10 +141,31 @@ std::string too_little_to_name(const Diagnosis& diagnosis) {
   return "";
 }
 
+namespace {
+
+std::string untold(const std::vector<std::string>& tie) {
+  return fmt::format("these photos cannot tell {} apart", fmt::join(tie, " and "));
+}
+
+/// "creep and either gravity or swelling (...)", where the missing ones hold one of a tie.
+std::string named_with_tie(std::vector<std::string> missing, const std::vector<std::string>& tie) {
+  const auto tied = [&](const std::string& one) {
+    return std::find(tie.begin(), tie.end(), one) != tie.end();
+  };
+  const auto at = std::find_if(missing.begin(), missing.end(), tied);
+  if (tie.empty() || at == missing.end())
+    return fmt::format("{}{}", fmt::join(missing, " and "),
+                       tie.empty() ? "" : " (" + untold(tie) + ")");
+  *at = fmt::format("either {} (these photos cannot tell which)", fmt::join(tie, " or "));
+  std::rotate(at, at + 1, missing.end());
+  return fmt::format("{}", fmt::join(missing, " and "));
+}
+
+}  // namespace
+
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
                 const std::vector<std::string>& tie, std::string why, const std::string& refused) {
-  if (!refused.empty()) why += "; " + refused;
-  if (!tie.empty()) why += fmt::format("; these could not be told apart: {}", fmt::join(tie, ", "));
+  if (!refused.empty()) why += "; nothing more was added: " + refused;
   std::vector<std::string> physical = missing, mesh;
   std::erase_if(physical, numerical);
   std::copy_if(missing.begin(), missing.end(), std::back_inserter(mesh), numerical);
@@ -152,8 +174,9 @@ std::string say(Verdict verdict, const std::vector<std::string>& missing,
   if (!physical.empty())
     return fmt::format("{}: {}; with {}{}, {}",
                        verdict == Verdict::unexplained ? "named, but not enough" : "missing",
-                       fmt::join(physical, " and "), physical.size() == 1 ? "it" : "them",
+                       named_with_tie(physical, tie), physical.size() == 1 ? "it" : "them",
                        mesh.empty() ? "" : " on " + finer, why);
+  if (!tie.empty()) why += "; " + untold(tie);
   if (verdict != Verdict::explained)
     return fmt::format(
         "{}: {}{}", refused.empty() ? "not in the catalogue" : "nothing that was tried explains it",

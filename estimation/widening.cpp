@@ -117,12 +117,12 @@ std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wid
   const std::string words = form->name() + " as '" + form->variant() + "'";
   if (events.refitting) events.refitting(words);
   auto result = fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
+  if (events.refitted) events.refitted(words, result);
   if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
     if (cancelled(*failure)) return *failure;
     return wide;
   }
   const Fitted& plain = std::get<Fitted>(result);
-  if (events.refitted) events.refitted(words, plain);
   const Yardstick yardstick{&wide, &floor, std::min(measured_noise2(wide), measured_noise2(plain))};
   return refit_score(plain, yardstick) >= refit_score(wide, yardstick) ? result : wide;
 }
@@ -151,12 +151,12 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       FitOptions farther = options;
       farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
       auto result = fit_in(workspace, narrow, other, farther);
+      if (events.refitted) events.refitted(words, result);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;
       }
       Fitted& wide = std::get<Fitted>(result);
-      if (events.refitted) events.refitted(words, wide);
       if (!pays(wide, best, floor)) continue;
       best = std::move(wide);
       better = true;

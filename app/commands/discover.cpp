@@ -33,13 +33,22 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
         spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
   };
   events.tried = [](const Racer& racer) {
-    spdlog::info("a step with {}: half-size chi {} fitted, {} held out", racer.effect,
-                 chi_text(racer.trial.chi_fit), chi_text(racer.trial.chi_validate));
+    spdlog::info("trial of {}: {} fitted, {} held out, {}", racer.effect,
+                 times_floor(racer.trial.chi_fit, racer.trial.floor),
+                 times_floor(racer.trial.chi_validate, racer.trial.floor),
+                 racer.trial.floor > 0.0 ? "times the floor of half-size photos"
+                                         : "chi of half-size photos");
   };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
-  events.refitted = [](const std::string& effect, const Fitted& fitted) {
-    spdlog::info("  {}: chi {} fitted, {} held out", effect, chi_text(fitted.evaluation.chi(false)),
-                 chi_text(fitted.evaluation.chi(true)));
+  events.refitted = [](const std::string& effect,
+                       const std::variant<Fitted, NumericalFailure>& result) {
+    if (const auto* fitted = std::get_if<Fitted>(&result))
+      spdlog::info("  {}: chi {} fitted, {} held out", effect,
+                   chi_text(fitted->evaluation.chi(false)), chi_text(fitted->evaluation.chi(true)));
+    else if (const auto& failure = std::get<NumericalFailure>(result);
+             failure.reason != "cancelled")
+      spdlog::info("  {}: given up, {}{}", effect, failure.reason,
+                   failure.example.empty() ? "" : fmt::format(" in '{}'", failure.example));
   };
   return events;
 }

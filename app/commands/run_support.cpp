@@ -81,7 +81,7 @@ FitOptions fit_options() {
   auto progress = std::make_shared<Progress>("fit", 0);
   options.progress = [progress](const FitProgress& now) {
     progress->set(now.iteration, now.of,
-                  now.chi > 0.0 ? fmt::format("{}, chi {:.3f}", now.stage, now.chi) : now.stage);
+                  now.chi > 0.0 ? fmt::format("{}, misfit {:.3f}", now.stage, now.chi) : now.stage);
   };
   return options;
 }

@@ -81,12 +81,17 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
 
 std::string chi_text(double chi) { return chi > 0.0 ? fmt::format("{:.3f}", chi) : "-"; }
 
+std::string times_floor(double chi, double floor) {
+  return chi > 0.0 ? fmt::format("{:.2f}", floor > 0.0 ? chi / floor : chi) : "-";
+}
+
 namespace {
 
-/// "creep", "creep anew" where it took its own place, "creep, without softening".
-std::string with_dropped(std::string name, std::vector<std::string> dropped) {
-  if (std::erase(dropped, name)) name += " anew";
-  return dropped.empty() ? name : fmt::format("{}, without {}", name, fmt::join(dropped, ", "));
+/// "creep", "creep, other form" where it took its own place, "creep, without softening".
+std::string with_dropped(const std::string& name, std::vector<std::string> dropped) {
+  const bool itself = std::erase(dropped, name) > 0;
+  if (dropped.empty()) return itself ? name + ", other form" : name;
+  return fmt::format("{}, without {}", name, fmt::join(dropped, ", "));
 }
 
 }  // namespace
@@ -95,17 +100,19 @@ std::string name_of(const Step& step) { return with_dropped(step.name, step.drop
 
 std::string steps_table(const nlohmann::json& timeline) {
   std::vector<std::vector<std::string>> rows = {
-      {"step", "chi fitted", "chi held out", "rms px", "over the floor"}};
+      {"step", "chi fitted", "chi held out", "rms px", "chi / floor"}};
   const auto& steps = timeline.at("steps");
   const double floor = timeline.at("floor").at("chi");
   const double top = steps.front().at("chi_fit").get<double>() / floor;
   for (const auto& step : steps) {
     const double chi = step.at("chi_fit"), over = chi / floor;
+    // of what is over the floor at the start
+    const double left = top > 1.0 ? std::clamp((over - 1.0) / (top - 1.0), 0.0, 1.0) : 0.0;
     rows.push_back(
         {with_dropped(step.at("name"), step.value("dropped", std::vector<std::string>())),
          chi_text(chi), chi_text(number_in(step, "chi_validate")),
          fmt::format("{:.3f}", number_in(step, "rms_px_fit")),
-         fmt::format("{:.2f} {}", over, bar(over / top, 20).substr(7))});
+         fmt::format("{:.2f} {}", over, bar(left, 20).substr(7))});
   }
   return table(rows);
 }
@@ -127,11 +134,10 @@ std::string choice_rows(const json& before, const json& step, double floor) {
   const json none = json::array();
   const std::string added = step.at("added");
   const auto rivals = step.value("rivals", none), scores = before.value("diagnosis", none);
-  std::vector<std::vector<std::string>> rows = {{"effect", "evidence", "tried: fitted", "held out",
-                                                 "refitted: fitted", "held out", "behind"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"effect", "evidence", "trial fitted", "held out", "refit fitted", "held out", "behind"}};
   const auto over = [](const json& one, const char* key, double least) {
-    const double value = number_in(one, key);
-    return value > 0.0 ? fmt::format("{:.2f}", least > 0.0 ? value / least : value) : "-";
+    return times_floor(number_in(one, key), least);
   };
   size_t left_out = 0;
   for (const auto& one : step.at("raced")) {
@@ -149,7 +155,7 @@ std::string choice_rows(const json& before, const json& step, double floor) {
                     refit.is_null() ? "" : over(refit, "chi_fit", floor),
                     refit.is_null() ? "" : over(refit, "chi_validate", floor),
                     refit.is_null()   ? ""
-                    : effect == added ? "-"
+                    : effect == added ? "chosen"
                                       : fmt::format("{:.1f}", -number_in(refit, "score"))});
   }
   const size_t tried = rows.size();
@@ -164,14 +170,14 @@ std::string choice_rows(const json& before, const json& step, double floor) {
           {effect, fmt::format("{:.1f}", number_in(score, "evidence")), "-", "", "", "", ""});
   }
   std::string text = table(rows);
-  if (left_out) text += fmt::format("  and {} that got less far in the trial\n", left_out);
+  if (left_out) text += fmt::format("  and {} more tried, not refitted\n", left_out);
   if (const size_t more = untried - (rows.size() - tried))
     text += fmt::format("  and {} of less evidence, not tried\n", more);
   return text;
 }
 
 /// How far ahead of the next one: "how sure".
-std::string sureness(const json& step) {
+std::string sureness(const json& step, double floor) {
   const std::string added = step.at("added");
   std::string nearest;
   double behind = 0.0;
@@ -180,17 +186,21 @@ std::string sureness(const json& step) {
     if (rival.at("effect") == added || (!nearest.empty() && by >= behind)) continue;
     nearest = rival.at("effect"), behind = by;
   }
-  if (nearest.empty())
-    return fmt::format("how sure: no other got near enough to {} in the trial to be refitted",
-                       added);
+  if (nearest.empty()) return "how sure: no other was refitted, all fell behind in the trial";
   if (behind < -kTie)
     return fmt::format("how sure: alone {} does better; {} was chosen with what the next step has",
                        nearest, added);
   if (behind < kTie)
     return fmt::format(
-        "how sure: {} does as well (behind by {:.1f}); `hookeye plan` tells which "
+        "how sure: {} does as well (behind by {:.1f}); `hookeye plan RUN` tells which "
         "photos would separate the two",
         nearest, behind);
+  const double left = floor > 0.0 ? number_in(step, "chi_fit") / floor : 0.0;
+  if (left > kAtFloor)
+    return fmt::format(
+        "how sure: {}, the next, is behind by {:.1f}; alone it leaves {:.2f} times "
+        "the floor, more is missing",
+        nearest, behind, left);
   // Tails of a likelihood are trusted as little as anyone's: beyond a million the number says
   // nothing.
   const std::string odds =
@@ -199,7 +209,7 @@ std::string sureness(const json& step) {
                      behind, odds);
 }
 
-/// What can imitate the change that the added effect makes, by the diagnosis before it. (Not whose
+/// Who can change the photos as the added effect does, by the diagnosis before it. (Not whose
 /// change it can imitate: gravity may bend a body as a pressure does, and stretch it besides.)
 std::string resemblance(const json& before, const std::string& added) {
   const json score = entry_of(before.value("diagnosis", json::array()), added);
@@ -207,11 +217,35 @@ std::string resemblance(const json& before, const std::string& added) {
   std::vector<std::string> names;
   for (const auto& other : score.at("confusion"))
     if (names.size() < 4)
-      names.push_back(fmt::format("{} (cosine {:.3f})", other.at("effect").get<std::string>(),
+      names.push_back(fmt::format("{} {:.3f}", other.at("effect").get<std::string>(),
                                   number_in(other, "cosine")));
-  return names.empty()
-             ? "; none of the others can imitate it in these photos (cosine below 0.9)"
-             : fmt::format("; what can imitate it in these photos: {}", fmt::join(names, ", "));
+  return names.empty() ? "; to first order no other changes these photos as it does (cosines below "
+                         "0.9)"
+                       : fmt::format(
+                             "; to first order these change the photos much as it does "
+                             "(cosine 1: the same): {}",
+                             fmt::join(names, ", "));
+}
+
+/// What the step says of an effect, without its name; "": nothing.
+std::string said_of(const json& step, const std::string& effect) {
+  for (const std::string said : step.value("says", json::array()))
+    if (said.starts_with(effect + ": ")) return said.substr(effect.size() + 2);
+  return "";
+}
+
+/// An effect in another form than the step before has it: no choice between effects. "": it is not.
+std::string other_form(const json& before, const json& step, double floor) {
+  const std::string added = step.at("added");
+  if (step.value("dropped", json::array()) != json::array({added})) return "";
+  const std::string form = said_of(step, added);
+  if (form.empty()) return "";
+  const auto left = [&](const json& of) {
+    return fmt::format("{} fitted, {} held out", times_floor(number_in(of, "chi_fit"), floor),
+                       times_floor(number_in(of, "chi_validate"), floor));
+  };
+  return "\n" + wrapped(fmt::format("why {}, other form: {} (chi over the floor: {}; before: {})",
+                                    added, form, left(step), left(before)));
 }
 
 bool by_hand(const json& step) {
@@ -241,17 +275,20 @@ std::string choice_table(const json& before, const json& step, double floor) {
                       "{} was added by hand and not raced against others: `hookeye discover "
                       "CAPTURE -o NEW_RUN` tells what else it could have been{}",
                       added, resemblance(before, added)));
+  if (const std::string form = other_form(before, step, floor); !form.empty()) return form;
   const auto raced = step.value("raced", json::array());
   // A mesh that settles its step alone is no choice.
   if (raced.empty() || (raced.size() == 1 && numerical(added))) return "";
   return "\n" +
          wrapped(fmt::format(
-             "why {}: what the effects that stood out leave, in multiples of the noise floor "
-             "(tried: after one or two steps of its refit, in half-size photos, -: not, as it "
-             "promised too little or had no equilibrium; behind: in the refits' log likelihood "
-             "less the price of their parameters, below {:.0f} is a tie)",
+             "why {}: chi over the floor that the effects that stood out leave (trial: after one "
+             "or two steps of the refit, in half-size photos, whose floor is another; -: not "
+             "tried, "
+             "as it promised too little or had no equilibrium; blank: not refitted; behind: in the "
+             "refits' log likelihood less the price of their parameters, below {:.0f} is a tie)",
              added, kTie)) +
-         choice_rows(before, step, floor) + wrapped(sureness(step) + resemblance(before, added), 2);
+         choice_rows(before, step, floor) +
+         wrapped(sureness(step, floor) + resemblance(before, added), 2);
 }
 
 }  // namespace hookeye

@@ -26,5 +26,7 @@ std::string high_floor(const Floor& floor);
 std::string name_of(const Step& step);
 /// "1.234"; "-" where no photo counts (chi 0), as where nothing is held out.
 std::string chi_text(double chi);
+/// "1.04", in multiples of the floor, or as it is where none is known; 0: "-".
+std::string times_floor(double chi, double floor);
 
 }  // namespace hookeye

@@ -29,7 +29,8 @@ class CameraPose final : public Effect {
                        const VectorXd& values) const override {
     const Vector3d w = values.head<3>(), v = values.tail<3>();
     return fmt::format("camera {} stands elsewhere, turned by {} degrees and moved by {} {}",
-                       ingredient.variant(), figure(w.norm() * 180.0 / EIGEN_PI), figure(v.norm()),
+                       examples_quoted(*model.scene, ingredient.variant()),
+                       figure(w.norm() * 180.0 / EIGEN_PI), figure(v.norm()),
                        model.scene->capture.units.length);
   }
 

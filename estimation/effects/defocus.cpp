@@ -26,9 +26,10 @@ class Defocus final : public Effect {
     });
   }
 
-  std::string sentence(const Model&, const Ingredient& ingredient,
+  std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
-    return fmt::format("camera {}: blurred by {} px (standard deviation)", ingredient.variant(),
+    return fmt::format("camera {}: blurred by {} px (standard deviation)",
+                       examples_quoted(*model.scene, ingredient.variant()),
                        figure(std::sqrt(std::max(0.0, values[0]))));
   }
 

@@ -69,11 +69,12 @@ class Exposure final : public Effect {
     return form;
   }
 
-  std::string sentence(const Model&, const Ingredient& ingredient,
+  std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     if (values.size() != 1)
       return "each photo has its own exposure: " + farthest(ingredient.parameters(), values);
-    return fmt::format("exposure of {} is {}", ingredient.variant(), change(values[0]));
+    return fmt::format("exposure of {} is {}", examples_quoted(*model.scene, ingredient.variant()),
+                       change(values[0]));
   }
 
  private:

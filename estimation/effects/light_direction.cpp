@@ -106,11 +106,12 @@ class LightDirection final : public Effect {
     return rebuild(model, (turned ? kSun : kStrength) + when(refitted.variant()));
   }
 
-  std::string sentence(const Model&, const Ingredient& ingredient,
+  std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     const std::string variant = ingredient.variant();
+    const std::string then = examples_quoted(*model.scene, when(variant));
     if (starts_with(variant, kAmbient))
-      return fmt::format("{} the ambient light is {} by {}", when(variant),
+      return fmt::format("{} the ambient light is {} by {}", then,
                          values[0] >= 0 ? "higher" : "lower", figure(std::abs(values[0])));
     const std::string degrees =
         figure(values.head(std::min<Eigen::Index>(2, values.size())).norm() * 180.0 / EIGEN_PI);
@@ -118,10 +119,9 @@ class LightDirection final : public Effect {
     const std::string gain = fmt::format("{} % {}", figure(100.0 * std::abs(std::expm1(log_gain))),
                                          log_gain >= 0 ? "stronger" : "weaker");
     if (starts_with(variant, kStrength))
-      return fmt::format("{} the lamp is {} than told", when(variant), gain);
-    return fmt::format("{} the light comes from {} degrees beside the told direction{}",
-                       when(variant), degrees,
-                       starts_with(variant, kLamp) ? " and is " + gain : "");
+      return fmt::format("{} the lamp is {} than told", then, gain);
+    return fmt::format("{} the light comes from {} degrees beside the told direction{}", then,
+                       degrees, starts_with(variant, kLamp) ? " and is " + gain : "");
   }
 
  private:

@@ -28,9 +28,10 @@ class Softening final : public Effect {
     return all;
   }
 
-  std::string sentence(const Model&, const Ingredient& ingredient,
+  std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
-    return fmt::format("{} the body is {} % softer than before", ingredient.variant(),
+    return fmt::format("{} the body is {} % softer than before",
+                       examples_quoted(*model.scene, ingredient.variant()),
                        figure(100.0 * values[0]));
   }
 

@@ -141,7 +141,9 @@ class TensionCompressionAsymmetry final : public Effect {
                          figure(100.0 * values[0] / (3.0 * mu)));
     if (ingredient.variant() == "by a fixed share") {
       const double share = 8.0 * values[0] / (3.0 * mu);
-      return fmt::format("{} % {} in tension than in compression", figure(100.0 * std::abs(share)),
+      // A linear step may promise more than all of it.
+      return fmt::format("{} % {} in tension than in compression",
+                         figure(100.0 * std::abs(std::max(share, -1.0))),
                          share >= 0 ? "stiffer" : "softer");
     }
     // dW = -2 c e^3 uniaxially: secant stress -6 c e^2 against 3 mu e, at e = +-0.1

@@ -279,6 +279,18 @@ std::string parameter_prefix(const std::string& effect, const std::string& what,
   return effect + "." + (name.empty() ? "" : name + ".");
 }
 
+std::string examples_quoted(const Scene& scene, std::string variant) {
+  for (const auto& example : scene.capture.examples)
+    for (const auto& [before, behind] : {std::pair("from ", " on"), std::pair("in ", "")}) {
+      const std::string told = before + example.name + behind;
+      const size_t at = variant.rfind(told);
+      if (at == std::string::npos || at + told.size() != variant.size()) continue;
+      return variant.replace(at, told.size(),
+                             fmt::format("{}'{}'{}", before, example.name, behind));
+    }
+  return variant;
+}
+
 bool starts_with(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
 }

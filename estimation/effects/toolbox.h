@@ -71,6 +71,8 @@ std::vector<double> refined_ramp(const std::vector<double>& at, VectorXd& values
 /// what was wrong from another. "from the start" stays plain.
 std::string parameter_prefix(const std::string& effect, const std::string& what,
                              const std::string& when);
+/// "cam0 from twist on", as variants have it, for a sentence: "cam0 from 'twist' on".
+std::string examples_quoted(const Scene& scene, std::string variant);
 /// Two unit axes normal to `direction` and to each other.
 std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction);
 Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector);

@@ -89,8 +89,8 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
   EXPECT_THAT(text, testing::ContainsRegex("gravity +365.3 +1.00 +1.00"));
   EXPECT_THAT(text, testing::ContainsRegex("pressure +89.2 +-"));
   EXPECT_THAT(text, testing::Not(HasSubstr("creep")));
-  EXPECT_THAT(text, HasSubstr("no other got near enough to gravity"));
-  EXPECT_THAT(text, HasSubstr("none of the others"));
+  EXPECT_THAT(text, HasSubstr("no other was refitted"));
+  EXPECT_THAT(text, HasSubstr("to first order no other changes"));
   step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
   EXPECT_EQ(choice_table(before, step, 1.0), "");
 }
@@ -106,10 +106,38 @@ TEST(Text, AChoiceTellsWhatElseItCouldHaveBeen) {
       "rivals": [{"effect": "gravity", "score": 0.0}, {"effect": "pressure", "score": -5.3}]})");
   const std::string near = choice_table(before, step, 1.0);
   EXPECT_THAT(near, HasSubstr("pressure, the next, is behind by 5.3: odds of 200 to one"));
-  EXPECT_THAT(near, HasSubstr("swelling (cosine 0.931)"));
+  EXPECT_THAT(near, HasSubstr("swelling 0.931"));
   EXPECT_THAT(near, testing::Not(HasSubstr("0.990")));
   step["rivals"][1]["score"] = -7309.8;
   EXPECT_THAT(choice_table(before, step, 1.0), HasSubstr("odds of more than a million to one"));
+  step["chi_fit"] = 3.2;  // nobody is sure of an effect beside which much is left
+  EXPECT_THAT(choice_table(before, step, 1.0), HasSubstr("alone it leaves 3.20 times the floor"));
+}
+
+/// One effect in another form is no choice between effects: what it is now, and what that takes.
+TEST(Text, AnotherFormIsToldInItsOwnWords) {
+  const auto before = nlohmann::json::parse(R"({"added": "swelling", "chi_fit": 6.0,
+      "chi_validate": 8.0, "says": ["swelling: the body has swollen by 1 %"]})");
+  const auto step = nlohmann::json::parse(R"({"added": "swelling", "dropped": ["swelling"],
+      "chi_fit": 1.5, "chi_validate": 1.0,
+      "says": ["swelling: it has swollen by 1 % in the middle, more to the left"]})");
+  EXPECT_EQ(
+      choice_table(before, step, 1.0),
+      "\nwhy swelling, other form: it has swollen by 1 % in the middle, more to the left (chi "
+      "over the\n  floor: 1.50 fitted, 1.00 held out; before: 6.00 fitted, 8.00 held out)\n");
+}
+
+/// The bar is of what is over the floor, not of the floor.
+TEST(Text, TheBarEndsAtTheFloor) {
+  const auto timeline = nlohmann::json::parse(R"({"floor": {"chi": 1.0}, "steps": [
+      {"name": "base", "chi_fit": 5.0}, {"name": "swelling", "chi_fit": 3.0},
+      {"name": "swelling", "dropped": ["swelling"], "chi_fit": 1.0}]})");
+  EXPECT_EQ(
+      steps_table(timeline),
+      "  step                  chi fitted  chi held out  rms px  chi / floor\n"
+      "  base                  5.000       -             0.000   5.00 ####################\n"
+      "  swelling              3.000       -             0.000   3.00 ##########..........\n"
+      "  swelling, other form  1.000       -             0.000   1.00 ....................\n");
 }
 
 }  // namespace

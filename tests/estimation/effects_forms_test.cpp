@@ -60,10 +60,11 @@ TEST(Catalogue, SentencesTellWhichAndWhen) {
             "the body creeps from 'rest' on, the first example: in the last ('press') it gives 25 "
             "% more, growing steadily with the order");
   EXPECT_EQ(said("camera_pose", "side from bend on", VectorXd::Zero(6)),
-            "camera side from bend on stands elsewhere, turned by 0 degrees and moved by 0 mm");
-  EXPECT_EQ(said("light_direction", "lamp from bend on", Vector3d(0.03, 0.04, -0.1)),
-            "from bend on the light comes from 2.86 degrees beside the told direction and is 9.52 "
-            "% weaker");
+            "camera side from 'bend' on stands elsewhere, turned by 0 degrees and moved by 0 mm");
+  EXPECT_EQ(
+      said("light_direction", "lamp from bend on", Vector3d(0.03, 0.04, -0.1)),
+      "from 'bend' on the light comes from 2.86 degrees beside the told direction and is 9.52 "
+      "% weaker");
 }
 
 /// What a plainer form does without is nothing at its null.

@@ -180,19 +180,25 @@ TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
             "nothing is missing but a finer mesh (mesh_resolution): on it, little is left");
   EXPECT_EQ(say(Verdict::explained, {}, {}, "little is left", ""),
             "nothing is missing: little is left");
-  EXPECT_EQ(say(Verdict::explained, {}, {}, "little is left", "creep was refused"),
-            "nothing that is missing pays for itself: little is left; creep was refused");
+  EXPECT_EQ(
+      say(Verdict::explained, {}, {}, "little is left", "creep was refused"),
+      "nothing that is missing pays for itself: little is left; nothing more was added: creep "
+      "was refused");
   EXPECT_EQ(say(Verdict::unexplained, {}, {}, "much is left", ""),
             "not in the catalogue: much is left");
   EXPECT_EQ(say(Verdict::unexplained, {"gravity"}, {}, "much is left", ""),
             "named, but not enough: gravity; with it, much is left");
   EXPECT_EQ(say(Verdict::unexplained, {"mesh_resolution"}, {}, "much is left", "creep was refused"),
             "nothing that was tried explains it: even on a finer mesh (mesh_resolution), much is "
-            "left; creep was refused");
+            "left; nothing more was added: creep was refused");
   EXPECT_EQ(
       say(Verdict::ambiguous, {"gravity", "creep"}, {"creep", "softening"}, "little is left", ""),
-      "missing: gravity and creep; with them, little is left; these could not be told apart: "
-      "creep, softening");
+      "missing: gravity and either creep or softening (these photos cannot tell which); with them, "
+      "little is left");
+  EXPECT_EQ(
+      say(Verdict::ambiguous, {"creep"}, {"creep", "softening"}, "little is left", ""),
+      "missing: either creep or softening (these photos cannot tell which); with it, little is "
+      "left");
 }
 
 /// The told model of a capture that hides nothing, nothing diagnosed.
