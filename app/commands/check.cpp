@@ -234,9 +234,10 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
          fmt::format("{:.5g}", camera.fx), vector_text(camera.centre())});
   if (!capture.cameras.empty()) session.say("\ncameras\n{}", table(rows));
   rows = {{"region", "area [" + capture.units.length + "^2]", "nodes", "centroid", "normal"}};
+  const double size = scene.body->mesh.X.cwiseAbs().maxCoeff();
   for (const auto& [name, region] : scene.body->regions.all())
     rows.push_back({name, fmt::format("{:.5g}", region.area), std::to_string(region.nodes.size()),
-                    vector_text(region.centroid), vector_text(region.normal)});
+                    vector_text(region.centroid, size), vector_text(region.normal)});
   if (rows.size() > 1) session.say("\nregions\n{}", table(rows));
 }
 

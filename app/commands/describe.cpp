@@ -2,15 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hookeye {
 
 nlohmann::ordered_json describe_vector(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-std::string vector_text(const Vector3d& v) {
-  // what rounding left beside larger components reads as zero (and -0 as 0)
-  const double least = 1e-9 * v.cwiseAbs().maxCoeff();
+std::string vector_text(const Vector3d& v, double scale) {
+  // what rounding left reads as zero (and -0 as 0)
+  const double least = 1e-9 * std::max(scale, v.cwiseAbs().maxCoeff());
   const auto shown = [&](double x) { return std::abs(x) <= least ? 0.0 : x; };
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", shown(v.x()), shown(v.y()), shown(v.z()));
 }
