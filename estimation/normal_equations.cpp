@@ -167,29 +167,65 @@ std::vector<std::string> name_directions(const std::vector<Parameter>& parameter
 struct Cluster {
   Eigen::MatrixXd H;
   VectorXd s;  ///< J^T r; their sum vanishes
+  bool photo = false;
 };
 
-/// By how much the scatter of the clusters exceeds what `covariance` makes of it, as a factor on
-/// the standard deviation of parameter i; at least 1. Cluster-robust (Liang and Zeger 1986): what a
-/// renderer or a lens gets wrong moves together in one photo, by a few thousandths of a pixel that
-/// no correlation between cells shows, and otherwise in the next. Few clusters know their scatter
-/// badly: Student's quantile for as many as there are in effect.
-double excess_of_scatter(const std::vector<Cluster>& clusters, const Eigen::MatrixXd& inverse,
+/// By how much the scatter of the clusters exceeds what a covariance makes of it, as a factor on
+/// the variance of a parameter, and how many clusters tell so in effect. Cluster-robust (Liang and
+/// Zeger 1986): what a renderer or a lens gets wrong moves together in one photo, by a few
+/// thousandths of a pixel that no correlation between cells shows, and otherwise in the next.
+struct Excess {
+  double variance = 1.0, clusters = 0.0;
+  bool of_photos = false;  ///< most of what is known of the parameter
+  bool known() const { return clusters >= 2.0; }
+  /// On the standard deviation. Few clusters know their scatter badly: Student's quantile for as
+  /// many as there are in effect.
+  double factor() const {
+    if (!known()) return 1.0;
+    const double student = 1.0 + 1.5 / (clusters - 1.0);  // of 1.96, to 2 % from five degrees on
+    return std::max(1.0, student * std::sqrt(variance));
+  }
+};
+
+Excess excess_of_scatter(const std::vector<Cluster>& clusters, const Eigen::MatrixXd& inverse,
                          const Eigen::MatrixXd& covariance, Eigen::Index i) {
-  if (covariance(i, i) <= 0.0) return 1.0;
+  if (covariance(i, i) <= 0.0) return {};
   const VectorXd row = inverse.row(i);
-  double scatter = 0.0, weight = 0.0, weight2 = 0.0;
+  double scatter = 0.0, weight = 0.0, weight2 = 0.0, photos = 0.0;
   for (const Cluster& one : clusters) {
     const double w = row.dot(one.H * row);
     scatter += std::pow(row.dot(one.s), 2);
     weight += w;
     weight2 += w * w;
+    photos += one.photo ? w : 0.0;
   }
-  const double effective = weight2 > 0.0 ? weight * weight / weight2 : 0.0;
-  if (effective < 2.0) return 1.0;
-  const double student = 1.0 + 1.5 / (effective - 1.0);  // of 1.96, to 2 % from five degrees on
-  return std::max(1.0,
-                  student * std::sqrt(effective / (effective - 1.0) * scatter / covariance(i, i)));
+  Excess out;
+  out.clusters = weight2 > 0.0 ? weight * weight / weight2 : 0.0;
+  out.of_photos = photos > 0.5 * weight;
+  if (out.known()) out.variance = out.clusters / (out.clusters - 1.0) * scatter / covariance(i, i);
+  return out;
+}
+
+/// The factors of all parameters. One that a single photo knows (a camera that was knocked before
+/// it) has taken on what moves together there, and nothing is left to tell by how much: it takes
+/// the mean excess of those that several photos know.
+VectorXd factors_of_scatter(const std::vector<Cluster>& clusters, const Eigen::MatrixXd& inverse,
+                            const Eigen::MatrixXd& covariance) {
+  std::vector<Excess> all;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i)
+    all.push_back(excess_of_scatter(clusters, inverse, covariance, i));
+  Excess mean{0.0, 0.0};
+  double known = 0.0;
+  for (const Excess& one : all)
+    if (one.known() && one.of_photos)
+      mean.variance += one.variance, mean.clusters = std::max(mean.clusters, one.clusters), ++known;
+  mean.variance /= std::max(1.0, known);
+  VectorXd out(covariance.rows());
+  for (Eigen::Index i = 0; i < out.size(); ++i) {
+    const Excess& own = all[static_cast<size_t>(i)];
+    out[i] = own.known() || !own.of_photos ? own.factor() : mean.factor();
+  }
+  return out;
 }
 
 }  // namespace
@@ -208,26 +244,28 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
     std::vector<bool> counts(n, !example.held_out);
     for (int i = 0; i < n; ++i)
       if (parameters[i].example == example.example) counts[i] = true;
-    auto add = [&](const Eigen::MatrixXd& Hk, VectorXd sk, double inflation, bool same_cluster) {
+    auto add = [&](const Eigen::MatrixXd& Hk, VectorXd sk, double inflation, bool photo,
+                   bool same_cluster) {
       const Eigen::MatrixXd counted = part_of(Hk, counts);
       for (int i = 0; i < n; ++i)
         if (!counts[i]) sk[i] = 0.0;
       H += counted;
       V += inflation * counted;
-      if (!same_cluster) clusters.push_back({Eigen::MatrixXd::Zero(n, n), VectorXd::Zero(n)});
+      if (!same_cluster)
+        clusters.push_back({Eigen::MatrixXd::Zero(n, n), VectorXd::Zero(n), photo});
       clusters.back().H += scale.asDiagonal() * counted * scale.asDiagonal();
       clusters.back().s += scale.cwiseProduct(sk);
     };
     const auto statistics = photo_statistics(example.photos);
     for (size_t k = 0; k < example.photos.size(); ++k) {
       const auto& photo = example.photos[k];
-      add(photo.sums.JtJ.topLeftCorner(n, n), photo.sums.Jtr.head(n), statistics[k].inflation,
+      add(photo.sums.JtJ.topLeftCorner(n, n), photo.sums.Jtr.head(n), statistics[k].inflation, true,
           k > 0 && example.photos[k - 1].photo == photo.photo);
     }
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd J = measured.J.leftCols(n);
       add(J.transpose() * J, J.transpose() * measured.r,
-          std::max(1.0, measured.r.squaredNorm() / 3.0), false);
+          std::max(1.0, measured.r.squaredNorm() / 3.0), false, false);
     }
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();
@@ -248,8 +286,7 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
   }
   out.directions = name_directions(parameters, without);
   const Eigen::MatrixXd covariance = inverse * V * inverse;
-  VectorXd wider = scale;
-  for (int i = 0; i < n; ++i) wider[i] *= excess_of_scatter(clusters, inverse, covariance, i);
+  const VectorXd wider = scale.cwiseProduct(factors_of_scatter(clusters, inverse, covariance));
   out.determined = wider.asDiagonal() * covariance * wider.asDiagonal();
   out.undetermined = scale.asDiagonal() * unknown * scale.asDiagonal();
   return out;

@@ -218,6 +218,44 @@ TEST(ParameterCovariance, ScatterFromPhotoToPhotoWidensIt) {
   EXPECT_LT(most, 12.0);
 }
 
+/// A camera that was knocked before the last photo has taken on what moves together there: it is as
+/// far off as the others scatter. A sensor's zero knows nothing of photos.
+TEST(ParameterCovariance, WhatOnePhotoKnowsTakesTheScatterOfTheOthers) {
+  std::mt19937 engine(7);
+  std::normal_distribution<double> normal;
+  constexpr double kCommon = 5.0;
+  constexpr int kRepeats = 200;
+  int missed = 0;
+  for (int i = 0; i < kRepeats; ++i) {
+    Evaluation seen;
+    seen.columns = 3;
+    ExampleEvaluation example;
+    for (int k = 0; k < 10; ++k) {
+      PhotoEvaluation photo;
+      photo.photo = k;
+      photo.sums.JtJ = Eigen::Vector3d(1e4, k == 9 ? 1e4 : 0.0, 0.0).asDiagonal();
+      photo.sums.Jtr = Eigen::Vector3d(100.0 * kCommon * normal(engine), 0.0, 0.0);
+      example.photos.push_back(photo);
+    }
+    double mean = 0.0;
+    for (const auto& photo : example.photos) mean += photo.sums.Jtr[0] / 10.0;
+    for (auto& photo : example.photos) photo.sums.Jtr[0] -= mean;  // at the optimum
+    MeasuredEvaluation zero;
+    zero.predicted = zero.r = Eigen::Vector3d::Zero();
+    zero.J = Eigen::Matrix3d::Zero();
+    zero.J(0, 2) = 100.0;
+    example.measured.push_back(zero);
+    seen.examples.push_back(example);
+    const auto known =
+        parameter_covariance(seen, {level("a"), level("b"), level("c")}, VectorXd::Zero(3));
+    const double off =
+        kCommon * normal(engine) / 100.0;  // of b, as the errors of that photo have it
+    missed += std::abs(off) > 1.96 * std::sqrt(known.determined(1, 1));
+    EXPECT_NEAR(std::sqrt(known.determined(2, 2)), 0.01, 1e-6);
+  }
+  EXPECT_LT(missed, 0.05 * kRepeats + 3.0 * std::sqrt(0.05 * kRepeats));
+}
+
 /// All residuals of some pixels.
 struct Residuals {
   Eigen::MatrixXd J = Eigen::MatrixXd::Random(60, 4);
