@@ -143,21 +143,15 @@ std::string too_little_to_name(const Diagnosis& diagnosis) {
 
 namespace {
 
-std::string untold(const std::vector<std::string>& tie) {
-  return fmt::format("these photos cannot tell {} apart", fmt::join(tie, " and "));
-}
-
-/// "creep and either gravity or swelling (...)", where the missing ones hold one of a tie.
+/// "gravity and either creep or softening (...)". Of a tie the first stands in the model
+/// (discover() settles it so), the others would do in its place.
 std::string named_with_tie(std::vector<std::string> missing, const std::vector<std::string>& tie) {
-  const auto tied = [&](const std::string& one) {
-    return std::find(tie.begin(), tie.end(), one) != tie.end();
-  };
-  const auto at = std::find_if(missing.begin(), missing.end(), tied);
-  if (tie.empty() || at == missing.end())
-    return fmt::format("{}{}", fmt::join(missing, " and "),
-                       tie.empty() ? "" : " (" + untold(tie) + ")");
-  *at = fmt::format("either {} (these photos cannot tell which)", fmt::join(tie, " or "));
-  std::rotate(at, at + 1, missing.end());
+  const auto standing =
+      tie.empty() ? missing.end() : std::find(missing.begin(), missing.end(), tie.front());
+  if (standing != missing.end()) {
+    *standing = fmt::format("either {} (these photos cannot tell which)", fmt::join(tie, " or "));
+    std::rotate(standing, standing + 1, missing.end());
+  }
   return fmt::format("{}", fmt::join(missing, " and "));
 }
 
@@ -176,7 +170,6 @@ std::string say(Verdict verdict, const std::vector<std::string>& missing,
                        verdict == Verdict::unexplained ? "named, but not enough" : "missing",
                        named_with_tie(physical, tie), physical.size() == 1 ? "it" : "them",
                        mesh.empty() ? "" : " on " + finer, why);
-  if (!tie.empty()) why += "; " + untold(tie);
   if (verdict != Verdict::explained)
     return fmt::format(
         "{}: {}{}", refused.empty() ? "not in the catalogue" : "nothing that was tried explains it",
