@@ -226,6 +226,7 @@ TEST(ParameterCovariance, WhatOnePhotoKnowsTakesTheScatterOfTheOthers) {
   constexpr double kCommon = 5.0;
   constexpr int kRepeats = 200;
   int missed = 0;
+  double wide = 0.0;  // of b, in white standard errors
   for (int i = 0; i < kRepeats; ++i) {
     Evaluation seen;
     seen.columns = 3;
@@ -251,8 +252,10 @@ TEST(ParameterCovariance, WhatOnePhotoKnowsTakesTheScatterOfTheOthers) {
     const double off =
         kCommon * normal(engine) / 100.0;  // of b, as the errors of that photo have it
     missed += std::abs(off) > 1.96 * std::sqrt(known.determined(1, 1));
+    wide += 100.0 * std::sqrt(known.determined(1, 1)) / kRepeats;
     EXPECT_NEAR(std::sqrt(known.determined(2, 2)), 0.01, 1e-6);
   }
+  EXPECT_NEAR(wide, kCommon * (1.0 + 1.5 / 9.0), 0.8);
   EXPECT_LT(missed, 0.05 * kRepeats + 3.0 * std::sqrt(0.05 * kRepeats));
 }
 
