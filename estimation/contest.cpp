@@ -265,41 +265,6 @@ std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
   return losers;
 }
 
-std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
-                                                                const Step& step,
-                                                                const Contest& contest,
-                                                                const DiscoverOptions& options,
-                                                                const DiscoverEvents& events) {
-  std::optional<Pair> best;
-  const auto& refits = contest.refits;
-  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
-  for (size_t i = 0; i < refits.size(); ++i)
-    for (size_t k = i + 1; k < refits.size(); ++k) {
-      if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
-      const std::string both = refits[i].effect + " and " + refits[k].effect;
-      if (events.refitting) events.refitting(both);
-      const auto& added = refits[k].fitted.form.ingredients.back();
-      const auto n = static_cast<Eigen::Index>(added->parameters().size());
-      ModelForm form = refits[i].fitted.form;
-      form.ingredients.push_back(added);
-      VectorXd p(refits[i].fitted.p.size() + n);
-      p << refits[i].fitted.p, refits[k].fitted.p.tail(n);
-      FitOptions warm = options.fit;
-      warm.coarse_to_fine = false;
-      auto result = fit(workspace, form, p, warm);
-      if (events.refitted) events.refitted(both, result);
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-        if (cancelled(*failure)) return *failure;
-        continue;
-      }
-      auto& fitted = std::get<Fitted>(result);
-      const double score = refit_score(fitted, yardstick);
-      if (!best || score > best->second.score)
-        best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
-    }
-  return best;
-}
-
 /// Of a misfit that effects had nothing to do with they explain 4 % in the median and 22 % in one
 /// of four (linear steps of base models, bench/blind --small): where much is left, what takes less
 /// than a tenth of the fitted photos', of the held-out ones' and of the sensors' may be part of
@@ -321,7 +286,9 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
   const double before_r2 = measured_r2(step.fitted.evaluation);
   const double after_r2 = measured_r2(with.fitted.evaluation);
   const bool speak = sensors_speak(before_r2 - after_r2, step.diagnosis);
-  if (fell(false) < least && moves_photos && !speak)
+  const double seen =
+      spoils_held_out(step.fitted, floor) ? std::max(fell(false), fell(true)) : fell(false);
+  if (seen < least && moves_photos && !speak)
     return with.effect + " was refitted, but takes away less than renderers and meshes err by";
   const auto leaves = [&](bool held_out) {
     const double before = over_floor(step.fitted, floor, held_out);
@@ -340,35 +307,6 @@ std::string refused_by(const Step& step, Refit with) {
   const Yardstick yardstick{&with.fitted, &step.diagnosis.floor, measured_noise2(with.fitted)};
   with.score = refit_score(with.fitted, yardstick);
   return why_refused(step, refit_score(step.fitted, yardstick), with);
-}
-
-std::variant<std::optional<Pair>, NumericalFailure> refit_on_finer_mesh(
-    Workspace& workspace, const Step& step, const Contest& contest, const DiscoverOptions& options,
-    const DiscoverEvents& events) {
-  const Refit& best = contest.refits.front();
-  const Floor& floor = step.diagnosis.floor;
-  if (numerical(best.effect) ||
-      over_floor(best.fitted, floor, false) > 0.5 * over_floor(step.fitted, floor, false) ||
-      held_out_allows(best.fitted, step.fitted, floor, least_fall(step.diagnosis, best.effect)))
-    return std::nullopt;
-  const auto diagnosed = diagnose(workspace, best.fitted, options.diagnosis);
-  if (auto* failure = std::get_if<NumericalFailure>(&diagnosed)) return *failure;
-  const auto& diagnosis = std::get<Diagnosis>(diagnosed);
-  for (const EffectScore& score : diagnosis.effects) {
-    if (!numerical(score.effect) || !nameable(score, diagnosis)) continue;
-    const std::string words = best.effect + " and " + score.effect;
-    if (events.refitting) events.refitting(words);
-    auto result = add_effect(workspace, best.fitted, score, options.fit);
-    if (events.refitted) events.refitted(words, result);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
-      continue;
-    }
-    Fitted& both = std::get<Fitted>(result);
-    if (refused_by(step, {best.effect, both, 0.0}).empty())
-      return Pair{best, {score.effect, std::move(both), 0.0}};
-  }
-  return std::nullopt;
 }
 
 }  // namespace hookeye

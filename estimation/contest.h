@@ -91,27 +91,6 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events);
 
-/// Two of the refits together, where none is enough alone: each pair fitted from what the two came
-/// to, with the correlation of the contest. The best pair, its first effect the one that stood
-/// before the other; empty where no pair has an equilibrium.
-struct Pair {
-  Refit first;   ///< alone, as it was refitted
-  Refit second;  ///< with both
-};
-std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
-                                                                const Step& step,
-                                                                const Contest& contest,
-                                                                const DiscoverOptions& options,
-                                                                const DiscoverEvents& events);
-
-/// Held-out photos speak against the best of the contest, which takes more than half of what is
-/// over the floor from the fitted ones: beside so much less the mesh's own error may be all that
-/// they lost. The best and, where a finer mesh stands out beside it, that as the second; empty: it
-/// does not, or with it they speak against the best as well.
-std::variant<std::optional<Pair>, NumericalFailure> refit_on_finer_mesh(
-    Workspace& workspace, const Step& step, const Contest& contest, const DiscoverOptions& options,
-    const DiscoverEvents& events);
-
 /// Why a refit does not stand beside the step that it started from, whose score is `before`; ""
 /// where it does.
 std::string why_refused(const Step& step, double before, const Refit& with);

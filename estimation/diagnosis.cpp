@@ -8,6 +8,7 @@
 #include <map>
 
 #include "estimation/candidates.h"
+#include "estimation/contest.h"
 #include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 #include "estimation/gram.h"
@@ -83,7 +84,13 @@ struct Context {
   const Evaluation& evaluation;
   const DiagnosisSums& sums;
   const Model model;
+  bool held_out_missed;
 };
+
+/// Where held-out photos alone show what is missing, what an effect takes of them counts.
+bool held_out_say_so(const EffectScore& score, bool held_out_missed) {
+  return held_out_missed && !numerical(score.effect) && score.explains_held_out > 0.5;
+}
 
 EffectScore describe(const Context& context, const Candidate& candidate,
                      const ProjectedHypothesis& weighted) {
@@ -123,8 +130,12 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   score.measured_fall = before - after;
   score.why = sensors_alone(*candidate.ingredient)
                   ? sentence + "; seen in the measured forces, not in photos"
-                  : fmt::format("{} would remove {:.0f} % of the misfit{}", sentence,
+                  : fmt::format("{} would remove {:.0f} % of the misfit{}{}", sentence,
                                 100.0 * score.explains,
+                                held_out_say_so(score, context.held_out_missed)
+                                    ? fmt::format(" and {:.0f} % of the held-out photos'",
+                                                  100.0 * score.explains_held_out)
+                                    : "",
                                 where_seen(context.scene, context.evaluation, step));
   if (!sensors_alone(*candidate.ingredient) && score.measured_fall >= 2.0 * kNameable)
     score.why += seen_by_sensors(before, after, sums.measured_count);
@@ -250,7 +261,9 @@ bool sensors_speak(double fall, const Diagnosis& diagnosis) {
 }
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
-  return score.testable && score.evidence >= std::max(kNameable, diagnosis.gate) &&
+  if (!score.testable || score.evidence < diagnosis.gate) return false;
+  if (held_out_say_so(score, diagnosis.held_out_missed)) return true;
+  return score.evidence >= kNameable &&
          ((score.best && sensors_alone(*score.best)) ||
           score.fall >= least_fall(diagnosis, score.effect) ||
           (!numerical(score.effect) && sensors_speak(score.measured_fall, diagnosis)));
@@ -364,6 +377,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   const Evaluation& evaluation = std::get<Evaluation>(result);
   out.floor = measure_floor(scene, evaluation);
+  out.held_out_missed = spoils_held_out(fitted, out.floor);
   const DiagnosisSums sums = diagnosis_sums(evaluation, out.floor);
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
@@ -381,7 +395,8 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     if (!first && scored.evidence[i] > scored.evidence[at->second]) at->second = i;
   }
 
-  const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p)};
+  const Context context{
+      fitted, scene, evaluation, sums, fitted.form.realise(fitted.p), out.held_out_missed};
   for (const auto& [name, value] : by_effect(scored.candidates, scored.evidence))
     out.effects.push_back(score_effect(context, scored, scored.best.at(name), value, out));
   find_confusions(sums.effective.H, scored.projected, scored.best, out.effects);

@@ -68,6 +68,8 @@ struct Diagnosis {
   /// Mean square of what the same would change in fitted forces, moments and positions, over their
   /// told noise: so much of a misfit is the mesh's.
   double mesh_in_measured = 0.0;
+  /// Fitted photos are at the floor, held-out ones are not: those alone show what is missing.
+  bool held_out_missed = false;
   /// Change of chi^2 by what the next finer mesh would do to a model whose mesh has been refined:
   /// by Richardson's rule, second order, 0.7^2 of what the refinement did. 0: not refined.
   double mesh_fall = 0.0;
@@ -117,7 +119,9 @@ bool brightness_alone(const Ingredient& ingredient);
 /// Testable, above the simulated gate, and, where it is seen in photos alone, above the renderer's
 /// and the mesh's own errors; or sensors speak for it (sensors_speak; of the mesh they have
 /// mesh_in_measured). (The mesh's own effect is not held to the mesh's error: it is not offered
-/// then.)
+/// then.) Where held-out photos alone show what is missing: above the gate, and what the fitted
+/// data make of it takes more than half of what those have over the floor. They had no part in its
+/// values.
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 /// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
 /// or because the information criterion puts them before it (method.md, 3 and 5). Without the

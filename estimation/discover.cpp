@@ -8,6 +8,7 @@
 
 #include "estimation/contest.h"
 #include "estimation/fit_to_all.h"
+#include "estimation/pairs.h"
 #include "estimation/swaps.h"
 #include "estimation/widening.h"
 
@@ -223,9 +224,9 @@ class Search {
   WentOn add_pair(Contest& contest, int room) {
     const Step& step = newest();
     if (room < 2) return false;
-    auto on_mesh = refit_on_finer_mesh(workspace_, step, contest, options_, events_);
-    if (auto* failure = std::get_if<NumericalFailure>(&on_mesh)) return *failure;
-    auto& pair = std::get<std::optional<Pair>>(on_mesh);
+    auto beside = refit_beside_best(workspace_, step, contest, options_, events_);
+    if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
+    auto& pair = std::get<std::optional<Pair>>(beside);
     if (!pair) {
       if (at_floor(step.fitted, step.diagnosis.floor) &&
           measured_explained(step.fitted, step.diagnosis))

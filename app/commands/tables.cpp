@@ -76,6 +76,14 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
              "to 1)\n"
              "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
              std::max(diagnosis.gate, kNameable)) +
+         (diagnosis.held_out_missed && diagnosis.gate < kNameable
+              ? wrapped(
+                    fmt::format("or above {:.1f} where it would remove most of what the held-out "
+                                "photos, which alone show that something is missing, have over "
+                                "the floor",
+                                diagnosis.gate),
+                    2)
+              : "") +
          sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
 }
 

@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "estimation/pairs.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -43,6 +44,23 @@ TEST(Contest, PairsAreRefittedTogether) {
   EXPECT_NEAR(pair->second.fitted.p[pair->second.fitted.p.size() - 1], 0.03, 0.003);
 }
 
+/// Held-out photos speak against the best, `first`; `second` with it is what they speak for.
+std::optional<Pair> beside_refused(Workspace& workspace, const Step& step, const char* first,
+                                   const char* second) {
+  const auto contest = std::get<Contest>(refit_leaders(workspace, step, {}, {}, {}));
+  if (contest.refits.empty()) return {};
+  const Refit& best = contest.refits.front();
+  EXPECT_EQ(best.effect, first);
+  EXPECT_THAT(why_refused(step, contest.before, best), testing::HasSubstr("held-out examples"));
+  const auto found = refit_beside_best(workspace, step, contest, {}, {});
+  const auto& pair = std::get<std::optional<Pair>>(found);
+  if (pair) {
+    EXPECT_EQ(pair->first.effect, first);
+    EXPECT_EQ(pair->second.effect, second);
+  }
+  return pair;
+}
+
 /// A grip that slips in a twist, on a mesh that is too coarse: the modulus that made up for some of
 /// both had suited the held-out photos, and the right effect alone makes them worse.
 TEST(Contest, HeldOutPhotosRefuseNobodyForTheMeshsError) {
@@ -76,17 +94,26 @@ hidden:
 )"});
   Workspace workspace(small.scene);
   const Step step = base_step(workspace);
-  const auto contest = std::get<Contest>(refit_leaders(workspace, step, {}, {}, {}));
-  ASSERT_FALSE(contest.refits.empty());
-  const Refit& best = contest.refits.front();
-  EXPECT_EQ(best.effect, "grip_slip");
-  EXPECT_THAT(why_refused(step, contest.before, best), testing::HasSubstr("held-out examples"));
-  const auto found = refit_on_finer_mesh(workspace, step, contest, {}, {});
-  const auto& pair = std::get<std::optional<Pair>>(found);
+  const auto pair = beside_refused(workspace, step, "grip_slip", "mesh_resolution");
   ASSERT_TRUE(pair);
-  EXPECT_EQ(pair->first.effect, "grip_slip");
-  EXPECT_EQ(pair->second.effect, "mesh_resolution");
   EXPECT_TRUE(at_floor(pair->second.fitted, step.diagnosis.floor));
+}
+
+/// A camera was knocked, and the body softened before loads whose motion is told: no fitted photo
+/// shows that, their forces hint at it and held-out photos are missed by much, with the camera in
+/// the model by more, as a modulus had made up for some of it.
+TEST(Contest, HeldOutPhotosRefuseNobodyForWhatElseIsMissing) {
+  const SmallScene small(
+      {.hidden = "hidden:\n  - {effect: camera_pose, variant: cam0 from pull on, values: "
+                 "{camera_pose.cam0 from pull on.rx: -0.0015}}\n"
+                 "  - {effect: softening, variant: from press on, values: {softening.d: 0.3}}\n",
+       .loads = "  press: {move: [0, 0, -0.06]}\n  twist: {rotate: 20}\n"});
+  Workspace workspace(small.scene);
+  const Step step = base_step(workspace);
+  const auto pair = beside_refused(workspace, step, "camera_pose", "softening");
+  ASSERT_TRUE(pair);
+  EXPECT_LT(over_floor(pair->second.fitted, step.diagnosis.floor, true),
+            0.1 * over_floor(step.fitted, step.diagnosis.floor, true));
 }
 
 /// A field that was fitted alone has taken on what a soft clamp does. Who lost to it runs beside it

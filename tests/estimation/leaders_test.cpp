@@ -91,6 +91,23 @@ TEST(Leaders, WhatSensorsSpeakForIsNamedThoughNoPhotoMoves) {
   EXPECT_THAT(leaders(found), IsEmpty());
 }
 
+/// Above the gate by chance once in twenty times, and by chance held-out photos do not say the same.
+TEST(Leaders, WhatHeldOutPhotosAloneShowIsNamedByThem) {
+  EffectScore faint = scored("softening", 4.0);
+  faint.explains_held_out = 0.6;
+  Diagnosis left = of({faint});
+  left.gate = 3.0;
+  EXPECT_THAT(leaders(left), IsEmpty()) << "fitted and held-out photos are missed, or neither";
+  left.held_out_missed = true;
+  EXPECT_THAT(leaders(left), ElementsAre("softening"));
+  left.gate = 4.5;
+  EXPECT_THAT(leaders(left), IsEmpty());
+  left.gate = 3.0, left.effects[0].explains_held_out = 0.4;
+  EXPECT_THAT(leaders(left), IsEmpty());
+  faint.effect = "mesh_resolution", left.effects[0] = faint;
+  EXPECT_THAT(leaders(left), IsEmpty());
+}
+
 /// Told as a hint alone, and only where photos that no score has seen speak for it.
 TEST(Leaders, WhatIsTooLittleToBeNamedIsAHint) {
   EffectScore small = scored("strain_stiffening", 50.0);
