@@ -84,7 +84,7 @@ class Search {
       if (std::get<bool>(settled)) continue;
       auto widened = widened_form(true);
       if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
-      if (std::get<bool>(widened) || dropped_unsupported() || reopened()) continue;
+      if (std::get<bool>(widened) || dropped_idle() || reopened()) continue;
       auto other = widened_loser();
       if (auto* failure = std::get_if<NumericalFailure>(&other)) return *failure;
       if (!std::get<bool>(other)) break;
@@ -304,9 +304,12 @@ class Search {
 
   /// An effect that the last model can do without leaves it; what was added last of the others
   /// stands anew.
-  bool dropped_unsupported() {
-    auto lighter = drop_unsupported(workspace_, newest().fitted, out_.floor, base_, options_);
-    if (!lighter || !unsupported_.insert(lighter->effect).second) return false;
+  bool dropped_idle() {
+    const Fitted& all = newest().fitted;
+    auto lighter = drop_unsupported(workspace_, all, out_.floor, base_, options_);
+    if (!lighter)
+      lighter = drop_beside_smaller(workspace_, all, out_.floor, base_, options_.fit, events_);
+    if (!lighter || !idle_.insert(lighter->effect).second) return false;
     const std::string last = lighter->fitted.form.ingredients.back()->name();
     stand_in(step_with(last, std::move(lighter->fitted), {last, lighter->effect}));
     return true;
@@ -373,7 +376,7 @@ class Search {
   LastContest last_contest_;
   std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
   std::optional<Step> together_;  ///< second of a pair, once the first is written
-  std::set<std::string> unsupported_;  ///< were dropped once; who comes back stays
+  std::set<std::string> idle_;    ///< were dropped once; who comes back stays
   std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
 };
 

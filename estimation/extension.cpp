@@ -11,6 +11,12 @@ const Effect* remeshed_by(const Ingredient& ingredient) {
   return effect && effect->remeshes(ingredient.variant()) ? effect : nullptr;
 }
 
+void work_out_anew(ModelForm& form, const VectorXd& p) {
+  for (auto& ingredient : form.ingredients)
+    if (const Effect* effect = remeshed_by(*ingredient))
+      ingredient = effect->rebuild(form.realise(p), ingredient->variant());
+}
+
 std::pair<std::shared_ptr<const Ingredient>, VectorXd> entering(const Model& model,
                                                                 const EffectScore& score,
                                                                 double share) {

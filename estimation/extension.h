@@ -13,6 +13,10 @@ namespace hookeye {
 /// The effect that has its own mesh in this form. Null: the mesh stays.
 const Effect* remeshed_by(const Ingredient& ingredient);
 
+/// What the refinement of a mesh changed was worked out of the model that it was added to. `form`
+/// has another effect or form now: it is worked out anew, of this one at `p`.
+void work_out_anew(ModelForm& form, const VectorXd& p);
+
 /// The refit form of a scored effect on the present mesh, and its values at `share` of the scored
 /// step from the null. The refit form may have other parameters than the scored one (log stiffness
 /// for compliance): it is told where the scored one would start.

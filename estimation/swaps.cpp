@@ -30,20 +30,19 @@ bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Paramet
   return false;
 }
 
-struct Parted {
-  ModelForm form;
-  VectorXd p;
-};
+}  // namespace
 
-/// `fitted` without its ingredient `i`, all else as it stands.
 Parted parted_from(const Fitted& fitted, size_t i) {
   const Eigen::Index offset = offset_of(fitted.form, i);
   const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
   Parted out{fitted.form, VectorXd(fitted.p.size() - n)};
   out.form.ingredients.erase(out.form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
   out.p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  work_out_anew(out.form, out.p);
   return out;
 }
+
+namespace {
 
 /// `fitted` without its ingredient `i`, fitted again from where it stands or, where that is nearer,
 /// from where the capture's own parameters started: a modulus may have made up for the effect by

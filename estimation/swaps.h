@@ -16,6 +16,13 @@ std::string form_of(const Ingredient& one);
 /// Where the values of an ingredient begin.
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient);
 
+struct Parted {
+  ModelForm form;
+  VectorXd p;
+};
+/// `fitted` without its ingredient `i`, all else as it stands.
+Parted parted_from(const Fitted& fitted, size_t i);
+
 /// Drops an earlier effect (told in the result) that a later one made idle: one backward swap.
 /// `first_effect`: how many ingredients the capture's own model has.
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimation/extension.h"
 #include "estimation/kept_stiffness.h"
 #include "estimation/swaps.h"
 
@@ -12,30 +13,16 @@ namespace {
 
 bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
 
-/// The values of an ingredient, and those before and after it.
-struct Parted {
-  VectorXd before, own, after;
-};
-
-Parted parted(const Fitted& fitted, size_t at) {
-  const Eigen::Index first = offset_of(fitted.form, at);
-  const auto own = static_cast<Eigen::Index>(fitted.form.ingredients[at]->parameters().size());
-  return {fitted.p.head(first), fitted.p.segment(first, own),
-          fitted.p.tail(fitted.p.size() - first - own)};
-}
-
-VectorXd joined(const VectorXd& before, const VectorXd& own, const VectorXd& after) {
-  VectorXd out(before.size() + own.size() + after.size());
-  out << before, own, after;
-  return out;
+VectorXd values_of(const Fitted& fitted, size_t at) {
+  return fitted.p.segment(
+      offset_of(fitted.form, at),
+      static_cast<Eigen::Index>(fitted.form.ingredients[at]->parameters().size()));
 }
 
 /// The model without the ingredient.
 Model model_without(const Fitted& fitted, size_t at) {
-  const Parted values = parted(fitted, at);
-  ModelForm without = fitted.form;
-  without.ingredients.erase(without.ingredients.begin() + static_cast<std::ptrdiff_t>(at));
-  return without.realise(joined(values.before, VectorXd(), values.after));
+  const Parted without = parted_from(fitted, at);
+  return without.form.realise(without.p);
 }
 
 /// The effect's further forms; where others were added after it, first the smaller one, which the
@@ -45,7 +32,7 @@ std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
   const Effect* effect = find_effect(narrow.name());
   if (!effect) return {};
   const Model without = model_without(fitted, at);
-  const VectorXd own = parted(fitted, at).own;
+  const VectorXd own = values_of(fitted, at);
   auto forms = effect->further_forms(without, narrow, own);
   VectorXd fewer = own;
   if (at + 1 < fitted.form.ingredients.size())
@@ -63,12 +50,14 @@ struct Reformed {
 Reformed reformed(const Fitted& narrow, size_t at, const Effect::Further& further) {
   ModelForm form = narrow.form;
   form.ingredients[at] = further.form;
-  const Parted values = parted(narrow, at);
-  VectorXd start = joined(values.before, further.values, values.after);
+  const Eigen::Index first = offset_of(narrow.form, at), own = values_of(narrow, at).size();
+  VectorXd start(narrow.p.size() - own + further.values.size());
+  start << narrow.p.head(first), further.values, narrow.p.tail(narrow.p.size() - first - own);
   const auto parameters = form.parameters();
   for (Eigen::Index i = 0; i < start.size(); ++i)
     start[i] = std::clamp(start[i], parameters[i].low, parameters[i].high);
   start = with_stiffness_of(narrow.form.realise(narrow.p), form, std::move(start));
+  work_out_anew(form, start);
   return {std::move(form), std::move(start)};
 }
 
@@ -97,6 +86,19 @@ bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale&
   return followed && followed->stalled && over_floor(followed->trial) > 0.8 * over_floor(now);
 }
 
+/// Half-size pictures show that the steps stall where three times what `now` has over the floor
+/// remains, from where nobody in a race came to win (Racer::out_of_reach_of).
+bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale& now,
+                  const FitOptions& options) {
+  const auto result = follow(workspace, other.form, other.start, now, options);
+  const auto* followed = std::get_if<Followed>(&result);
+  const auto over = [&](const Trial& trial) {
+    return Racer{"", other.form, trial, {}}.structured();
+  };
+  return followed && followed->stalled &&
+         over(followed->trial) > 3.0 * over({{}, now.chi, now.chi_validate, now.floor});
+}
+
 /// Most of what was left goes with the form; where another effect is missing, a little more than
 /// its values cost goes with any.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
@@ -110,7 +112,7 @@ std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wid
                                                 const Floor& floor, const FitOptions& options,
                                                 const DiscoverEvents& events) {
   const Ingredient& ingredient = *wide.form.ingredients[at];
-  VectorXd values = parted(wide, at).own;
+  VectorXd values = values_of(wide, at);
   const auto form =
       find_effect(ingredient.name())->plainer_form(model_without(wide, at), ingredient, values);
   if (!form) return wide;
@@ -197,6 +199,40 @@ std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& s
   if (auto& wide = std::get<std::optional<Fitted>>(result)) {
     spoiler->fitted = std::move(*wide);
     rank(contest, step);
+  }
+  return {};
+}
+
+std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
+                                         const Floor& floor, size_t first_effect,
+                                         const FitOptions& options, const DiscoverEvents& events) {
+  const auto& all = fitted.form.ingredients;
+  if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
+  const auto scale = trial_scale(workspace, fitted.form, fitted.p, options);
+  const auto* now = std::get_if<TrialScale>(&scale);
+  if (!now) return {};
+  for (size_t i = first_effect; i < all.size(); ++i) {
+    if (remeshed_by(*all[i])) continue;
+    Fitted without = fitted;
+    const Parted rest = parted_from(fitted, i);
+    without.form = rest.form, without.p = rest.p;
+    for (size_t at = first_effect; at < rest.form.ingredients.size(); ++at) {
+      const Ingredient& larger = *rest.form.ingredients[at];
+      VectorXd values = values_of(without, at);
+      auto smaller =
+          find_effect(larger.name())->smaller_form(model_without(without, at), larger, values);
+      if (!smaller) continue;
+      const std::string words =
+          smaller->name() + " as '" + smaller->variant() + "' without " + all[i]->name();
+      const Reformed other = reformed(without, at, {std::move(smaller), std::move(values)});
+      if (ends_far_off(workspace, other, *now, options)) continue;
+      if (events.refitting) events.refitting(words);
+      auto result = fit_in(workspace, without, other, options);
+      if (events.refitted) events.refitted(words, result);
+      auto* lighter = std::get_if<Fitted>(&result);
+      if (lighter && at_floor(*lighter, floor) && score_above(*lighter, fitted, floor) > -kTie)
+        return Refit{all[i]->name(), std::move(*lighter), 0.0};
+    }
   }
   return {};
 }

@@ -23,6 +23,16 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
                                                const Floor& floor, const FitOptions& options,
                                                const DiscoverEvents& events = {});
 
+/// An effect that only the larger form of another makes room for: without it, and with that other
+/// in its smaller form (Effect::smaller_form), the photos stay at the floor and the score falls by
+/// less than a tie. (A stiffness field that had taken on what swelling does stayed by a hundredth
+/// beside a wall that was fitted as a soft cushion.) Asked one by one of those that stand: each is
+/// needed beside the other as it is. Told in the result: who leaves.
+std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
+                                         const Floor& floor, size_t first_effect,
+                                         const FitOptions& options,
+                                         const DiscoverEvents& events = {});
+
 /// The same for all steps of a search: each form once beside as many others.
 class WiderForms {
  public:

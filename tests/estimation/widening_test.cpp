@@ -4,6 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <stdexcept>
+
+#include "estimation/swaps.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -119,6 +122,20 @@ TEST(Widening, TwoLayers) {
   EXPECT_NEAR(fitted.p[4], 2.0, 0.2);
 }
 
+/// The base model with a field of stiffness and these effects, each in its variant.
+ModelForm with_field_and(const test::SmallScene& small,
+                         const std::vector<std::pair<std::string, std::string>>& effects) {
+  ModelForm form = base_form(small.scene);
+  const Model model = form.realise(form.initial());
+  form.ingredients.push_back(find_effect("stiffness_field")->candidates(model, nullptr).front());
+  EXPECT_THAT(form.ingredients.back()->variant(), testing::StartsWith("field"));
+  for (const auto& [effect, variant] : effects) {
+    form.ingredients.push_back(find_effect(effect)->candidate(model, variant));
+    if (!form.ingredients.back()) throw std::runtime_error("no " + effect + " as " + variant);
+  }
+  return form;
+}
+
 /// Fitted alone a field takes on what the clamp does, and no one place says as much. Once the clamp
 /// stands beside it, one does.
 TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
@@ -130,13 +147,8 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
                  "soft_clamp.base.tangent: 60}}\n",
        .loads = kPressAndTwist});
   Workspace workspace(small.scene);
-  ModelForm form = base_form(small.scene);
-  const size_t at = form.ingredients.size();
-  const Model model = form.realise(form.initial());
-  form.ingredients.push_back(find_effect("stiffness_field")->candidates(model, nullptr).front());
-  form.ingredients.push_back(find_effect("soft_clamp")->candidate(model, "base"));
-  ASSERT_TRUE(form.ingredients.back());
-  ASSERT_THAT(form.ingredients[at]->variant(), testing::StartsWith("field"));
+  const size_t at = base_form(small.scene).ingredients.size();
+  const ModelForm form = with_field_and(small, {{"soft_clamp", "base"}});
   const Fitted field = std::get<Fitted>(fit(workspace, form, form.initial()));
   const Floor floor = measure_floor(*small.scene, field.evaluation);
   ASSERT_FALSE(at_floor(field, floor, kLeftByRenderers));
@@ -144,6 +156,33 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
   EXPECT_EQ(place.form.ingredients[at]->variant(), "free blob");
   EXPECT_TRUE(at_floor(place, floor));
   EXPECT_NEAR(place.p[4], 18.0, 0.2);
+}
+
+/// A body swells and touches a hard wall. Fitted as a cushion beside a field of stiffness, the wall
+/// is hard again where the field leaves.
+TEST(Widening, AFieldLeavesTogetherWithTheWallsCushion) {
+  const test::SmallScene small(
+      {.hidden = "hidden:\n  - {effect: swelling, variant: uniform, values: {swelling.s: 0.03}}\n"
+                 "  - {effect: floor_contact, variant: hard plane on side +x, values: "
+                 "{floor_contact.position: 10.6}}\n",
+       .loads = kPressAndTwist});
+  Workspace workspace(small.scene);
+  const size_t first = base_form(small.scene).ingredients.size();
+  const ModelForm form =
+      with_field_and(small, {{"floor_contact", "cushion on side +x"}, {"swelling", "uniform"}});
+  VectorXd start = form.initial();
+  const Eigen::Index wall = offset_of(form, first + 1);
+  start[wall] = 10.4, start[wall + 1] = 1e-3, start[wall + 2] = 0.02;
+  const Fitted with = std::get<Fitted>(fit(workspace, form, start));
+  const Floor floor = measure_floor(*small.scene, with.evaluation);
+  ASSERT_TRUE(at_floor(with, floor));
+  const auto lighter = drop_beside_smaller(workspace, with, floor, first, {});
+  ASSERT_TRUE(lighter);
+  EXPECT_EQ(lighter->effect, "stiffness_field");
+  EXPECT_THAT(effects_in(lighter->fitted.form), ElementsAre("floor_contact", "swelling"));
+  EXPECT_THAT(lighter->fitted.form.ingredients[first]->variant(), testing::StartsWith("hard"));
+  EXPECT_NEAR(lighter->fitted.p[offset_of(form, first)], 10.6, 0.01);
+  EXPECT_FALSE(drop_beside_smaller(workspace, lighter->fitted, floor, first, {}));
 }
 
 /// Fitted in the form `variant` from `start`, which is not the floor, an effect goes on to another.
