@@ -48,15 +48,21 @@ void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& m
     tie.clear();
 }
 
+/// All that a search fits may be given up but for its base.
+DiscoverOptions of_rivals(DiscoverOptions options) {
+  options.fit.most_iterations = kRivalIterations;
+  return options;
+}
+
 /// The loop: one step after the other, until nothing is left to add or to swap.
 class Search {
  public:
   Search(Workspace& workspace, const DiscoverOptions& options, const DiscoverEvents& events)
       : workspace_(workspace),
-        options_(options),
+        options_(of_rivals(options)),
         events_(events),
         base_(base_form(workspace.scene().shared_from_this()).ingredients.size()),
-        wider_(workspace, options.fit, events) {}
+        wider_(workspace, options_.fit, events) {}
 
   std::variant<Discovery, NumericalFailure> run(Step first) {
     out_.tie = options_.tie;
@@ -365,7 +371,7 @@ class Search {
   }
 
   Workspace& workspace_;
-  const DiscoverOptions& options_;
+  const DiscoverOptions options_;
   const DiscoverEvents& events_;
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;

@@ -40,6 +40,7 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
   EvaluationOptions evaluation;
   evaluation.pictures = true;
   evaluation.held_out = true;
+  evaluation.most_iterations = options.most_iterations;
   evaluation.cancel = options.cancel;
   auto result = workspace.evaluate(form, p, evaluation);
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;

@@ -18,6 +18,10 @@ struct FitProgress {
   double chi = 0.0;
 };
 
+/// From the equilibria of the model that a rival is held against, twice what a step may take: one
+/// without an equilibrium in a held-out example was sought for minutes.
+constexpr int kRivalIterations = 2 * kStepIterations;
+
 struct FitOptions {
   int max_iterations = 20;
   bool coarse_to_fine = true;
@@ -27,6 +31,9 @@ struct FitOptions {
   /// chi of the fitted photos that a rival has come to already: a fit that falls so slowly that it
   /// would not get there in twenty steps more ends. 0: there is none.
   double aim_chi = 0.0;
+  /// Newton iterations of an example's equilibrium where the fit has ended, held-out ones' too
+  /// (EquilibriumOptions::most_iterations). Of a rival that may be given up: kRivalIterations.
+  int most_iterations = EquilibriumOptions{}.most_iterations;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const FitProgress&)> progress;
 };

@@ -37,7 +37,9 @@ std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, con
   form.ingredients.push_back(std::move(remeshing));
   VectorXd all = form.initial();
   all.head(start.size()) = start;
-  return fit(workspace, form, all, warm(options));
+  FitOptions from_rest = warm(options);  // no equilibrium is known on this mesh
+  from_rest.most_iterations = FitOptions{}.most_iterations;
+  return fit(workspace, form, all, from_rest);
 }
 
 /// `fitted` with another form of its last effect, which `change` makes of the present one and the

@@ -55,6 +55,20 @@ TEST_F(TwoForms, TheOneThatGetsFartherIsRefitted) {
   EXPECT_NEAR(fitted.p[fitted.p.size() - 2], -0.06, 0.005);
 }
 
+/// What ends a refit is bounded: an equilibrium that is not there is sought for hundreds of steps.
+TEST_F(TwoForms, ARivalsEquilibriumIsNotSoughtForEver) {
+  FitOptions options;
+  options.most_iterations = 2;
+  Workspace from_rest(small_->scene);
+  const auto result = assess(from_rest, base_.form, base_.p, options);
+  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  EXPECT_NE(std::get<NumericalFailure>(result).reason.find("no equilibrium within"),
+            std::string::npos)
+      << std::get<NumericalFailure>(result).reason;
+  options.most_iterations = kRivalIterations;
+  EXPECT_TRUE(std::holds_alternative<Fitted>(assess(from_rest, base_.form, base_.p, options)));
+}
+
 TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   Diagnosis diagnosis;
   diagnosis.effects = {score_};
