@@ -212,15 +212,16 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
   const auto* now = std::get_if<TrialScale>(&scale);
   if (!now) return {};
   for (size_t i = first_effect; i < all.size(); ++i) {
-    if (remeshed_by(*all[i])) continue;
+    if (!find_effect(all[i]->name()) || remeshed_by(*all[i])) continue;
     Fitted without = fitted;
     const Parted rest = parted_from(fitted, i);
     without.form = rest.form, without.p = rest.p;
     for (size_t at = first_effect; at < rest.form.ingredients.size(); ++at) {
       const Ingredient& larger = *rest.form.ingredients[at];
+      const Effect* effect = find_effect(larger.name());
+      if (!effect) continue;  // no effect of the catalogue: a placebo
       VectorXd values = values_of(without, at);
-      auto smaller =
-          find_effect(larger.name())->smaller_form(model_without(without, at), larger, values);
+      auto smaller = effect->smaller_form(model_without(without, at), larger, values);
       if (!smaller) continue;
       const std::string words =
           smaller->name() + " as '" + smaller->variant() + "' without " + all[i]->name();

@@ -25,9 +25,8 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
 
 /// An effect that only the larger form of another makes room for: without it, and with that other
 /// in its smaller form (Effect::smaller_form), the photos stay at the floor and the score falls by
-/// less than a tie. (A stiffness field that had taken on what swelling does stayed by a hundredth
-/// beside a wall that was fitted as a soft cushion.) Asked one by one of those that stand: each is
-/// needed beside the other as it is. Told in the result: who leaves.
+/// less than a tie. (A stiffness field within 3 % had stayed beside a wall that was fitted as a
+/// soft cushion.) Told in the result: who leaves.
 std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
                                          const Floor& floor, size_t first_effect,
                                          const FitOptions& options,
