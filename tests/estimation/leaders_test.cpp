@@ -91,7 +91,7 @@ TEST(Leaders, WhatSensorsSpeakForIsNamedThoughNoPhotoMoves) {
   EXPECT_THAT(leaders(found), IsEmpty());
 }
 
-/// Above the gate by chance once in twenty times, and by chance held-out photos do not say the same.
+/// Above the gate by chance once in twenty times; by chance held-out photos do not say the same.
 TEST(Leaders, WhatHeldOutPhotosAloneShowIsNamedByThem) {
   EffectScore faint = scored("softening", 4.0);
   faint.explains_held_out = 0.6;
