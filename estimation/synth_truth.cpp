@@ -228,12 +228,13 @@ class Scaling {
 constexpr double kStill = 1e-9;  // px
 
 /// Scales the drawn or told values until the pictures move by what the recipe asks for, and adds
-/// them to the truth. False: drawn values of an effect on forces or material that move nothing (a
-/// plane that no fitted example reaches).
+/// them to the truth. False: drawn values of an effect on forces or material that move nothing, or
+/// less than `least` of what was asked for (a plane that no fitted example reaches, or with a
+/// corner alone).
 std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
                                             const std::shared_ptr<const Ingredient>& ingredient,
-                                            std::mt19937_64& random, TruthSolver& solver,
-                                            Truth& truth) {
+                                            double least, std::mt19937_64& random,
+                                            TruthSolver& solver, Truth& truth) {
   const auto parameters = ingredient->parameters();
   const VectorXd told =
       hidden.drawn ? drawn_values(parameters, random) : told_values(hidden, parameters);
@@ -263,6 +264,7 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
     if (still && hidden.drawn && (touches.loading || touches.energy)) return false;
     const bool reached = hidden.rms_px && std::abs(addition.rms_px / wanted - 1.0) < 0.03;
     const bool at_bound = factor == largest && addition.rms_px < wanted;
+    if (hidden.drawn && at_bound && addition.rms_px < least * wanted) return false;
     if (i + 1 == most || reached || at_bound || (still && hidden.drawn)) {
       PutIn put{find_effect(hidden.effect), ingredient, values, addition.rms_px, ""};
       put.sentence = put.effect->sentence(truth.model, *ingredient, values);
@@ -287,11 +289,13 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
 std::optional<NumericalFailure> hide(const HiddenRecipe& hidden, unsigned seed, TruthSolver& solver,
                                      Truth& truth) {
   auto random = random_of(seed, "hidden " + hidden.effect);
-  for (const auto& ingredient : choices(hidden, *find_effect(hidden.effect), truth.model, random)) {
-    auto put = put_in(hidden, ingredient, random, solver, truth);
-    if (auto* failure = std::get_if<NumericalFailure>(&put)) return std::move(*failure);
-    if (std::get<bool>(put)) return {};
-  }
+  const auto all = choices(hidden, *find_effect(hidden.effect), truth.model, random);
+  for (const double least : {0.5, 0.0})
+    for (const auto& ingredient : all) {
+      auto put = put_in(hidden, ingredient, least, random, solver, truth);
+      if (auto* failure = std::get_if<NumericalFailure>(&put)) return std::move(*failure);
+      if (std::get<bool>(put)) return {};
+    }
   throw InputError(hidden.place, fmt::format("`{}` moves nothing in these pictures", hidden.effect),
                    "leave rms_px out and give the values as they are");
 }

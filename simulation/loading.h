@@ -47,12 +47,13 @@ std::shared_ptr<const ForceTerm> follower_pressure(const Region& region, double 
 std::shared_ptr<const ForceTerm> self_weight(const TetMesh& mesh, double density,
                                              const Vector3d& gravity);
 /// Elastic foundation on the region: traction -k_n (u.n)n - k_t (u - (u.n)n), u = q - target, rest
-/// normal n, nodal areas lumped consistently. k [stress/length]. `target` 3n: where the springs are
-/// at rest.
+/// normal n, integrated over the faces. k [stress/length]. `target` 3n: where the springs are at
+/// rest.
 std::shared_ptr<const ForceTerm> elastic_foundation(const Region& region, double k_normal,
                                                     double k_tangent, VectorXd target);
 /// Rigid floor, half space (x - point).normal >= 0 is free. Penalty traction k * depth, smoothed
-/// (C1) over `smoothing` [length] of depth. Acts on all boundary nodes by consistent area.
+/// (C1) over `smoothing` [length] of depth, on the rest area of all boundary faces.
+/// k [stress/length].
 std::shared_ptr<const ForceTerm> floor_contact(const TetMesh& mesh, const Vector3d& point,
                                                const Vector3d& normal, double k, double smoothing);
 

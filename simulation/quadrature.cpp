@@ -41,15 +41,27 @@ FacePoint face_point(int order, double l1, double l2, double weight) {
   return p;
 }
 
-std::vector<FacePoint> make_face_rule(int order) {
+/// On a corner of the parameter triangle and the two sides from there (opposite ones turn it over).
+struct Part {
+  double l1, l2, side;
+};
+
+/// The rule on each part of the triangle.
+std::vector<FacePoint> make_face_rule(int order, const std::vector<Part>& parts) {
   const double a[2] = {0.445948490915964886, 0.091576213509770743};
   const double w[2] = {0.223381589678011466 / 2, 0.109951743655321868 / 2};
   std::vector<FacePoint> rule;
-  for (int g = 0; g < 2; ++g) {
-    const double c = 1 - 2 * a[g];
-    rule.push_back(face_point(order, a[g], a[g], w[g]));
-    rule.push_back(face_point(order, c, a[g], w[g]));
-    rule.push_back(face_point(order, a[g], c, w[g]));
+  for (const Part& part : parts) {
+    const auto add = [&](double l1, double l2, double weight) {
+      rule.push_back(face_point(order, part.l1 + part.side * l1, part.l2 + part.side * l2,
+                                part.side * part.side * weight));
+    };
+    for (int g = 0; g < 2; ++g) {
+      const double c = 1 - 2 * a[g];
+      add(a[g], a[g], w[g]);
+      add(c, a[g], w[g]);
+      add(a[g], c, w[g]);
+    }
   }
   return rule;
 }
@@ -83,7 +95,17 @@ MatrixXd shape_derivatives(int order, const Eigen::Vector4d& l) {
 }
 
 const std::vector<FacePoint>& face_rule(int order) {
-  static const std::vector<FacePoint> rules[2] = {make_face_rule(1), make_face_rule(2)};
+  static const std::vector<Part> whole = {{0.0, 0.0, 1.0}};
+  static const std::vector<FacePoint> rules[2] = {make_face_rule(1, whole),
+                                                  make_face_rule(2, whole)};
+  return rules[order - 1];
+}
+
+const std::vector<FacePoint>& fine_face_rule(int order) {
+  static const std::vector<Part> quarters = {
+      {0.0, 0.0, 0.5}, {0.5, 0.0, 0.5}, {0.0, 0.5, 0.5}, {0.5, 0.5, -0.5}};
+  static const std::vector<FacePoint> rules[2] = {make_face_rule(1, quarters),
+                                                  make_face_rule(2, quarters)};
   return rules[order - 1];
 }
 

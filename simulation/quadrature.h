@@ -30,5 +30,7 @@ struct FacePoint {
   Eigen::Matrix<double, Eigen::Dynamic, 2> dN;
 };
 const std::vector<FacePoint>& face_rule(int order);
+/// The same on each quarter of the triangle, for what begins and ends within a face.
+const std::vector<FacePoint>& fine_face_rule(int order);
 
 }  // namespace hookeye

@@ -15,7 +15,7 @@ namespace {
 const double kGaps[] = {0.005, 0.05, 0.15};
 const char* const kSides[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
 /// Part of the size that the body has to move outward before a plane between the axes is tried,
-/// half of it behind the plane: five times the depth over which its force sets in (smoothing).
+/// half of it behind the plane: twenty times the depth over which its force sets in (smoothing).
 constexpr double kLeastTravel = 0.02;
 /// Half a step of the grid of directions [rad], 36 degrees at most: nearer to an axis than that, a
 /// fitted plane is asked whether it is normal to it.
@@ -29,7 +29,8 @@ double reach(const Scene& scene, const Vector3d& direction) {
   return (direction.transpose() * scene.body->mesh.X).maxCoeff();
 }
 
-double smoothing(const Scene& scene) { return 0.002 * body_size(scene).size; }
+/// Depth over which the force sets in: a quarter of what a hard plane lets in.
+double smoothing(const Scene& scene) { return 0.0005 * body_size(scene).size; }
 
 double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)) + 0.0; }
 

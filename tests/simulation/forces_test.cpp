@@ -223,6 +223,21 @@ TEST_P(Forces, Floor) {
   EXPECT_NEAR(f.z(), 5.0 * 3.0 + sides, 1e-3);
 }
 
+/// A corner first: of what is behind a plane across it, k times the volume over the three faces.
+TEST_P(Forces, AFloorMeetsACorner) {
+  const TetMesh mesh = test::block(2, 2, 2, {2, 2, 2}, GetParam());
+  for (const double sunk : {0.4, 0.9}) {  // less than an edge of an element, which is 1
+    const Vector3d n = Vector3d::Ones().normalized(), through = sunk * n;
+    const auto floor = floor_contact(mesh, through, n, 5.0, 1e-6);
+    Vector3d f = Vector3d::Zero();
+    const VectorXd R = residual_of(*floor, mesh, mesh.X.reshaped(), 1);
+    for (int a = 0; a < mesh.nodes(); ++a) f -= R.segment<3>(3 * a);
+    const double side = std::sqrt(3.0) * sunk, one_face = 0.5 * side * side * sunk / 3.0;
+    EXPECT_NEAR(f.norm(), 5.0 * 3.0 * one_face, 0.02 * 5.0 * 3.0 * one_face) << sunk;
+    EXPECT_GT(f.normalized().dot(n), 1.0 - 1e-9);
+  }
+}
+
 EnergyModel mixed(const TetMesh& mesh) {
   EnergyModel energy;
   energy.parts.push_back(
