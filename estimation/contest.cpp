@@ -10,19 +10,12 @@
 
 namespace hookeye {
 
-bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
-  return fitted.evaluation.chi(false) <= times * floor.chi &&
-         fitted.evaluation.chi(true) <= times * floor.chi;
-}
-
-double over_floor(const Fitted& fitted, const Floor& floor, bool held_out) {
-  const double chi = fitted.evaluation.chi(held_out);
-  return std::max(0.0, chi * chi - floor.chi * floor.chi);
-}
-
-bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) > kAtFloor * floor.chi;
+Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropped) {
+  Step step;
+  step.name = step.added = std::move(effect);
+  step.dropped = std::move(dropped);
+  step.fitted = std::move(fitted);
+  return step;
 }
 
 bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::string* why) {
@@ -204,14 +197,12 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
         at_floor(refits.front().fitted, step.diagnosis.floor, kLeftByRenderers) &&
         !racer.may_tie_with(racers.front()))
       continue;
-    if (events.refitting) events.refitting(racer.effect);
     FitOptions fit = options.fit;
     for (const Refit& rival : refits) {
       const double chi = rival.fitted.evaluation.chi(false);
       fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
     }
-    auto result = refit(workspace, racer, fit);
-    if (events.refitted) events.refitted(racer.effect, result);
+    auto result = announced(events, racer.effect, [&] { return refit(workspace, racer, fit); });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;  // a model without equilibrium explains nothing

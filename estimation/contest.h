@@ -10,17 +10,23 @@
 
 namespace hookeye {
 
-/// Within `times` the floor on the fitted photos and on the held-out ones.
-bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);
-/// What chi^2 has over the floor's.
-double over_floor(const Fitted& fitted, const Floor& floor, bool held_out);
-/// The effects explain the fitted photos and not the held-out ones.
-bool spoils_held_out(const Fitted& fitted, const Floor& floor);
-
 /// A numerical error that would remove at least half of the misfit. The finer mesh was solved for
 /// the score: where it leaves more than that, something larger is missing, and the mesh is asked
 /// after it.
 bool may_be_all(const std::string& effect, const Diagnosis& diagnosis);
+
+/// A step of a search with this model; `dropped` left it.
+Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropped = {});
+
+/// The result of fit(), which is told to who watches, before it as `words` and after.
+template <class Fit>
+std::variant<Fitted, NumericalFailure> announced(const DiscoverEvents& events,
+                                                 const std::string& words, const Fit& fit) {
+  if (events.refitting) events.refitting(words);
+  std::variant<Fitted, NumericalFailure> result = fit();
+  if (events.refitted) events.refitted(words, result);
+  return result;
+}
 
 struct Refit {
   std::string effect;

@@ -8,7 +8,6 @@
 #include <map>
 
 #include "estimation/candidates.h"
-#include "estimation/contest.h"
 #include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 #include "estimation/gram.h"
@@ -86,11 +85,6 @@ struct Context {
   const Model model;
   bool held_out_missed;
 };
-
-/// Where held-out photos alone show what is missing, what an effect takes of them counts.
-bool held_out_say_so(const EffectScore& score, bool held_out_missed) {
-  return held_out_missed && !numerical(score.effect) && score.explains_held_out > 0.5;
-}
 
 EffectScore describe(const Context& context, const Candidate& candidate,
                      const ProjectedHypothesis& weighted) {
@@ -197,16 +191,6 @@ void weigh(std::vector<EffectScore>& scores) {
 
 }  // namespace
 
-double least_fall(const Diagnosis& diagnosis, const std::string& effect) {
-  constexpr double kTrustedPx = 0.01;
-  const Floor& floor = diagnosis.floor;
-  const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
-                                  [&](const auto& one) { return one.effect == effect; });
-  return std::max({0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
-                   kTrustedPx * kTrustedPx * floor.per_px2,
-                   score == diagnosis.effects.end() ? diagnosis.mesh_fall : score->mesh_fall});
-}
-
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
   const auto parameters = fitted.form.parameters();
   fitted.mesh_reach = diagnosis.mesh_shift;
@@ -215,58 +199,6 @@ void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
     double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
     end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
   }
-}
-
-bool sensors_alone(const Ingredient& ingredient) {
-  const Touches touches = ingredient.touches();
-  return touches.measured && !touches.energy && !touches.loading && !touches.photos;
-}
-
-bool brightness_alone(const Ingredient& ingredient) {
-  const Touches touches = ingredient.touches();
-  return touches.photos && !touches.energy && !touches.loading && !touches.cameras;
-}
-
-std::vector<std::string> leaders(const Diagnosis& diagnosis) {
-  std::vector<const EffectScore*> named;
-  for (const EffectScore& score : diagnosis.effects)
-    if (nameable(score, diagnosis)) named.push_back(&score);
-  std::vector<std::string> out;
-  for (const EffectScore* score : named) {
-    const EffectScore* first = named.front();
-    const bool ties = score->evidence > first->evidence - kTie || score->bic > first->bic;
-    if (score == first || (ties && !numerical(score->effect) && !numerical(first->effect)))
-      out.push_back(score->effect);
-  }
-  return out;
-}
-
-std::string conclusion(const Diagnosis& diagnosis) {
-  const auto all = leaders(diagnosis);
-  if (all.empty()) return "nothing of the catalogue stands out";
-  if (all.size() == 1) return all.front() + " leads";
-  return fmt::format(
-      "{} leads, and {} cannot be told from it by these scores: `hookeye discover` refits all of "
-      "them, `hookeye plan` names loads and views that would separate them",
-      all.front(), fmt::join(all.begin() + 1, all.end(), ", "));
-}
-
-bool numerical(const std::string& effect) {
-  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
-  return found && found->group() == EffectGroup::numerical;
-}
-
-bool sensors_speak(double fall, const Diagnosis& diagnosis) {
-  return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= kNameable;
-}
-
-bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
-  if (!score.testable || score.evidence < diagnosis.gate) return false;
-  if (held_out_say_so(score, diagnosis.held_out_missed)) return true;
-  return score.evidence >= kNameable &&
-         ((score.best && sensors_alone(*score.best)) ||
-          score.fall >= least_fall(diagnosis, score.effect) ||
-          (!numerical(score.effect) && sensors_speak(score.measured_fall, diagnosis)));
 }
 
 namespace {

@@ -116,12 +116,13 @@ bool sensors_speak(double fall, const Diagnosis& diagnosis);
 bool sensors_alone(const Ingredient& ingredient);
 /// It changes how bright or sharp photos are, and nothing of where they show the body.
 bool brightness_alone(const Ingredient& ingredient);
+/// Held-out photos alone show what is missing, and what fitted data make of the effect takes more
+/// than half of what those have over the floor: they had no part in its values.
+bool held_out_say_so(const EffectScore& score, bool held_out_missed);
 /// Testable, above the simulated gate, and, where it is seen in photos alone, above the renderer's
 /// and the mesh's own errors; or sensors speak for it (sensors_speak; of the mesh they have
 /// mesh_in_measured). (The mesh's own effect is not held to the mesh's error: it is not offered
-/// then.) Where held-out photos alone show what is missing: above the gate, and what the fitted
-/// data make of it takes more than half of what those have over the floor. They had no part in its
-/// values.
+/// then.) Where held-out photos say so: above the gate.
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 /// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
 /// or because the information criterion puts them before it (method.md, 3 and 5). Without the

@@ -8,6 +8,7 @@
 
 #include "estimation/contest.h"
 #include "estimation/fit_to_all.h"
+#include "estimation/last_questions.h"
 #include "estimation/pairs.h"
 #include "estimation/swaps.h"
 #include "estimation/widening.h"
@@ -24,19 +25,6 @@ std::vector<std::string> effects_in(const ModelForm& form) {
 }
 
 namespace {
-
-Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropped = {}) {
-  Step step;
-  step.name = step.added = std::move(effect);
-  step.dropped = std::move(dropped);
-  step.fitted = std::move(fitted);
-  return step;
-}
-
-/// The step in which one effect took another's place.
-Step swapped_step(Swap swap) {
-  return step_with(std::move(swap.in.effect), std::move(swap.in.fitted), {std::move(swap.out)});
-}
 
 /// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
 /// found beside it, the later steps have decided.
@@ -85,15 +73,9 @@ class Search {
       auto went_on = next_step(room);
       if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
       if (std::get<bool>(went_on)) continue;
-      auto settled = settled_mesh(room);
-      if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
-      if (std::get<bool>(settled)) continue;
-      auto widened = widened_form(true);
-      if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
-      if (std::get<bool>(widened) || dropped_idle() || reopened()) continue;
-      auto other = widened_loser();
-      if (auto* failure = std::get_if<NumericalFailure>(&other)) return *failure;
-      if (!std::get<bool>(other)) break;
+      auto asked = asked_last(room);
+      if (auto* failure = std::get_if<NumericalFailure>(&asked)) return *failure;
+      if (!std::get<bool>(asked)) break;
     }
     // Questions that were stopped have no answer: neither has the run.
     if (!cancelled()) ask_all_again();
@@ -190,32 +172,6 @@ class Search {
     return false;
   }
 
-  /// Last of all: what was added explains the fitted photos and misses the held-out ones. So did
-  /// those that lost to it, and a wider form of one may miss them least: creep that levels off lost
-  /// to softening while it could only grow. They choose; to them its further values are not fitted.
-  WentOn widened_loser() {
-    const Fitted& last = newest().fitted;
-    const std::vector<Refit> losers = std::exchange(losers_, {});
-    if (out_.all || !spoils_held_out(last, out_.floor)) return false;
-    for (const Refit& loser : losers) {
-      const size_t at = loser.fitted.form.ingredients.size() - 1;
-      if (numerical(loser.effect) || !spoils_held_out(loser.fitted, out_.floor) ||
-          at + 1 != last.form.ingredients.size())
-        continue;
-      auto result = widened(workspace_, loser.fitted, at, out_.floor, options_.fit, events_);
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-      Refit wide{loser.effect, std::get<Fitted>(std::move(result)), 0.0};
-      const Yardstick yardstick{&wide.fitted, &out_.floor, measured_noise2(wide.fitted)};
-      wide.score = refit_score(wide.fitted, yardstick);
-      if (wide.score < refit_score(last, yardstick) - kTie ||
-          held_out_allows(last, wide.fitted, out_.floor))
-        continue;
-      out_.steps.push_back(swapped_step({newest().added, std::move(wide)}));
-      return true;
-    }
-    return false;
-  }
-
   void add_two(const Refit& first, Contest& contest, Step second) {
     Step leading;
     leading.name = leading.added = first.effect;
@@ -283,70 +239,45 @@ class Search {
     out_.steps.push_back(std::move(next));
   }
 
-  /// Before the photos are called unexplained the mesh is refitted, if the likelihood asks for it
-  /// and the last contest did not: where a hard wall meets a coarse body its linear change is no
-  /// guide, and a step with it may have no equilibrium.
-  WentOn settled_mesh(int room) {
-    const Step& step = newest();
-    if (room <= 0 || mesh_refitted_ || out_.all || at_floor(step.fitted, out_.floor)) return false;
-    for (const EffectScore& score : step.diagnosis.effects) {
-      if (!numerical(score.effect) || !score.testable ||
-          score.evidence < std::max(kNameable, step.diagnosis.gate))
-        continue;
-      if (events_.refitting) events_.refitting(score.effect);
-      auto result = add_effect(workspace_, step.fitted, score, options_.fit);
-      if (events_.refitted) events_.refitted(score.effect, result);
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-        if (failure->reason == "cancelled") return *failure;
-        continue;
-      }
-      Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};
-      if (!refused_by(step, refit).empty()) continue;
-      out_.steps.push_back(step_with(score.effect, std::move(refit.fitted)));
+  /// Puts the step, if there is one, behind the others.
+  WentOn taken(LastAnswer answer) {
+    if (auto* failure = std::get_if<NumericalFailure>(&answer)) return *failure;
+    auto& step = std::get<std::optional<Step>>(answer);
+    if (step) out_.steps.push_back(std::move(*step));
+    return step.has_value();
+  }
+
+  /// Where nothing can be added: last_questions.h.
+  WentOn asked_last(int room) {
+    const auto stays = [](const WentOn& result) {
+      return std::holds_alternative<bool>(result) && !std::get<bool>(result);
+    };
+    if (room > 0 && !mesh_refitted_ && !out_.all)
+      if (auto result = taken(settled_mesh(workspace_, newest(), options_, events_));
+          !stays(result))
+        return result;
+    if (auto result = widened_form(true); !stays(result)) return result;
+    auto lighter = without_idle(workspace_, newest().fitted, out_.floor, base_, options_, events_);
+    if (lighter && idle_.insert(lighter->dropped.back()).second) {
+      stand_in(std::move(*lighter));
       return true;
     }
-    return false;
+    if (reopened()) return true;
+    const std::vector<Refit> losers = std::exchange(losers_, {});
+    if (out_.all) return false;
+    return taken(wider_loser(workspace_, newest(), losers, options_, events_));
   }
 
-  /// An effect that the last model can do without leaves it; what was added last of the others
-  /// stands anew.
-  bool dropped_idle() {
-    const Fitted& all = newest().fitted;
-    auto lighter = drop_unsupported(workspace_, all, out_.floor, base_, options_);
-    if (!lighter)
-      lighter = drop_beside_smaller(workspace_, all, out_.floor, base_, options_.fit, events_);
-    if (!lighter || !idle_.insert(lighter->effect).second) return false;
-    const std::string last = lighter->fitted.form.ingredients.back()->name();
-    stand_in(step_with(last, std::move(lighter->fitted), {last, lighter->effect}));
-    return true;
-  }
-
-  /// Contests that were won by less than what was missing then are held again: a coarse mesh may
-  /// have let swelling pass for a suction. The losers take the winner's place in the last model,
-  /// one after the other; the best stays there.
+  /// Whether another won a contest that was held again.
   bool reopened() {
-    const Fitted& last = newest().fitted;
-    const auto standing = effects_in(last.form);
-    const auto stands = [&](const std::string& effect) {
-      return std::find(standing.begin(), standing.end(), effect) != standing.end();
-    };
-    for (size_t k = 0; k + 1 < out_.steps.size(); ++k) {
-      const Step& then = out_.steps[k];
-      if (numerical(then.added) || !stands(then.added)) continue;
-      std::vector<std::string> contest = {then.added};
-      for (const std::string& loser : narrow_losers(then, last))
-        if (!stands(loser) && asked_.insert({then.added, loser}).second) contest.push_back(loser);
-      if (contest.size() < 2) continue;
-      auto asked = ask_tie_again(workspace_, last, contest, out_.floor, base_, refused_swaps_,
-                                 options_, events_);
-      if (!asked) continue;
-      if (asked->better) {
-        stand_in(swapped_step(std::move(*asked->better)));
-        settle_tie(out_.tie, effects_in(newest().fitted.form));
-        return true;
-      }
-      if (out_.tie.empty()) out_.tie = std::move(asked->tie);
+    auto asked =
+        contests_again(workspace_, out_.steps, base_, asked_, refused_swaps_, options_, events_);
+    if (asked.better) {
+      stand_in(swapped_step(std::move(*asked.better)));
+      settle_tie(out_.tie, effects_in(newest().fitted.form));
+      return true;
     }
+    if (out_.tie.empty()) out_.tie = std::move(asked.tie);
     return false;
   }
 
@@ -383,7 +314,7 @@ class Search {
   std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
   std::optional<Step> together_;  ///< second of a pair, once the first is written
   std::set<std::string> idle_;    ///< were dropped once; who comes back stays
-  std::set<std::pair<std::string, std::string>> asked_;  ///< winner and loser of reopened contests
+  AskedAgain asked_;
 };
 
 }  // namespace

@@ -167,4 +167,19 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   return floor;
 }
 
+bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
+  return fitted.evaluation.chi(false) <= times * floor.chi &&
+         fitted.evaluation.chi(true) <= times * floor.chi;
+}
+
+double over_floor(const Fitted& fitted, const Floor& floor, bool held_out) {
+  const double chi = fitted.evaluation.chi(held_out);
+  return std::max(0.0, chi * chi - floor.chi * floor.chi);
+}
+
+bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
+  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
+         fitted.evaluation.chi(true) > kAtFloor * floor.chi;
+}
+
 }  // namespace hookeye

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "estimation/evaluation.h"
+#include "estimation/fit.h"
 
 namespace hookeye {
 
@@ -28,5 +28,17 @@ struct Floor {
 /// wrong is rough. Moved by more than kLinearPx (fit.h) they give the middle cell of the aligned
 /// pictures. Needs pictures. Without compared rest photos: 1, "noise model".
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation);
+
+/// Times the floor: what texture and shading errors of another renderer leave at most.
+constexpr double kAtFloor = 1.3;
+/// Times the floor: what meshes and renderers leave at least.
+constexpr double kLeftByRenderers = 1.1;
+
+/// Within `times` the floor on the fitted photos and on the held-out ones.
+bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);
+/// What chi^2 has over the floor's.
+double over_floor(const Fitted& fitted, const Floor& floor, bool held_out);
+/// The effects explain the fitted photos and not the held-out ones.
+bool spoils_held_out(const Fitted& fitted, const Floor& floor);
 
 }  // namespace hookeye

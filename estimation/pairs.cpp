@@ -33,9 +33,8 @@ std::variant<std::optional<Pair>, NumericalFailure> on_finer_mesh(
     const DiscoverOptions& options, const DiscoverEvents& events) {
   for (const EffectScore& score : diagnosis.effects) {
     if (!numerical(score.effect) || !nameable(score, diagnosis)) continue;
-    if (events.refitting) events.refitting(score.effect);
-    auto result = add_effect(workspace, best.fitted, score, options.fit);
-    if (events.refitted) events.refitted(score.effect, result);
+    auto result = announced(events, score.effect,
+                            [&] { return add_effect(workspace, best.fitted, score, options.fit); });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
       continue;
@@ -60,8 +59,6 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
   for (size_t i = 0; i < refits.size(); ++i)
     for (size_t k = i + 1; k < refits.size(); ++k) {
       if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
-      const std::string both = refits[i].effect + " and " + refits[k].effect;
-      if (events.refitting) events.refitting(both);
       const auto& added = refits[k].fitted.form.ingredients.back();
       const auto n = static_cast<Eigen::Index>(added->parameters().size());
       ModelForm form = refits[i].fitted.form;
@@ -70,8 +67,8 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
       p << refits[i].fitted.p, refits[k].fitted.p.tail(n);
       FitOptions warm = options.fit;
       warm.coarse_to_fine = false;
-      auto result = fit(workspace, form, p, warm);
-      if (events.refitted) events.refitted(both, result);
+      auto result = announced(events, refits[i].effect + " and " + refits[k].effect,
+                              [&] { return fit(workspace, form, p, warm); });
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;

@@ -12,11 +12,6 @@
 
 namespace hookeye {
 
-/// Times the floor: what texture and shading errors of another renderer leave at most.
-constexpr double kAtFloor = 1.3;
-/// Times the floor: what meshes and renderers leave at least.
-constexpr double kLeftByRenderers = 1.1;
-
 /// An effect after some steps of its refit.
 struct Racer {
   std::string effect;

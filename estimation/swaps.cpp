@@ -10,6 +10,12 @@ namespace hookeye {
 
 std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
 
+std::string forms_of(const ModelForm& form) {
+  std::string out;
+  for (const auto& one : form.ingredients) out += form_of(*one) + ", ";
+  return out;
+}
+
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
   Eigen::Index offset = 0;
   for (size_t k = 0; k < ingredient; ++k)
@@ -121,12 +127,6 @@ bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& 
 
 namespace {
 
-std::string forms_of(const ModelForm& form) {
-  std::string out;
-  for (const auto& one : form.ingredients) out += form_of(*one) + ", ";
-  return out;
-}
-
 /// Which a refused swap answers.
 std::string question(const ModelForm& form, const Ingredient& dropped, const std::string& effect) {
   return forms_of(form) + ": " + effect + " in place of " + form_of(dropped);
@@ -171,9 +171,7 @@ template <class Fit>
 std::optional<Refit> told_of_swap(const std::string& in, const std::string& out,
                                   const DiscoverEvents& events, const Fit& fit) {
   const std::string words = in + (in == out ? ", started again" : " in place of " + out);
-  if (events.refitting) events.refitting(words);
-  auto result = fit();
-  if (events.refitted) events.refitted(words, result);
+  auto result = announced(events, words, fit);
   auto* refitted = std::get_if<Fitted>(&result);
   if (!refitted) return {};
   return Refit{in, std::move(*refitted), 0.0};
@@ -187,6 +185,10 @@ std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
 }
 
 }  // namespace
+
+Step swapped_step(Swap swap) {
+  return step_with(std::move(swap.in.effect), std::move(swap.in.fitted), {std::move(swap.out)});
+}
 
 std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, const Floor& floor,
                                     size_t first_effect, RefusedSwaps& refused,

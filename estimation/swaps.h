@@ -13,6 +13,8 @@ namespace hookeye {
 
 /// Effect and variant.
 std::string form_of(const Ingredient& one);
+/// Of all of a model.
+std::string forms_of(const ModelForm& form);
 /// Where the values of an ingredient begin.
 Eigen::Index offset_of(const ModelForm& form, size_t ingredient);
 
@@ -44,6 +46,9 @@ struct Swap {
   std::string out;  ///< the effect that left
   Refit in;         ///< the one that took its place, with all others
 };
+
+/// The step in which one effect took another's place.
+Step swapped_step(Swap swap);
 
 /// What came of swaps that were refused: by all forms of the model, the one that left and the
 /// effect that came. What was asked behind a refit is not fitted again once that refit stands, nor

@@ -117,9 +117,9 @@ std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wid
       find_effect(ingredient.name())->plainer_form(model_without(wide, at), ingredient, values);
   if (!form) return wide;
   const std::string words = form->name() + " as '" + form->variant() + "'";
-  if (events.refitting) events.refitting(words);
-  auto result = fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
-  if (events.refitted) events.refitted(words, result);
+  auto result = announced(events, words, [&] {
+    return fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
+  });
   if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
     if (cancelled(*failure)) return *failure;
     return wide;
@@ -149,11 +149,10 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
       const Reformed other = reformed(narrow, at, further);
       if (gets_nowhere(workspace, other, std::get<TrialScale>(scale), options)) continue;
-      if (events.refitting) events.refitting(words);
       FitOptions farther = options;
       farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
-      auto result = fit_in(workspace, narrow, other, farther);
-      if (events.refitted) events.refitted(words, result);
+      auto result =
+          announced(events, words, [&] { return fit_in(workspace, narrow, other, farther); });
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;
@@ -174,7 +173,7 @@ std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitt
                                                                       size_t at,
                                                                       const Floor& floor) {
   const std::string narrow = form_of(*fitted.form.ingredients[at]);
-  if (!asked_.insert({narrow, fitted.form.ingredients.size()}).second) return std::nullopt;
+  if (!asked_.insert({forms_of(fitted.form), at}).second) return std::nullopt;
   auto result = widened(workspace_, fitted, at, floor, options_, events_);
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
   Fitted& wide = std::get<Fitted>(result);
@@ -227,9 +226,8 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
           smaller->name() + " as '" + smaller->variant() + "' without " + all[i]->name();
       const Reformed other = reformed(without, at, {std::move(smaller), std::move(values)});
       if (ends_far_off(workspace, other, *now, options)) continue;
-      if (events.refitting) events.refitting(words);
-      auto result = fit_in(workspace, without, other, options);
-      if (events.refitted) events.refitted(words, result);
+      auto result =
+          announced(events, words, [&] { return fit_in(workspace, without, other, options); });
       auto* lighter = std::get_if<Fitted>(&result);
       if (lighter && at_floor(*lighter, floor) && score_above(*lighter, fitted, floor) > -kTie)
         return Refit{all[i]->name(), std::move(*lighter), 0.0};

@@ -32,7 +32,7 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
                                          const FitOptions& options,
                                          const DiscoverEvents& events = {});
 
-/// The same for all steps of a search: each form once beside as many others.
+/// The same for all steps of a search: each form once beside the same others in their forms.
 class WiderForms {
  public:
   WiderForms(Workspace& workspace, const FitOptions& options, const DiscoverEvents& events)
@@ -51,7 +51,7 @@ class WiderForms {
   Workspace& workspace_;
   const FitOptions& options_;
   const DiscoverEvents& events_;
-  std::set<std::pair<std::string, size_t>> asked_;  ///< form, beside so many
+  std::set<std::pair<std::string, size_t>> asked_;  ///< all forms, and which of them was asked
   std::set<std::string> came_to_;
 };
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "estimation/solved_sensitivity.h"
+#include "estimation/swaps.h"
 #include "meshing/interpolation.h"
 #include "support/temporary_folder.h"
 
@@ -169,6 +170,31 @@ TEST(Sensitivity, AFinerMeshIsReadBack) {
   EXPECT_EQ(again.scene->body->mesh.nodes(), form.scene->body->mesh.nodes());
   EXPECT_EQ(again.ingredients.back()->name(), "mesh_resolution");
   EXPECT_EQ(again.scene->photos.size(), block_scene()->photos.size());
+}
+
+/// What the refinement of a mesh changed in a body that hangs is not what it changes in one that
+/// does not: where the weight leaves the model, it is worked out anew.
+TEST(Sensitivity, WhatARefinementChangedKnowsOfNoEffectThatLeft) {
+  const auto gravity = find_effect("gravity")->candidates(base_model(), nullptr).front();
+  auto [form, p] = on_finer_mesh(extended(base(), gravity), 0.4);
+  p.segment(base().size(), gravity->parameters().size()) = some_values(*gravity);
+  const VectorXd q = form.scene->body->mesh.X.reshaped();
+  signature(form.realise(p), q);  // worked out, with the weight
+  const size_t at = form.ingredients.size() - 2;
+  ASSERT_EQ(form.ingredients[at]->name(), "gravity");
+  Fitted fitted;
+  fitted.form = form, fitted.p = p;
+  const Parted left = parted_from(fitted, at);
+
+  const auto [alone, share] = on_finer_mesh(base(), 0.4);
+  ASSERT_EQ(left.p, share);
+  ModelForm told = form;
+  told.ingredients.erase(told.ingredients.begin() + static_cast<std::ptrdiff_t>(at));
+  const VectorXd right = signature(alone.realise(share), q);
+  const double error = (signature(left.form.realise(left.p), q) - right).norm();
+  const double before = (signature(told.realise(share), q) - right).norm();
+  EXPECT_GT(before, 0.0);
+  EXPECT_LT(error, 1e-3 * before);
 }
 
 /// Bounds scale with the model that an effect was added to; the refit moves that model, and the

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "estimation/last_questions.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye {
@@ -13,12 +14,15 @@ namespace {
 using testing::IsEmpty;
 
 /// The search ends explained, with just these missing.
-Discovery explained(const test::SmallCapture& capture, const std::vector<std::string>& missing) {
-  Discovery discovery = test::discover(test::SmallScene(capture));
+Discovery explained(const test::SmallScene& small, const std::vector<std::string>& missing) {
+  Discovery discovery = test::discover(small);
   EXPECT_THAT(discovery.missing, testing::UnorderedElementsAreArray(missing));
   EXPECT_THAT(discovery.tie, IsEmpty());
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
   return discovery;
+}
+Discovery explained(const test::SmallCapture& capture, const std::vector<std::string>& missing) {
+  return explained(test::SmallScene(capture), missing);
 }
 
 /// The model with these fitted, one after the other, and what was diagnosed before the last.
@@ -165,10 +169,10 @@ TEST(Swaps, AFormThatWasChosenOnACoarseMeshIsAskedAgain) {
   EXPECT_NEAR(last.p[last.p.size() - 1], 0.81, 0.04);
 }
 
-/// A hard wall, and a corner that a rigid grip turns into it. On the coarse mesh the linear change
-/// of a finer one says nothing of that, and the likelihood alone asks for it.
+/// A hard wall, and a corner that a rigid grip turns into it. Where the linear change of a finer
+/// mesh says nothing of that, so that no race has it, the likelihood alone asks for it.
 TEST(Swaps, TheMeshIsRefittedBeforeThePhotosAreCalledUnexplained) {
-  const Discovery discovery = explained({.recipe = R"(hookeye_recipe: 1
+  const test::SmallScene small({.recipe = R"(hookeye_recipe: 1
 title: block in a twist against a wall
 seed: 4
 body:
@@ -195,11 +199,26 @@ examples:
   val_oblique: {use: validate, force: [0.0071, 0.0059, 0.199]}
 hidden:
   - {effect: floor_contact, variant: "plane at -x side, position 14.78",
-     values: {floor_contact.k: 10.657}}
-)"},
-                                        {"floor_contact", "mesh_resolution"});
-  EXPECT_TRUE(discovery.steps.back().raced.empty()) << "no race led there";
+     values: {floor_contact.k: 1.0657}}
+)"});
+  const Discovery discovery = explained(small, {"floor_contact", "mesh_resolution"});
   EXPECT_NEAR(discovery.steps.back().fitted.p[0], 0.07807, 1e-4);
+
+  Workspace workspace(small.scene);
+  Step coarse = *std::find_if(discovery.steps.begin(), discovery.steps.end(),
+                              [](const Step& step) { return step.added == "floor_contact"; });
+  for (EffectScore& score : coarse.diagnosis.effects)
+    if (score.effect == "mesh_resolution") score.fall = score.measured_fall = 0.0;
+  const LastAnswer answer = settled_mesh(workspace, coarse, {}, {});
+  const auto& settled = std::get<std::optional<Step>>(answer);
+  ASSERT_TRUE(settled.has_value());
+  EXPECT_EQ(settled->added, "mesh_resolution");
+  EXPECT_TRUE(at_floor(settled->fitted, coarse.diagnosis.floor));
+  // What is at the floor is not asked, nor what no likelihood speaks for.
+  EXPECT_FALSE(
+      std::get<std::optional<Step>>(settled_mesh(workspace, discovery.steps.back(), {}, {})));
+  for (EffectScore& score : coarse.diagnosis.effects) score.evidence = 0.0;
+  EXPECT_FALSE(std::get<std::optional<Step>>(settled_mesh(workspace, coarse, {}, {})));
 }
 
 }  // namespace
