@@ -126,12 +126,17 @@ bool EquilibriumSolver::Impl::warm(const Problem& problem, const EquilibriumOpti
   return true;
 }
 
-/// Adaptive load steps from x, taken to be an equilibrium at fraction 0 with the supports at x.
-/// Intermediate states are only converged loosely.
-NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& problem,
+/// Adaptive load steps from x with the supports at x. From rest the loads grow; from elsewhere all
+/// of them are there, and a force fades that holds x. (It would hold a body that has swollen at its
+/// rest size, too, but dead forces that squeeze a soft body do not hold it stably.) Intermediate
+/// states are only converged loosely.
+NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
                                              const EquilibriumOptions& options, VectorXd& x,
                                              double& reached) {
   const VectorXd from = x;
+  const VectorXd out_of_balance = at_once.residual(x, 1.0);
+  Problem problem = at_once;
+  if (x != rest) problem.held_by = &out_of_balance;
   NewtonOutcome out;
   double s = 0, step = 1;
   while (s < 1) {

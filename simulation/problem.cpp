@@ -10,20 +10,22 @@ bool Problem::has_potential() const {
 
 double Problem::potential(const VectorXd& q, double s) const {
   double sum = assembly.energy(energy, q);
-  for (const auto& f : loading.forces) sum += f->potential(mesh, q, s);
+  for (const auto& f : loading.forces) sum += f->potential(mesh, q, load(s));
+  if (held_by) sum -= (1.0 - s) * held_by->dot(q);
   return sum;
 }
 
 VectorXd Problem::residual(const VectorXd& q, double s) const {
   VectorXd R = VectorXd::Zero(q.size());
   assembly.add_forces(energy, q, R);
-  for (const auto& f : loading.forces) f->add_residual(mesh, q, s, R);
+  for (const auto& f : loading.forces) f->add_residual(mesh, q, load(s), R);
+  if (held_by) R -= (1.0 - s) * *held_by;
   return R;
 }
 
 VectorXd Problem::external(const VectorXd& q, double s) const {
   VectorXd R = VectorXd::Zero(q.size());
-  for (const auto& f : loading.forces) f->add_residual(mesh, q, s, R);
+  for (const auto& f : loading.forces) f->add_residual(mesh, q, load(s), R);
   return -R;
 }
 
@@ -31,13 +33,13 @@ void Problem::tangent(const VectorXd& q, double s, bool projected, SparseMatrix&
   assembly.set_tangent(energy, q, projected, K);
   Triplets triplets;
   for (const auto& f : loading.forces)
-    if (!f->dead()) f->add_tangent(mesh, q, s, triplets);
+    if (!f->dead()) f->add_tangent(mesh, q, load(s), triplets);
   if (!triplets.empty()) add_triplets(triplets, K);
 }
 
 SparseMatrix Problem::skew_tangent(const VectorXd& q, double s) const {
   Triplets triplets;
-  for (const auto& f : loading.forces) f->add_skew_tangent(mesh, q, s, triplets);
+  for (const auto& f : loading.forces) f->add_skew_tangent(mesh, q, load(s), triplets);
   double largest = 0;
   for (const auto& t : triplets) largest = std::max(largest, std::abs(t.value()));
   if (largest == 0) return {};

@@ -11,7 +11,14 @@ struct Problem {
   Assembly& assembly;
   const EnergyModel& energy;
   const Loading& loading;
+  /// A force that holds the body where a climb begins under load (3n): 1 - s of it at fraction s,
+  /// while the other forces do not grow. Where an obstacle has moved that place is no equilibrium,
+  /// and without such a force no load step would be short enough (homotopy of the residual:
+  /// Allgower and Georg, Introduction to Numerical Continuation Methods, 2003, 1.2). Null: none,
+  /// the forces grow with s.
+  const VectorXd* held_by = nullptr;
 
+  double load(double s) const { return held_by ? 1.0 : s; }
   bool has_potential() const;
   double potential(const VectorXd& q, double s) const;
   VectorXd residual(const VectorXd& q, double s) const;

@@ -250,6 +250,30 @@ TEST(Solver, StartsWhereTheSolutionIsExpected) {
   EXPECT_EQ(odd, q);
 }
 
+/// A wall that is suddenly inside the loaded body and far harder than it is met from where the body
+/// was: what it leaves out of balance fades step by step. No such steps lead there from rest.
+TEST(Solver, MeetsAHardWallThatStandsInsideTheBody) {
+  BentBlock c;
+  Loading loading = c.loading();
+  loading.prescribed.clear(), loading.displacement.resize(0);
+  hold(c.mesh, c.base, loading);
+  EquilibriumSolver solver(std::make_shared<const TetMesh>(c.mesh));
+  const auto free = solver.solve(c.energy(), loading, {});
+  ASSERT_TRUE(std::holds_alternative<Equilibrium>(free));
+  const double wall = 1.9;  // a twentieth of the height is beyond it
+  ASSERT_GT(std::get<Equilibrium>(free).q.reshaped(3, c.mesh.nodes()).row(2).maxCoeff(), 2.0);
+  loading.forces.push_back(
+      floor_contact(c.mesh, Vector3d(0, 0, wall), Vector3d(0, 0, -1), 1000.0, 1e-3));
+  const auto met = solver.solve(c.energy(), loading, {});
+  ASSERT_TRUE(std::holds_alternative<Equilibrium>(met)) << std::get<NumericalFailure>(met).reason;
+  const VectorXd& q = std::get<Equilibrium>(met).q;
+  const VectorXd R = residual(c.mesh, c.energy(), loading, q);
+  for (int u = 0; u < R.size(); ++u) {
+    if (std::binary_search(loading.prescribed.begin(), loading.prescribed.end(), u)) continue;
+    EXPECT_NEAR(R[u], 0.0, 1e-7);
+  }
+}
+
 /// A small load needs one factorization: the predictor's serves Newton too.
 TEST(Solver, KeepsThePredictorsFactorWhereItCameNear) {
   BentBlock c;
