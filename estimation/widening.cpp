@@ -31,7 +31,8 @@ std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
   const Ingredient& narrow = *fitted.form.ingredients[at];
   const Effect* effect = find_effect(narrow.name());
   if (!effect) return {};
-  const Model without = model_without(fitted, at);
+  Model without = model_without(fitted, at);
+  without.states = realised(fitted).states;
   const VectorXd own = values_of(fitted, at);
   auto forms = effect->further_forms(without, narrow, own);
   VectorXd fewer = own;

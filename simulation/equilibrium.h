@@ -62,8 +62,9 @@ struct EquilibriumOptions {
   double tolerance = 1e-9;      ///< |R_free|_inf over the largest nodal force (or reaction)
   int max_iterations = 60;      ///< Newton iterations of one load step
   double smallest_step = 1e-4;  ///< load fraction at which the solver gives up
-  /// Newton iterations of all load steps together. For a change of parameters that may be refused:
-  /// an equilibrium that is there is found in some ten, one that is not can be sought for hundreds.
+  /// Newton iterations of all load steps together, from the last solution and again from rest. For
+  /// a change of parameters that may be refused: an equilibrium that is there is found in some ten,
+  /// one that is not can be sought for hundreds.
   int most_iterations = std::numeric_limits<int>::max();
   /// Leave the factored tangent, which sensitivities() needs. False: Equilibrium::factor is null
   /// and `stable` is not known, but true.

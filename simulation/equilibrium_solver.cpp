@@ -63,6 +63,11 @@ double feasible(const Assembly& assembly, const VectorXd& q, const VectorXd& d, 
   return 0.0;
 }
 
+/// A way from where the body was that is not found within these is sought from rest instead: near
+/// an obstacle that has moved a few steps of a few iterations lead to it.
+constexpr int kHeldIterations = 30;
+constexpr double kShortestHeld = 0.01;
+
 /// `most`: of this load step; what is left of the iterations of all of them may be less.
 NewtonGoal goal_of(const EquilibriumOptions& options, const NewtonState& state, double s,
                    int most) {
@@ -136,11 +141,16 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
   const VectorXd from = x;
   const VectorXd out_of_balance = at_once.residual(x, 1.0);
   Problem problem = at_once;
-  if (x != rest) problem.held_by = &out_of_balance;
+  EquilibriumOptions own = options;
+  if (x != rest) {
+    problem.held_by = &out_of_balance;
+    own.most_iterations = std::min(own.most_iterations, state.iterations + kHeldIterations);
+    own.smallest_step = std::max(own.smallest_step, kShortestHeld);
+  }
   NewtonOutcome out;
   double s = 0, step = 1;
   while (s < 1) {
-    if (state.iterations >= options.most_iterations) {
+    if (state.iterations >= own.most_iterations) {
       out.converged = false;
       out.reason = fmt::format("no equilibrium within {} Newton iterations", state.iterations);
       return out;
@@ -149,6 +159,11 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
     const double next = step >= 1 - s - 1e-12 ? 1.0 : s + step;
     state.set_tangent(problem, x, s);
     if (!state.factorize()) {
+      if (problem.held_by) {
+        out.converged = false;
+        out.reason = "held where it was, the body is not stable";
+        return out;
+      }
       problem.tangent(x, s, true, state.K);
       if (!state.factorize()) {
         out.converged = false;
@@ -158,14 +173,14 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
     }
     const VectorXd jump = prescribed_jump(problem, rest, from, x, next);
     const VectorXd d = predict(problem, state, state.K, x, next, jump);
-    const double t = feasible(assembly, x, d, options.smallest_step / std::max(step, 1e-12));
+    const double t = feasible(assembly, x, d, own.smallest_step / std::max(step, 1e-12));
     if (t < 1) {
       // The predictor is linear in the load: a part of it belongs to that part of the load.
       out.reason = "the next load step would invert an element";
       step *= t > 0 ? t : 0.25;
     } else {
       VectorXd trial = x + d;
-      NewtonGoal goal = goal_of(options, state, next, next < 1 ? 15 : options.max_iterations);
+      NewtonGoal goal = goal_of(own, state, next, next < 1 ? 15 : own.max_iterations);
       if (next < 1) goal.tolerance = std::max(goal.tolerance, 1e-3);
       out = newton(problem, goal, state, trial);
       if (out.reason == "cancelled") return out;
@@ -177,7 +192,7 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
       }
       step *= 0.4;
     }
-    if (step < options.smallest_step) {
+    if (step < own.smallest_step) {
       int element = -1;
       const double J = assembly.smallest_J(x, &element);
       out.converged = false;
@@ -243,16 +258,21 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
     return s.finish(problem, options.factored, std::move(x));
 
   NumericalFailure failure{loading.name, 0.0, ""};
+  EquilibriumOptions own = options;
   for (int attempt = 0; attempt < 2; ++attempt) {
     double reached = 0;
     const bool from_rest = attempt == 1 || (!s.q.size() && !start);
     if (from_rest) x = s.rest;
-    const NewtonOutcome out = s.climb(problem, options, x, reached);
+    const int before = s.state.iterations;
+    const NewtonOutcome out = s.climb(problem, own, x, reached);
     if (out.converged) return s.finish(problem, options.factored, std::move(x));
     failure.load_fraction = reached;
     failure.reason = out.reason;
-    if (from_rest || out.reason == "cancelled" || s.state.iterations >= options.most_iterations)
-      break;
+    if (from_rest || out.reason == "cancelled") break;
+    // What the way from elsewhere took is not taken from the one that has always been there.
+    if (own.most_iterations < std::numeric_limits<int>::max() - s.state.iterations)
+      own.most_iterations += s.state.iterations - before;
+    if (s.state.iterations >= own.most_iterations) break;
   }
   return failure;
 }

@@ -200,7 +200,8 @@ class FloorContact final : public Effect {
            "the plane. Beside planes normal to the axes, 36 directions between them are tried "
            "where the deformed body moves outward. Refitted as a cushion of free position and "
            "stiffness, which between the axes may tilt, and as a hard floor, which stays where it "
-           "explains as much; so does a plane normal to an axis.";
+           "explains as much; so does a plane normal to an axis, which may tilt too where it "
+           "leaves more than noise.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -275,14 +276,28 @@ class FloorContact final : public Effect {
   }
 
   /// A cushion as stiff as the hard plane is, and free: a corner sinks into what is hard to a face.
+  /// A plane that stood normal to an axis, tilting about where it is pressed: one up to half a step
+  /// of the grid off looks like that.
   std::vector<Further> further_forms(const Model& model, const Ingredient& narrow,
                                      const VectorXd& values) const override {
-    auto form = form_in(narrow.variant());
-    if (!form || !form->hard) return {};
-    VectorXd start(values.size() + 1);
-    start << values[0], form->stiffness, values.tail(values.size() - 1);
-    form->hard = false, form->stiffness = 0.0;
-    return {{refitted(model, *form), start}};
+    const auto form = form_in(narrow.variant());
+    if (!form) return {};
+    std::vector<Further> all;
+    if (form->hard) {
+      Form cushion = *form;
+      cushion.hard = false, cushion.stiffness = 0.0;
+      VectorXd start(values.size() + 1);
+      start << values[0], form->stiffness, values.tail(values.size() - 1);
+      all.push_back({refitted(model, cushion), start});
+    }
+    if (!form->tilts) {
+      const Vector3d place = pressed(model, {form->out, values[0], ""});
+      VectorXd start(values.size() + 2);
+      start << values, 0.0, 0.0;
+      all.push_back(
+          {refitted(model, {form->hard, true, -1, form->out, place, form->stiffness}), start});
+    }
+    return all;
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

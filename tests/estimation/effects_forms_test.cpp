@@ -122,11 +122,38 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
             signature(other.realise(with_values(other, values)), q));
   // and as soft as it is, it is the cushion that a refit goes on to
   const auto further = effect.further_forms(base_model(), *hard, values);
-  ASSERT_EQ(further.size(), 1u);
+  ASSERT_EQ(further.size(), 2u);
   EXPECT_EQ(further[0].form->variant(), cushion->variant());
-  const ModelForm wide = extended(base(), further[0].form);
-  EXPECT_EQ(signature(wide.realise(with_values(wide, further[0].values)), q),
-            signature(form.realise(with_values(form, values)), q));
+  for (const auto& [wider, start] : further) {  // the other one tilts
+    const ModelForm wide = extended(base(), wider);
+    EXPECT_EQ(signature(wide.realise(with_values(wide, start)), q),
+              signature(form.realise(with_values(form, values)), q))
+        << wider->variant();
+  }
+}
+
+/// A plane that stands normal to an axis goes on to one that tilts about where it is pressed.
+TEST(FloorContact, APlaneNormalToAnAxisMayTiltWhereItLeavesMore) {
+  const Effect& effect = *find_effect("floor_contact");
+  Model model = base_model();
+  const auto bent = std::make_shared<Equilibrium>();
+  bent->q = deformed_state(*block_scene());
+  Eigen::Index deepest = 0;
+  bent->q.reshaped(3, bent->q.size() / 3).row(0).maxCoeff(&deepest);
+  const double reach = bent->q[3 * deepest] += 1.0;  // alone
+  model.states = {bent};
+  const auto cushion = effect.candidate(model, "cushion on side +x");
+  ASSERT_TRUE(cushion);
+  const VectorXd values = Eigen::Vector2d(reach - 0.5, 1e-4);
+  const auto further = effect.further_forms(model, *cushion, values);
+  ASSERT_EQ(further.size(), 1u);
+  EXPECT_EQ(further[0].values, VectorXd(Eigen::Vector4d(reach - 0.5, 1e-4, 0.0, 0.0)));
+  const auto n = numbers_in(further[0].form->variant());
+  ASSERT_EQ(n.size(), 6u);
+  const Vector3d about(n[3], n[4], n[5]), there = bent->q.segment<3>(3 * deepest);
+  EXPECT_LE((about - (there - 0.5 * Vector3d::UnitX())).norm(), 0.1)
+      << about.transpose() << " for " << there.transpose();
+  EXPECT_THAT(effect.further_forms(model, *further[0].form, further[0].values), testing::IsEmpty());
 }
 
 /// The block is longest along z: the part of the load across stays, the part along changes sides.

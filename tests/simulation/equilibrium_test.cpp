@@ -201,12 +201,12 @@ TEST(Solver, ALimitOnItsIterationsEndsTheSearchForWhatIsNotThere) {
   loading.prescribe(c.mesh, c.tip, 0, -4.5);  // through the base
   asked = 0;
   solver.solve(c.energy(), loading, options);
-  EXPECT_GT(asked, 40) << "too easy a case: no limit would be needed";
+  EXPECT_GT(asked, 60) << "too easy a case: no limit would be needed";
   asked = 0;
-  options.most_iterations = 20;
+  options.most_iterations = 20;  // of either way, from where the body was and from rest
   const auto result = solver.solve(c.energy(), loading, options);
   ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
-  EXPECT_LE(asked, 40);
+  EXPECT_LE(asked, 50);
   // What it had found before still starts the next one.
   EXPECT_TRUE(std::holds_alternative<Equilibrium>(solver.solve(c.energy(), c.loading(), options)));
 }
