@@ -217,7 +217,8 @@ TEST(Catalogue, DerivativesAreThereAndConvergeWithSecondOrder) {
       const int k = base().size() + static_cast<int>(i);
       // A hundredth of the depth over which a plane's force sets in: beyond it no order holds, as
       // points of the body pass from nothing to that and on.
-      const bool sets_in = parameters[i].name == "floor_contact.position";
+      const bool sets_in =
+          c.effect->name() == "floor_contact" && parameters[i].name != "floor_contact.k";
       const double h = (sets_in ? 5e-4 : 0.02) * parameters[i].typical;
       const bool one_sided = p[k] - h < parameters[i].low;
       const VectorXd d1 = difference(form, p, k, h, one_sided, q);
