@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "estimation/additive_material.h"
+#include "estimation/floor.h"
 #include "estimation/normal_equations.h"
 
 namespace hookeye {
@@ -69,6 +70,7 @@ std::variant<EvaluationOptions, NumericalFailure> comparison(Workspace& workspac
   out.cancel = options.cancel;
   out.registered = seen.motion_px() > kLinearPx;
   out.huber = options.huber > 0.0 ? options.huber * misfit_scale(seen) : 0.0;
+  out.measured_weight = measured_weight(workspace.scene(), seen);
   return out;
 }
 

@@ -307,8 +307,9 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   std::vector<Candidate> candidates = collect_candidates(fitted, options, idle);
   auto result = evaluate_for(workspace, fitted, candidates, options);
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  const Evaluation& evaluation = std::get<Evaluation>(result);
+  Evaluation& evaluation = std::get<Evaluation>(result);
   out.floor = measure_floor(scene, evaluation);
+  evaluation.measured_weight = measured_weight(out.floor);
   out.held_out_missed = spoils_held_out(fitted, out.floor);
   const DiagnosisSums sums = diagnosis_sums(evaluation, out.floor);
   const int base = fitted.form.size();

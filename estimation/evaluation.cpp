@@ -341,6 +341,7 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   if (columns && candidates.empty()) impl_->keep_linear(form, p, solved);
   Evaluation out;
   out.columns = columns ? columns->size() : 0;
+  out.measured_weight = options.measured_weight;
   for (int e : wanted) out.examples.push_back(std::move(solved[e]));
   return out;
 }

@@ -35,6 +35,7 @@ struct EvaluationOptions {
   bool single_rays = false;  ///< at full size one ray a pixel: quicker, and aliased
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
+  double measured_weight = 1.0;  ///< Evaluation's
   /// Of the equilibrium (EquilibriumOptions).
   double tolerance = EquilibriumOptions{}.tolerance;
   int most_iterations = EquilibriumOptions{}.most_iterations;
@@ -79,6 +80,10 @@ struct ExampleEvaluation {
 struct Evaluation {
   std::vector<ExampleEvaluation> examples;
   int columns = 0;
+  /// Of the squares of measured values beside those of pixels, over the noise of each. What a
+  /// renderer gets wrong is correlated from pixel to pixel: a million of them would bend a force by
+  /// any number of its deviations to fit that. (floor.h)
+  double measured_weight = 1.0;
   const ExampleEvaluation* find(int example) const;
   /// Root mean square of photo residuals over noise; where no example has a photo, measured_chi().
   double chi(bool held_out) const;

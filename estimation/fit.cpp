@@ -9,6 +9,7 @@
 #include "estimation/additive_material.h"
 #include "estimation/convex_fit.h"
 #include "estimation/fit_stage.h"
+#include "estimation/floor.h"
 
 namespace hookeye {
 
@@ -48,6 +49,7 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
   out.form = form;
   out.p = p;
   out.evaluation = std::get<Evaluation>(std::move(result));
+  out.evaluation.measured_weight = measured_weight(workspace.scene(), out.evaluation);
   const auto parameters = form.parameters();
   const ParameterCovariance covariance = parameter_covariance(out.evaluation, parameters, p);
   out.undetermined = covariance.directions;

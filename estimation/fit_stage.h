@@ -55,6 +55,7 @@ struct Look {
   double misfit = 1.0;  ///< misfit_scale
   double count = 0.0;   ///< pixels
   double motion_px = 0.0;
+  double measured_weight = 1.0;  ///< Evaluation::measured_weight
 };
 
 std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,

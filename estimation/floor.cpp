@@ -167,6 +167,12 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   return floor;
 }
 
+double measured_weight(const Floor& floor) { return floor.cell_inflation; }
+
+double measured_weight(const Scene& scene, const Evaluation& evaluation) {
+  return measured_weight(measure_floor(scene, evaluation));
+}
+
 bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
   return fitted.evaluation.chi(false) <= times * floor.chi &&
          fitted.evaluation.chi(true) <= times * floor.chi;

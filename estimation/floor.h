@@ -29,6 +29,11 @@ struct Floor {
 /// pictures. Needs pictures. Without compared rest photos: 1, "noise model".
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation);
 
+/// Of measured values in a fit (Evaluation::measured_weight): what the rest photos' own error does
+/// to the score of a smooth signature, over what as many independent pixels would do.
+double measured_weight(const Floor& floor);
+double measured_weight(const Scene& scene, const Evaluation& evaluation);
+
 /// Times the floor: what texture and shading errors of another renderer leave at most.
 constexpr double kAtFloor = 1.3;
 /// Times the floor: what meshes and renderers leave at least.

@@ -21,9 +21,9 @@ NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
       sums.r2 += photo.sums.r2;
     }
     for (const auto& measured : example.measured) {
-      sums.JtJ += measured.J.transpose() * measured.J;
-      sums.Jtr += measured.J.transpose() * measured.r;
-      sums.r2 += measured.r.squaredNorm();
+      sums.JtJ += evaluation.measured_weight * measured.J.transpose() * measured.J;
+      sums.Jtr += evaluation.measured_weight * measured.J.transpose() * measured.r;
+      sums.r2 += evaluation.measured_weight * measured.r.squaredNorm();
     }
   }
   return sums;
@@ -264,8 +264,9 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
     }
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd J = measured.J.leftCols(n);
-      add(J.transpose() * J, J.transpose() * measured.r,
-          std::max(1.0, measured.r.squaredNorm() / 3.0), false, false);
+      const double w = evaluation.measured_weight;
+      add(w * J.transpose() * J, w * J.transpose() * measured.r,
+          w * std::max(1.0, measured.r.squaredNorm() / 3.0), false, false);
     }
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();

@@ -55,7 +55,7 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
   std::erase_if(pictures.examples, [](const auto& example) { return example.held_out; });
   const Floor floor = measure_floor(workspace.scene(), pictures);
   return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false), held_out,
-                    floor.source == "rest photos" ? floor.chi : 0.0};
+                    floor.source == "rest photos" ? floor.chi : 0.0, measured_weight(floor)};
 }
 
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
@@ -64,6 +64,7 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
   EvaluationOptions derivatives = half_size(options);
   derivatives.derivatives = true;
   derivatives.huber = scale.huber;
+  derivatives.measured_weight = scale.measured_weight;
   const auto first = workspace.evaluate(form, start, derivatives);
   if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
   const double from = std::get<Evaluation>(first).linear_chi(false);

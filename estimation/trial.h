@@ -22,6 +22,7 @@ struct TrialScale {
   double huber = 0.0;                    ///< Huber's threshold in units of noise
   double chi = 0.0, chi_validate = 0.0;  ///< Trial's, of that model
   double floor = 0.0;                    ///< Trial::floor
+  double measured_weight = 1.0;          ///< Evaluation::measured_weight
 };
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,

@@ -1,11 +1,14 @@
 // Fits from one kind of measurement alone, without any photo.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 #include "estimation/discover.h"
 #include "estimation/effects_scene.h"
 #include "estimation/fit.h"
+#include "estimation/floor.h"
+#include "tests/estimation/small_capture.h"
 
 namespace hookeye::test {
 namespace {
@@ -123,6 +126,28 @@ TEST(MeasuredFit, DiscoverNamesAnEffectFromPositionsAlone) {
   EXPECT_EQ(found.steps[1].added, "gravity") << found.sentence;
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
   EXPECT_NEAR(found.steps[1].fitted.evaluation.chi(false), 1.0, 0.2);
+}
+
+/// Photos that err as their noise says leave measured values their weight. What is wrong in the
+/// same way over many pixels makes few of a million, and a force more beside them.
+TEST(MeasuredFit, WhatPhotosErrByTogetherGivesForcesMoreWeight) {
+  const SmallScene small({.same_renderer = true});
+  auto wrong = std::make_shared<Scene>(*small.scene);
+  for (auto& example : wrong->photos)
+    for (Photo& photo : example)
+      for (Image& plane : photo.planes)
+        for (int y = 0; y < plane.height; ++y)
+          for (int x = 0; x < plane.width; ++x)
+            plane.at(x, y) *=
+                static_cast<float>(1.0 + 0.03 * std::sin(0.2 * x) * std::sin(0.15 * y));
+  const auto weight_in = [](std::shared_ptr<const Scene> scene) {
+    Workspace workspace(scene);
+    const Fitted fitted = base_fit(workspace);
+    EXPECT_DOUBLE_EQ(fitted.evaluation.measured_weight, measured_weight(*scene, fitted.evaluation));
+    return fitted.evaluation.measured_weight;
+  };
+  EXPECT_LT(weight_in(small.scene), 2.0);
+  EXPECT_GT(weight_in(wrong), 5.0);
 }
 
 /// A load that nobody has measured is a candidate of a plan: that it has no equilibrium stops no

@@ -72,7 +72,8 @@ TEST(Scaling, HasItsDerivative) {
                             scaling.parameters[i].name);
 }
 
-/// Photos and measured values of the fitted examples, or of the others, and nothing else.
+/// Photos and measured values of the fitted examples, or of the others, with the weight of these,
+/// and nothing else.
 TEST(NormalEquations, SumPhotosAndMeasuredValues) {
   std::mt19937 random(3);
   std::normal_distribution<double> any;
@@ -82,6 +83,7 @@ TEST(NormalEquations, SumPhotosAndMeasuredValues) {
   };
   Evaluation evaluation;
   evaluation.columns = 3;
+  evaluation.measured_weight = 7.0;
   Eigen::MatrixXd J[2];
   VectorXd r[2];
   for (const bool held_out : {false, true, false}) {
@@ -90,8 +92,8 @@ TEST(NormalEquations, SumPhotosAndMeasuredValues) {
     Eigen::MatrixXd& all = J[held_out];
     VectorXd& residuals = r[held_out];
     for (int k = 0; k < 4; ++k) {
-      const Eigen::MatrixXd own = noise(3, 3);
-      const VectorXd at = noise(3, 1);
+      Eigen::MatrixXd own = noise(3, 3);
+      VectorXd at = noise(3, 1);
       if (k < 2) {
         PhotoEvaluation photo;
         photo.sums = {own.transpose() * own, own.transpose() * at, at.squaredNorm(), 3};
@@ -101,6 +103,7 @@ TEST(NormalEquations, SumPhotosAndMeasuredValues) {
         measured.predicted.setZero();
         measured.J = own, measured.r = at;
         example.measured.push_back(measured);
+        own *= std::sqrt(evaluation.measured_weight), at *= std::sqrt(evaluation.measured_weight);
       }
       const Eigen::Index before = residuals.size();
       all.conservativeResize(before + 3, 3), residuals.conservativeResize(before + 3);
@@ -113,6 +116,25 @@ TEST(NormalEquations, SumPhotosAndMeasuredValues) {
     EXPECT_LE((sums.JtJ - J[held_out].transpose() * J[held_out]).norm(), 1e-13 * sums.JtJ.norm());
     EXPECT_LE((sums.Jtr - J[held_out].transpose() * r[held_out]).norm(), 1e-13 * sums.Jtr.norm());
     EXPECT_NEAR(sums.r2, r[held_out].squaredNorm(), 1e-13 * sums.r2);
+  }
+}
+
+/// A weight moves the estimate, and the interval is that estimate's: w too large or too small for
+/// the noise widens it (Gauss-Markov; White's sandwich).
+TEST(ParameterCovariance, KnowsTheWeightOfMeasuredValues) {
+  const Eigen::MatrixXd J = Eigen::VectorXd::Constant(1, 30.0);
+  Evaluation evaluation = seen(J);
+  MeasuredEvaluation measured;
+  measured.predicted.setZero(), measured.r.setZero();
+  measured.J = Eigen::Vector3d(10.0, 0.0, 0.0);
+  evaluation.examples[0].measured.push_back(measured);
+  const VectorXd p = VectorXd::Constant(1, 0.2);
+  for (const double w : {0.2, 1.0, 9.0}) {
+    evaluation.measured_weight = w;
+    const double variance = parameter_covariance(evaluation, {level("z")}, p).determined(0, 0);
+    const double expected = (900.0 + w * w * 100.0) / std::pow(900.0 + w * 100.0, 2);
+    EXPECT_NEAR(variance, expected, 1e-12) << w;
+    EXPECT_GE(variance, (1.0 - 1e-12) / 1000.0);
   }
 }
 
