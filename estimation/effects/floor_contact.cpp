@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
+#include "estimation/effects/floor_planes.h"
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -13,7 +13,6 @@ namespace {
 
 /// Distances of the planes from the rest body, in parts of its size.
 const double kGaps[] = {0.005, 0.05, 0.15};
-const char* const kSides[] = {"+x", "-x", "+y", "-y", "+z", "-z"};
 /// Part of the size that the body has to move outward before a plane between the axes is tried,
 /// half of it behind the plane: twenty times the depth over which its force sets in (smoothing).
 constexpr double kLeastTravel = 0.02;
@@ -21,31 +20,14 @@ constexpr double kLeastTravel = 0.02;
 /// fitted plane is asked whether it is normal to it.
 constexpr double kHalfStep = 0.314;
 
-/// Side of the body on which the floor stands: outward direction.
-Vector3d outward(int side) { return (side % 2 == 0 ? 1.0 : -1.0) * Vector3d::Unit(side / 2); }
-
 /// Distance of the body's outermost rest point along a direction, from the origin.
 double reach(const Scene& scene, const Vector3d& direction) {
   return (direction.transpose() * scene.body->mesh.X).maxCoeff();
 }
 
-/// Depth over which the force sets in: a quarter of what a hard plane lets in.
+/// Depth over which the force sets in: some 0.15 px where the body fills 300. An edge that is
+/// sharper meets the points of a face one by one.
 double smoothing(const Scene& scene) { return 0.0005 * body_size(scene).size; }
-
-double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)) + 0.0; }
-
-/// Rounded to the fourth digit of `size`.
-Vector3d rounded(const Vector3d& x, double size) {
-  const double step = std::pow(10.0, std::floor(std::log10(size)) - 3.0);
-  Vector3d out;
-  for (int i = 0; i < 3; ++i) out[i] = rounded(std::round(x[i] / step) * step);
-  return out;
-}
-
-/// A half space that is not free, behind the plane through `through`; `out` points into it.
-struct Plane {
-  Vector3d out, through;
-};
 
 std::shared_ptr<const ForceTerm> force_of(const Model& model, const Plane& plane, double k) {
   return floor_contact(model.scene->body->mesh, plane.through, -plane.out, k,
@@ -55,104 +37,6 @@ std::shared_ptr<const ForceTerm> force_of(const Model& model, const Plane& plane
 void stand(Model& model, const Plane& plane, double k) {
   const auto force = force_of(model, plane, k);
   for (auto& example : model.examples) example.loading.forces.push_back(force);
-}
-
-/// Directions between the axes: the other 36 of the 42 corners and middles of edges of an
-/// icosahedron that stands on a middle. Any direction is within 21 degrees of one or of an axis.
-std::vector<Vector3d> between_axes() {
-  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
-  std::vector<Vector3d> all;
-  const auto add = [&](const Vector3d& first) {
-    for (int turn = 0; turn < 3; ++turn)
-      for (int signs = 0; signs < 8; ++signs) {
-        Vector3d d(first[turn], first[(turn + 1) % 3], first[(turn + 2) % 3]);
-        bool twice = false;  // a zero has no sign
-        for (int i = 0; i < 3; ++i)
-          if (signs >> i & 1) twice = twice || d[i] == 0.0, d[i] = -d[i];
-        if (!twice) all.push_back(d);
-      }
-  };
-  add({0.0, 1.0, golden});
-  add({1.0, golden, golden * golden});
-  for (Vector3d& d : all) d = rounded(d.normalized(), 1.0);
-  return all;
-}
-
-/// "(0.851, 0.526, 0)".
-std::string digits(const Vector3d& v) {
-  return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
-}
-
-/// A plane of the scores: normal to an axis ("at +x side"), or to another direction.
-struct Scored {
-  Vector3d out;
-  double position;  ///< along `out` [length]
-  std::string text;
-};
-
-Scored on_side(int side, double position) {
-  position = rounded(position);
-  return {outward(side), position,
-          fmt::format("plane at {} side, position {:g}", kSides[side], position)};
-}
-
-Scored towards(const Vector3d& direction, double position) {
-  position = rounded(position);
-  return {direction.normalized(), position,
-          fmt::format("plane towards {}, position {:g}", digits(direction), position)};
-}
-
-std::optional<Scored> scored_in(const std::string& variant) {
-  const auto n = numbers_in(variant);
-  for (int side = 0; side < 6; ++side)
-    if (starts_with(variant, fmt::format("plane at {} side", kSides[side])) && n.size() == 1)
-      return on_side(side, n[0]);
-  if (!starts_with(variant, "plane towards") || n.size() != 4) return std::nullopt;
-  const Vector3d direction(n[0], n[1], n[2]);
-  return direction.norm() > 0.0 ? std::optional(towards(direction, n[3])) : std::nullopt;
-}
-
-/// A plane of the refits: it stands along `out` on the line through `about` and, where it may tilt,
-/// does so about that place. Normal to an axis it may also be told by its side, without tilt.
-struct Form {
-  bool hard = false, tilts = false;
-  int side = -1;  ///< -1: tilts
-  Vector3d out = Vector3d::Zero(), about = Vector3d::Zero();
-  /// Of a hard one. It is written, as the modulus that it was taken from is fitted further.
-  double stiffness = 0.0;
-
-  std::string variant() const {
-    const char* kind = hard ? "hard plane" : "cushion";
-    const std::string how = stiffness > 0.0 ? fmt::format(", stiffness {:g}", stiffness) : "";
-    if (!tilts) return fmt::format("{} on side {}{}", kind, kSides[side], how);
-    return fmt::format("{} towards {}, tilting about {}{}", kind, digits(out), digits(about), how);
-  }
-  /// `values`: position, stiffness of a cushion, two tilts.
-  Plane plane(const VectorXd& values) const {
-    const Vector3d along = out.normalized();
-    const Vector3d there = about + (values[0] - along.dot(about)) * along;
-    if (!tilts) return {along, there};
-    const auto [a, b] = normal_axes(along);
-    const auto tilt = values.tail<2>();
-    return {rotation_of(tilt[0] * a + tilt[1] * b) * along, there};
-  }
-};
-
-std::optional<Form> form_in(const std::string& variant) {
-  const auto n = numbers_in(variant);
-  for (const bool hard : {false, true}) {
-    const auto stiffness = [&](size_t at) { return hard && n.size() == at + 1 ? n[at] : 0.0; };
-    Form form{.hard = hard};
-    form.stiffness = stiffness(0);
-    for (form.side = 0; form.side < 6; ++form.side) {
-      form.out = outward(form.side);
-      if (variant == form.variant()) return form;
-    }
-    if (n.size() < 6) continue;
-    form = {hard, true, -1, {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, stiffness(6)};
-    if (variant == form.variant() && form.out.norm() > 0.0) return form;
-  }
-  return std::nullopt;
 }
 
 /// How far outward the body moves along `direction` in each fitted example, the farthest first.
@@ -169,7 +53,7 @@ std::vector<double> travels(const Model& model, const Vector3d& direction) {
 
 /// Where the known states press against the plane, in the mean weighted by depth; what is next to
 /// the plane of the rest body's middle, where none does.
-Vector3d pressed(const Model& model, const Scored& scored) {
+Vector3d pressed(const Model& model, const ScoredPlane& scored) {
   const TetMesh& mesh = model.scene->body->mesh;
   Vector3d sum = Vector3d::Zero();
   double weight = 0.0;
@@ -227,15 +111,15 @@ class FloorContact final : public Effect {
 
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    if (const auto scored = scored_in(variant)) return soft(model, *scored);
-    if (const auto form = form_in(variant)) return refitted(model, *form);
+    if (const auto scored = scored_plane(variant)) return soft(model, *scored);
+    if (const auto form = plane_form(variant)) return refitted(model, *form);
     return nullptr;
   }
 
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
-    const auto plane = scored_in(scored->variant());
+    const auto plane = scored_plane(scored->variant());
     if (!plane) return scored;
     // Tilt is freed where the score asks for it: free at an axis as well, a cushion at the body's
     // end imitates softening and outruns it.
@@ -251,7 +135,7 @@ class FloorContact final : public Effect {
 
   std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& larger,
                                                  VectorXd& values) const override {
-    auto form = form_in(larger.variant());
+    auto form = plane_form(larger.variant());
     if (!form || form->hard) return nullptr;
     form->hard = true;
     const VectorXd cushion = values;
@@ -262,7 +146,7 @@ class FloorContact final : public Effect {
 
   std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& larger,
                                                  VectorXd& values) const override {
-    const auto form = form_in(larger.variant());
+    const auto form = plane_form(larger.variant());
     if (!form || !form->tilts) return nullptr;
     const Plane plane = form->plane(values);
     for (int side = 0; side < 6; ++side) {
@@ -280,23 +164,31 @@ class FloorContact final : public Effect {
   /// of the grid off looks like that.
   std::vector<Further> further_forms(const Model& model, const Ingredient& narrow,
                                      const VectorXd& values) const override {
-    const auto form = form_in(narrow.variant());
+    const auto form = plane_form(narrow.variant());
     if (!form) return {};
     std::vector<Further> all;
     if (form->hard) {
-      Form cushion = *form;
+      PlaneForm cushion = *form;
       cushion.hard = false, cushion.stiffness = 0.0;
       VectorXd start(values.size() + 1);
       start << values[0], form->stiffness, values.tail(values.size() - 1);
       all.push_back({refitted(model, cushion), start});
     }
-    if (!form->tilts) {
-      const Vector3d place = pressed(model, {form->out, values[0], ""});
-      VectorXd start(values.size() + 2);
-      start << values, 0.0, 0.0;
-      all.push_back(
-          {refitted(model, {form->hard, true, -1, form->out, place, form->stiffness}), start});
-    }
+    if (form->tilts) return all;
+    const auto tilting = [&](PlaneForm other, VectorXd start) {
+      other.tilts = true, other.side = -1, other.out = rounded(other.out, 1.0);
+      other.about = pressed(model, {other.out, start[0], ""});
+      start.conservativeResize(start.size() + 2);
+      start.tail<2>().setZero();
+      all.push_back({refitted(model, other), start});
+    };
+    tilting(*form, values);
+    // What one straight plane presses from the end of the body a tilted one may from its middle: a
+    // hard one goes there from where the nearest of the scores stands.
+    const double size = body_size(*model.scene).size;
+    const double near = reach(*model.scene, form->out) + kGaps[0] * size;
+    if (std::abs(values[0] - near) > kGaps[0] * size)
+      tilting({.hard = true, .out = form->out}, VectorXd::Constant(1, near));
     return all;
   }
 
@@ -304,7 +196,7 @@ class FloorContact final : public Effect {
                        const VectorXd& values) const override {
     const std::string length = model.scene->capture.units.length;
     const std::string unit = model.scene->capture.units.stress() + "/" + length;
-    const auto form = form_in(ingredient.variant());
+    const auto form = plane_form(ingredient.variant());
     if (!form)
       return fmt::format("the body touches a {} (contact stiffness {} {})", ingredient.variant(),
                          figure(values[0]), unit);
@@ -324,7 +216,7 @@ class FloorContact final : public Effect {
   }
 
  private:
-  std::shared_ptr<const Ingredient> soft(const Model& model, const Scored& scored) const {
+  std::shared_ptr<const Ingredient> soft(const Model& model, const ScoredPlane& scored) const {
     const double mu = initial_shear_modulus(model.energy);
     const double size = body_size(*model.scene).size;
     const Units& units = model.scene->capture.units;
@@ -348,7 +240,7 @@ class FloorContact final : public Effect {
 
   /// A plane that tilts may pass a fifth of the size inside the outermost point: as far as one
   /// through the middle of a face does that is half a step of the grid off.
-  static Parameter position(const Scene& scene, const Form& form) {
+  static Parameter position(const Scene& scene, const PlaneForm& form) {
     const double size = body_size(scene).size, rest = reach(scene, form.out.normalized());
     return {"floor_contact.position",
             scene.capture.units.length,
@@ -361,12 +253,13 @@ class FloorContact final : public Effect {
             false};
   }
 
-  std::shared_ptr<const Ingredient> refitted(const Model& model, Form form) const {
+  std::shared_ptr<const Ingredient> refitted(const Model& model, PlaneForm form) const {
     const Scene& scene = *model.scene;
     const Units& units = scene.capture.units;
     const double k = 0.1 * initial_shear_modulus(model.energy) / body_size(scene).size;
-    // A traction of mu/5 sinks into a hard one by 0.2 % of the size.
-    if (form.hard && form.stiffness <= 0.0) form.stiffness = rounded(1e3 * k);
+    // A traction of mu/5 sinks into a hard one by 0.03 % of the size, less than 0.1 px where the
+    // body fills 300. Ten times as much is seen, and what else is fitted makes up for it.
+    if (form.hard && form.stiffness <= 0.0) form.stiffness = rounded(3e4 * k);
     IngredientSpec spec;
     spec.name = name();
     spec.variant = form.variant();

@@ -122,9 +122,10 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
             signature(other.realise(with_values(other, values)), q));
   // and as soft as it is, it is the cushion that a refit goes on to
   const auto further = effect.further_forms(base_model(), *hard, values);
-  ASSERT_EQ(further.size(), 2u);
+  ASSERT_EQ(further.size(), 3u);
   EXPECT_EQ(further[0].form->variant(), cushion->variant());
-  for (const auto& [wider, start] : further) {  // the other one tilts
+  for (size_t i = 0; i < 2; ++i) {  // the second one tilts, the third starts elsewhere
+    const auto& [wider, start] = further[i];
     const ModelForm wide = extended(base(), wider);
     EXPECT_EQ(signature(wide.realise(with_values(wide, start)), q),
               signature(form.realise(with_values(form, values)), q))
@@ -132,7 +133,8 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
   }
 }
 
-/// A plane that stands normal to an axis goes on to one that tilts about where it is pressed.
+/// A plane that stands normal to an axis goes on to one that tilts about where it is pressed, and
+/// to a hard one next to the body, if it has ended elsewhere.
 TEST(FloorContact, APlaneNormalToAnAxisMayTiltWhereItLeavesMore) {
   const Effect& effect = *find_effect("floor_contact");
   Model model = base_model();
@@ -146,8 +148,15 @@ TEST(FloorContact, APlaneNormalToAnAxisMayTiltWhereItLeavesMore) {
   ASSERT_TRUE(cushion);
   const VectorXd values = Eigen::Vector2d(reach - 0.5, 1e-4);
   const auto further = effect.further_forms(model, *cushion, values);
-  ASSERT_EQ(further.size(), 1u);
+  ASSERT_EQ(further.size(), 2u);
   EXPECT_EQ(further[0].values, VectorXd(Eigen::Vector4d(reach - 0.5, 1e-4, 0.0, 0.0)));
+  EXPECT_THAT(further[1].form->variant(), testing::StartsWith("hard plane towards (1, 0, 0)"));
+  const double at_rest = block_scene()->body->mesh.X.row(0).maxCoeff(), near = further[1].values[0];
+  EXPECT_EQ(further[1].values, VectorXd(Eigen::Vector3d(near, 0.0, 0.0)));
+  EXPECT_GT(near, at_rest);
+  EXPECT_LT(near, at_rest + 0.5);
+  const auto stays = effect.further_forms(model, *cushion, Eigen::Vector2d(near, 1e-4));
+  EXPECT_EQ(stays.size(), 1u) << "it stands there";
   const auto n = numbers_in(further[0].form->variant());
   ASSERT_EQ(n.size(), 6u);
   const Vector3d about(n[3], n[4], n[5]), there = bent->q.segment<3>(3 * deepest);

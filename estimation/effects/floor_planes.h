@@ -1,0 +1,62 @@
+// The planes of floor_contact: those that are scored, those that are refitted, and how variants
+// tell them.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimation/model.h"
+
+namespace hookeye {
+
+/// "+x", "-x", "+y" ...
+extern const char* const kSides[6];
+/// Outward direction of a side of the body.
+Vector3d outward(int side);
+
+/// To five digits, or to the fourth of `size`: a variant is written, and read back it must be the
+/// same.
+double rounded(double value);
+Vector3d rounded(const Vector3d& x, double size);
+/// "(0.851, 0.526, 0)".
+std::string digits(const Vector3d& v);
+
+/// A half space that is not free, behind the plane through `through`; `out` points into it.
+struct Plane {
+  Vector3d out, through;
+};
+
+/// Directions between the axes: the other 36 of the 42 corners and middles of edges of an
+/// icosahedron that stands on a middle. Any direction is within 21 degrees of one or of an axis.
+std::vector<Vector3d> between_axes();
+
+/// A plane of the scores: normal to an axis ("at +x side"), or to another direction.
+struct ScoredPlane {
+  Vector3d out;
+  double position;  ///< along `out` [length]
+  std::string text;
+};
+ScoredPlane on_side(int side, double position);
+ScoredPlane towards(const Vector3d& direction, double position);
+/// Empty: `variant` tells none.
+std::optional<ScoredPlane> scored_plane(const std::string& variant);
+
+/// A plane of the refits: it stands along `out` on the line through `about` and, where it may tilt,
+/// does so about that place. Normal to an axis it may also be told by its side, without tilt.
+struct PlaneForm {
+  bool hard = false, tilts = false;
+  int side = -1;  ///< -1: tilts
+  Vector3d out = Vector3d::Zero(), about = Vector3d::Zero();
+  /// Of a hard one. It is written, as the modulus that it was taken from is fitted further.
+  double stiffness = 0.0;
+
+  std::string variant() const;
+  /// `values`: position, stiffness of a cushion, two tilts.
+  Plane plane(const VectorXd& values) const;
+};
+/// Empty: `variant` tells none.
+std::optional<PlaneForm> plane_form(const std::string& variant);
+
+}  // namespace hookeye
