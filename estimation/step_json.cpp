@@ -203,6 +203,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
               {"chi_by_camera", chi_table(by_camera)},
               {"chi_by_region", chi_table(by_region)},
               {"measured", measured_json(scene, fitted)},
+              {"measured_weight", fitted.evaluation.measured_weight},
               {"undetermined", fitted.undetermined},
               {"converged", fitted.converged},
               {"iterations", fitted.iterations},
