@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
@@ -44,7 +45,10 @@ cv::Mat residual_picture(const Image& residual) {
   return out;
 }
 
+/// Smaller where the panel has no room for it.
 void label(cv::Mat& panel, const std::string& text, const cv::Point& at, double scale = 0.6) {
+  const int width = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, scale, 1, nullptr).width;
+  scale *= std::min(1.0, static_cast<double>(panel.cols - at.x - 4) / std::max(width, 1));
   cv::putText(panel, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(0, 0, 0), 3,
               cv::LINE_AA);
   cv::putText(panel, text, at, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(1, 1, 1), 1,
