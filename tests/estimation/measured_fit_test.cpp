@@ -8,6 +8,7 @@
 #include "estimation/effects_scene.h"
 #include "estimation/fit.h"
 #include "estimation/floor.h"
+#include "estimation/normal_equations.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye::test {
@@ -146,6 +147,18 @@ TEST(MeasuredFit, WhatPhotosErrByTogetherGivesForcesMoreWeight) {
     EXPECT_DOUBLE_EQ(fitted.evaluation.measured_weight, measured_weight(*scene, fitted.evaluation));
     return fitted.evaluation.measured_weight;
   };
+  // The fit ends where photos and forces pull alike with that weight, and not with another.
+  for (auto& example : wrong->capture.examples)
+    for (auto& spec : example.measured) spec.sigma /= 30.0;
+  Workspace workspace(wrong);
+  Evaluation end = base_fit(workspace).evaluation;
+  const auto pull = [&](double weight) {
+    end.measured_weight = weight;
+    const NormalEquations sums = normal_equations(end);
+    return std::abs(sums.Jtr[0]) / sums.JtJ(0, 0);
+  };
+  const double own = pull(end.measured_weight);
+  EXPECT_LT(own, 0.2 * pull(1.0));
   EXPECT_LT(weight_in(small.scene), 2.0);
   EXPECT_GT(weight_in(wrong), 5.0);
 }
