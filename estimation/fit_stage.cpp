@@ -155,22 +155,23 @@ double photo_count(const Evaluation& evaluation) {
 }
 
 /// What `pictures` and, where none of them is at rest, the rest photos by themselves tell.
-std::variant<double, NumericalFailure> measured_weight(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& p, const FitOptions& options,
-                                                       const Evaluation& pictures, int level) {
+std::variant<double, NumericalFailure> weight_of_measured(Workspace& workspace,
+                                                          const ModelForm& form, const VectorXd& p,
+                                                          const FitOptions& options,
+                                                          const Evaluation& pictures, int level) {
   const auto& examples = form.scene->capture.examples;
   const auto rests = [&](const auto& example) { return is_rest(examples[example.example]); };
   const auto measures = [](const auto& example) { return !example.measured.empty(); };
   if (std::none_of(pictures.examples.begin(), pictures.examples.end(), measures)) return 1.0;
   if (std::any_of(pictures.examples.begin(), pictures.examples.end(), rests))
-    return hookeye::measured_weight(*form.scene, pictures);
+    return measured_weight(*form.scene, pictures);
   EvaluationOptions at_rest = only_pictures(level, options);
   for (size_t e = 0; e < examples.size(); ++e)
     if (is_rest(examples[e])) at_rest.only.push_back(static_cast<int>(e));
   if (at_rest.only.empty()) return 1.0;
   auto seen = workspace.evaluate(form, p, at_rest);
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  return hookeye::measured_weight(*form.scene, std::get<Evaluation>(seen));
+  return measured_weight(*form.scene, std::get<Evaluation>(seen));
 }
 
 }  // namespace
@@ -183,7 +184,7 @@ std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm&
   auto seen = workspace.evaluate(form, p, pictures_alone);
   if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
   const Evaluation& pictures = std::get<Evaluation>(seen);
-  const auto weight = measured_weight(workspace, form, p, options, pictures, level);
+  const auto weight = weight_of_measured(workspace, form, p, options, pictures, level);
   if (auto* failure = std::get_if<NumericalFailure>(&weight)) return *failure;
   return Look{misfit_scale(pictures), photo_count(pictures), pictures.motion_px(),
               std::get<double>(weight)};
