@@ -61,6 +61,9 @@ class Effect {
   struct Further {
     std::shared_ptr<const Ingredient> form;
     Eigen::VectorXd values;
+    /// Another form of the same parameters, fitted from `values` first: `form` starts where it
+    /// ends. Null: `form` is fitted at once.
+    std::shared_ptr<const Ingredient> by_way_of = nullptr;
   };
   virtual std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
                                              const Eigen::VectorXd& values) const;

@@ -76,6 +76,18 @@ double over_floor(const Fitted& fitted, const Floor& floor) {
   return over_floor(fitted, floor, false) + over_floor(fitted, floor, true);
 }
 
+/// In the further form; where that starts from another's end, `first` is that one.
+std::variant<Fitted, NumericalFailure> fit_further(Workspace& workspace, const Fitted& narrow,
+                                                   size_t at, const Effect::Further& further,
+                                                   const Reformed& first,
+                                                   const FitOptions& options) {
+  auto result = fit_in(workspace, narrow, first, options);
+  const auto* way = std::get_if<Fitted>(&result);
+  if (!way || !further.by_way_of) return result;
+  const Reformed last = reformed(*way, at, {further.form, values_of(*way, at)});
+  return fit_in(workspace, narrow, last, options);
+}
+
 /// Half-size pictures, where a few steps cost what one does of a fit, show what pays() asks for,
 /// with a margin: the steps have stalled and four fifths of what is over the floor are left.
 bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale& narrow,
@@ -148,12 +160,15 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
         continue;
       if (better && at_floor(best, floor, kLeftByRenderers)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
-      const Reformed other = reformed(narrow, at, further);
-      if (gets_nowhere(workspace, other, std::get<TrialScale>(scale), options)) continue;
+      const auto& way = further.by_way_of;
+      const Reformed first =
+          reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
+      if (gets_nowhere(workspace, first, std::get<TrialScale>(scale), options)) continue;
       FitOptions farther = options;
       farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
-      auto result =
-          announced(events, words, [&] { return fit_in(workspace, narrow, other, farther); });
+      auto result = announced(events, words, [&] {
+        return fit_further(workspace, narrow, at, further, first, farther);
+      });
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
         continue;

@@ -20,6 +20,12 @@ constexpr double kLeastTravel = 0.02;
 /// fitted plane is asked whether it is normal to it.
 constexpr double kHalfStep = 0.314;
 
+/// By how much a plane is softer from which a hard one starts (penalty continuation, Fiacco and
+/// McCormick 1968). Where an edge meets a hard plane, chi has a kink over the tilt at which the
+/// plane changes from one corner to another, and steps end there; one that gives by as much as it
+/// moves the body passes.
+constexpr double kSofter = 30.0;
+
 /// Distance of the body's outermost rest point along a direction, from the origin.
 double reach(const Scene& scene, const Vector3d& direction) {
   return (direction.transpose() * scene.body->mesh.X).maxCoeff();
@@ -33,6 +39,15 @@ std::shared_ptr<const ForceTerm> force_of(const Model& model, const Plane& plane
   return floor_contact(model.scene->body->mesh, plane.through, -plane.out, k,
                        smoothing(*model.scene));
 }
+
+/// A tenth of the body's own, mu over its size: a cushion's at the start.
+double soft_stiffness(const Model& model) {
+  return 0.1 * initial_shear_modulus(model.energy) / body_size(*model.scene).size;
+}
+
+/// A traction of mu/5 sinks into a hard plane by 0.03 % of the size, less than 0.1 px where the
+/// body fills 300. Ten times as much is seen, and what else is fitted makes up for it.
+double hard_stiffness(const Model& model) { return 3e4 * soft_stiffness(model); }
 
 void stand(Model& model, const Plane& plane, double k) {
   const auto force = force_of(model, plane, k);
@@ -175,20 +190,24 @@ class FloorContact final : public Effect {
       all.push_back({refitted(model, cushion), start});
     }
     if (form->tilts) return all;
-    const auto tilting = [&](PlaneForm other, VectorXd start) {
+    const auto tilting = [&](PlaneForm other, double position) {
       other.tilts = true, other.side = -1, other.out = rounded(other.out, 1.0);
-      other.about = pressed(model, {other.out, start[0], ""});
-      start.conservativeResize(start.size() + 2);
-      start.tail<2>().setZero();
-      all.push_back({refitted(model, other), start});
+      other.about = pressed(model, {other.out, position, ""});
+      return other;
     };
-    tilting(*form, values);
+    VectorXd start(values.size() + 2);
+    start << values, 0.0, 0.0;
+    all.push_back({refitted(model, tilting(*form, values[0])), start});
     // What one straight plane presses from the end of the body a tilted one may from its middle: a
-    // hard one goes there from where the nearest of the scores stands.
+    // hard one goes there from where the nearest of the scores stands, by way of a softer one.
     const double size = body_size(*model.scene).size;
     const double near = reach(*model.scene, form->out) + kGaps[0] * size;
-    if (std::abs(values[0] - near) > kGaps[0] * size)
-      tilting({.hard = true, .out = form->out}, VectorXd::Constant(1, near));
+    if (std::abs(values[0] - near) > kGaps[0] * size) {
+      PlaneForm plane = tilting({.hard = true, .out = form->out}, near);
+      const auto hard = refitted(model, plane);
+      plane.stiffness = rounded(hard_stiffness(model) / kSofter);
+      all.push_back({hard, Vector3d(near, 0.0, 0.0), refitted(model, plane)});
+    }
     return all;
   }
 
@@ -217,14 +236,13 @@ class FloorContact final : public Effect {
 
  private:
   std::shared_ptr<const Ingredient> soft(const Model& model, const ScoredPlane& scored) const {
-    const double mu = initial_shear_modulus(model.energy);
-    const double size = body_size(*model.scene).size;
+    const double k = soft_stiffness(model);
     const Units& units = model.scene->capture.units;
     IngredientSpec spec;
     spec.name = name();
     spec.variant = scored.text;
     spec.parameters = {{"floor_contact.k", units.stress() + "/" + units.length, "contact stiffness",
-                        0.0, 0.0, 1e4 * mu / size, 0.1 * mu / size, false}};
+                        0.0, 0.0, 1e5 * k, k, false}};
     spec.touches = {.loading = true};
     const Plane plane{scored.out, scored.position * scored.out};
     spec.apply = [plane](const VectorXd& k, Model& m) { stand(m, plane, k[0]); };
@@ -256,10 +274,8 @@ class FloorContact final : public Effect {
   std::shared_ptr<const Ingredient> refitted(const Model& model, PlaneForm form) const {
     const Scene& scene = *model.scene;
     const Units& units = scene.capture.units;
-    const double k = 0.1 * initial_shear_modulus(model.energy) / body_size(scene).size;
-    // A traction of mu/5 sinks into a hard one by 0.03 % of the size, less than 0.1 px where the
-    // body fills 300. Ten times as much is seen, and what else is fitted makes up for it.
-    if (form.hard && form.stiffness <= 0.0) form.stiffness = rounded(3e4 * k);
+    const double k = soft_stiffness(model);
+    if (form.hard && form.stiffness <= 0.0) form.stiffness = rounded(hard_stiffness(model));
     IngredientSpec spec;
     spec.name = name();
     spec.variant = form.variant();

@@ -21,12 +21,22 @@ struct Case {
   std::string label() const { return effect->name() + " [" + ingredient->variant() + "]"; }
 };
 
+std::vector<std::string> names(const Ingredient& ingredient) {
+  std::vector<std::string> out;
+  for (const Parameter& parameter : ingredient.parameters()) out.push_back(parameter.name);
+  return out;
+}
+
 /// Adds the further forms of `refitted`, the plainer one, and theirs; one a kind: those around
 /// other directions are alike.
 void add_further(const Effect& effect, const Ingredient& refitted, std::set<std::string>& kinds,
                  std::vector<Case>& all) {
   for (const auto& further : effect.further_forms(base_model(), refitted, some_values(refitted))) {
     EXPECT_EQ(further.values.size(), static_cast<int>(further.form->parameters().size()));
+    if (further.by_way_of) {
+      EXPECT_EQ(names(*further.by_way_of), names(*further.form));
+      EXPECT_TRUE(effect.candidate(base_model(), further.by_way_of->variant()));
+    }
     const std::string variant = further.form->variant();
     if (!kinds.insert(variant.substr(0, variant.find('('))).second) continue;
     all.push_back({&effect, further.form});

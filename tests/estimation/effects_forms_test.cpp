@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "estimation/effects/floor_planes.h"
 #include "estimation/effects/graded_stiffness.h"
 #include "estimation/effects_scene.h"
 #include "estimation/kept_stiffness.h"
@@ -125,7 +126,8 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
   ASSERT_EQ(further.size(), 3u);
   EXPECT_EQ(further[0].form->variant(), cushion->variant());
   for (size_t i = 0; i < 2; ++i) {  // the second one tilts, the third starts elsewhere
-    const auto& [wider, start] = further[i];
+    const auto& [wider, start, way] = further[i];
+    EXPECT_FALSE(way) << "it starts where the other ended";
     const ModelForm wide = extended(base(), wider);
     EXPECT_EQ(signature(wide.realise(with_values(wide, start)), q),
               signature(form.realise(with_values(form, values)), q))
@@ -155,6 +157,9 @@ TEST(FloorContact, APlaneNormalToAnAxisMayTiltWhereItLeavesMore) {
   EXPECT_EQ(further[1].values, VectorXd(Eigen::Vector3d(near, 0.0, 0.0)));
   EXPECT_GT(near, at_rest);
   EXPECT_LT(near, at_rest + 0.5);
+  ASSERT_TRUE(further[1].by_way_of) << "its tilt has kinks, a softer one's has none";
+  EXPECT_LT(plane_form(further[1].by_way_of->variant())->stiffness,
+            0.1 * plane_form(further[1].form->variant())->stiffness);
   const auto stays = effect.further_forms(model, *cushion, Eigen::Vector2d(near, 1e-4));
   EXPECT_EQ(stays.size(), 1u) << "it stands there";
   const auto n = numbers_in(further[0].form->variant());
