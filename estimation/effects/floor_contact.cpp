@@ -224,10 +224,7 @@ class FloorContact final : public Effect {
     const std::string side = form->tilts
                                  ? fmt::format("its side towards {}", vector_text(plane.out))
                                  : fmt::format("its {} side", kSides[form->side]);
-    const std::string place =
-        form->tilts ? fmt::format(", around ({}, {}, {})", figure(plane.through.x()),
-                                  figure(plane.through.y()), figure(plane.through.z()))
-                    : "";
+    const std::string place = form->tilts ? ", around " + place_text(plane.through) : "";
     return fmt::format(
         "the body touches a {} on {}, {} {} from where it ends at rest{}{}",
         form->hard ? "plane" : "cushion", side, figure(gap), length, place,

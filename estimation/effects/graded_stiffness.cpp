@@ -236,16 +236,15 @@ std::string graded_sentence(const Model& model, const Ingredient& ingredient,
   if (ingredient.variant() == kBall)
     return fmt::format("a ball {} times as stiff as the rest, of radius {} {} around {}",
                        figure(std::exp(values[0])), figure(values[4]), length,
-                       vector_text(values.segment<3>(1), 1));
+                       place_text(values.segment<3>(1)));
   const auto n = numbers_in(ingredient.variant());
   const Vector3d across(n.at(0), n.at(1), n.at(2));
   const auto [first, second] = normal_axes(across);
   const Vector3d normal = rotation_of(values[1] * first + values[2] * second) * across.normalized();
   return fmt::format(
       "two layers: {} times as stiff beyond the plane through {} {} across {} as before it",
-      figure(std::exp(values[0])),
-      vector_text(body_size(*model.scene).centre + values[3] * normal, 1), length,
-      vector_text(normal));
+      figure(std::exp(values[0])), place_text(body_size(*model.scene).centre + values[3] * normal),
+      length, vector_text(normal));
 }
 
 }  // namespace hookeye

@@ -137,14 +137,10 @@ class StiffnessField final : public Effect {
     return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
                        values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
                        figure(place.radius), model.scene->capture.units.length,
-                       vector_text(place.centre, 1));
+                       place_text(place.centre));
   }
 
  private:
-  static std::string place_text(const Vector3d& c) {
-    return fmt::format("({:g}, {:g}, {:g})", c.x(), c.y(), c.z());
-  }
-
   static Parameter amplitude(const std::string& label) {
     return {label, "", "log of the stiffness factor", 0.0, -4.0, 4.0, 0.3, false};
   }
@@ -178,7 +174,8 @@ class StiffnessField final : public Effect {
     spec.variant = fmt::format("field of bumps, radius {:g}, around", radius);
     std::vector<VectorXd> bumps;
     for (size_t i = 0; i < centres.size(); ++i) {
-      spec.variant += " " + place_text(centres[i]);
+      const Vector3d& c = centres[i];
+      spec.variant += fmt::format(" ({:g}, {:g}, {:g})", c.x(), c.y(), c.z());
       spec.parameters.push_back(amplitude(fmt::format("stiffness_field.a{}", i + 1)));
       bumps.push_back(gaussian_bump(model.scene->body->mesh, centres[i], radius));
     }

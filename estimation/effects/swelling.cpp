@@ -139,7 +139,7 @@ class Swelling final : public Effect {
     }
     const Blob place = blob_of(ingredient, values);
     return fmt::format("a place of radius {} {} around {} has {}", figure(place.radius),
-                       model.scene->capture.units.length, vector_text(place.centre, 1), change);
+                       model.scene->capture.units.length, place_text(place.centre), change);
   }
 
  private:

@@ -270,6 +270,13 @@ std::string vector_text(const Vector3d& v, int digits) {
                      v.z() + 0.0, digits);
 }
 
+std::string place_text(const Vector3d& X) {
+  const double most = X.cwiseAbs().maxCoeff();
+  const int whole = most > 0.0 ? static_cast<int>(std::floor(std::log10(most))) : 2;
+  const double step = std::pow(10.0, whole - 2);
+  return vector_text(Vector3d((X / step).array().round() * step), std::max(0, 2 - whole));
+}
+
 std::string figure(double value) { return fmt::format("{:.3g}", value); }
 
 std::string parameter_prefix(const std::string& effect, const std::string& what,

@@ -109,6 +109,8 @@ class ElementForces {
 std::vector<double> numbers_in(const std::string& text);
 /// "(0.5, -0.2, -0.8)".
 std::string vector_text(const Vector3d& v, int digits = 2);
+/// "(4.9, -0.2, 38.7)": a place, to 3 digits of its largest coordinate, in whatever unit.
+std::string place_text(const Vector3d& X);
 /// 3 significant digits.
 std::string figure(double value);
 bool starts_with(const std::string& text, const std::string& start);
