@@ -114,8 +114,8 @@ bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale&
 
 /// Most of what was left goes with the form; where another effect is missing, a little more than
 /// its values cost goes with any. Held-out photos speak against it with what they are missed by
-/// beyond what renderers leave: by likelihood they tell thousandths of a pixel, as a modulus that
-/// moves within its interval changes.
+/// beyond what renderers leave: by likelihood they tell less than that, as a modulus that moves
+/// within its interval changes.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
   return over_floor(wide, floor) < 0.5 * over_floor(narrow, floor) &&
          score_above(wide, narrow, floor) > kTie &&
