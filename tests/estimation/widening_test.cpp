@@ -189,8 +189,9 @@ TEST(Widening, AFieldLeavesTogetherWithTheWallsCushion) {
 class WiderForm : public testing::Test {
  protected:
   std::optional<Fitted> ask(const std::string& hidden, const std::string& effect,
-                            const std::string& variant, const VectorXd& start) {
-    small_.emplace(hiding(hidden, kPressAndTwist));
+                            const std::string& variant, const VectorXd& start,
+                            const char* more = kPressAndTwist) {
+    small_.emplace(hiding(hidden, more));
     Workspace workspace(small_->scene);
     ModelForm form = base_form(small_->scene);
     const size_t at = form.ingredients.size();
@@ -249,6 +250,22 @@ TEST_F(WiderForm, AHardPlaneIsAskedForACushion) {
   EXPECT_EQ(asked->form.ingredients.back()->variant(), "cushion on side +x");
   EXPECT_NEAR(asked->p[1], 10.5, 0.1);
   EXPECT_NEAR(asked->p[2], 0.001, 1e-4);
+}
+
+/// The bent block meets a hard wall with an edge, in one of its corners or the other: straight from
+/// next to the body the fit ends where the one gives way to the other, at a turn of -0.109.
+TEST_F(WiderForm, AHardTiltingPlaneIsNotLeftOnAKink) {
+  const auto asked =
+      ask("{effect: floor_contact, variant: \"hard plane towards (1, 0, 0), tilting about (0, 0, "
+          "30), stiffness 1.4\", values: {floor_contact.position: 14.5521, floor_contact.tilt1: "
+          "-0.1563, floor_contact.tilt2: -0.0735}}",
+          "floor_contact", "hard plane on side +x", VectorXd::Constant(1, 11.0),
+          "  lean: {force: [0.0283, 0.0025, 0]}\n  twist: {rotate: 20}\n");
+  ASSERT_TRUE(asked);
+  EXPECT_THAT(asked->form.ingredients.back()->variant(),
+              testing::StartsWith("hard plane towards (1, 0, 0)"));
+  EXPECT_NEAR(asked->p[2], -0.1563, 0.01);
+  EXPECT_NEAR(asked->p[3], -0.0735, 0.01);
 }
 
 /// A stiffness that is linear along a direction: its logarithm bends.
