@@ -8,15 +8,12 @@ namespace {
 
 const int kDirections = 24;
 
-/// Directions spread over the upper half sphere by the golden angle; three digits, because they
-/// are written into variants.
+/// Directions spread over the upper half sphere by the golden angle.
 Vector3d hemisphere_direction(int i) {
   const double z = (i + 0.5) / kDirections;
   const double angle = i * EIGEN_PI * (3.0 - std::sqrt(5.0));
   const double r = std::sqrt(1.0 - z * z);
-  Vector3d a(r * std::cos(angle), r * std::sin(angle), z);
-  for (double& x : a) x = std::round(1000.0 * x) / 1000.0;
-  return a;
+  return rounded(Vector3d(r * std::cos(angle), r * std::sin(angle), z), 1.0);
 }
 
 /// E_jj, E_kk and E_jk of the two axes across `axis` with one modulus: W = k/2 (E_jj^2 + E_kk^2 +

@@ -50,7 +50,7 @@ std::shared_ptr<const Ingredient> refit_of_pulling(const Model& model, const Ing
                                                    VectorXd& values) {
   if (!starts_with(scored.variant(), kPullingAlong)) return nullptr;
   values = Eigen::Vector4d(values[0], 0.0, 0.0, 0.0);
-  return pulling_around(model, rounded(base_axis(scored)), false);
+  return pulling_around(model, rounded(base_axis(scored), 1.0), false);
 }
 
 std::shared_ptr<const Ingredient> pulling_around(const Model& model, const Vector3d& a,
@@ -89,11 +89,11 @@ std::vector<Effect::Further> further_fibres(const Model& model, const Ingredient
                                             const VectorXd& values) {
   if (additive_base(model)) return {};
   if (starts_with(refitted.variant(), "free around"))
-    return after_fibre(model, rounded(turned(base_axis(refitted), values[1], values[2])),
+    return after_fibre(model, rounded(turned(base_axis(refitted), values[1], values[2]), 1.0),
                        values[0]);
   if (!starts_with(refitted.variant(), kPulling))
     return further_stiffnesses(model, refitted, values);
-  const Vector3d a = rounded(base_axis(refitted));
+  const Vector3d a = rounded(base_axis(refitted), 1.0);
   std::vector<Effect::Further> all = {{pulling_around(model, a, true), values}};
   for (auto& form : stiffnesses_after_fibre(model, a, values[0])) all.push_back(std::move(form));
   return all;

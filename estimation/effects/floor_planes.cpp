@@ -12,15 +12,6 @@ const char* const kSides[6] = {"+x", "-x", "+y", "-y", "+z", "-z"};
 
 Vector3d outward(int side) { return (side % 2 == 0 ? 1.0 : -1.0) * Vector3d::Unit(side / 2); }
 
-double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)) + 0.0; }
-
-Vector3d rounded(const Vector3d& x, double size) {
-  const double step = std::pow(10.0, std::floor(std::log10(size)) - 3.0);
-  Vector3d out;
-  for (int i = 0; i < 3; ++i) out[i] = rounded(std::round(x[i] / step) * step);
-  return out;
-}
-
 std::string digits(const Vector3d& v) {
   return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
 }

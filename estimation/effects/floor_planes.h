@@ -16,10 +16,6 @@ extern const char* const kSides[6];
 /// Outward direction of a side of the body.
 Vector3d outward(int side);
 
-/// To five digits, or to the fourth of `size`: a variant is written, and read back it must be the
-/// same.
-double rounded(double value);
-Vector3d rounded(const Vector3d& x, double size);
 /// "(0.851, 0.526, 0)".
 std::string digits(const Vector3d& v);
 

@@ -204,8 +204,7 @@ std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& 
   const TetMesh& mesh = scene.body->mesh;
   const BodySize body = body_size(scene);
   const Vector3d slope = slope_of(mesh, log_factor);
-  Vector3d across = slope.norm() > 0.0 ? Vector3d(slope.normalized()) : Vector3d::UnitZ();
-  for (double& x : across) x = std::round(1000.0 * x) / 1000.0;  // as it is written
+  const Vector3d across = slope.norm() > 0.0 ? rounded(slope.normalized(), 1.0) : Vector3d::UnitZ();
   const VectorXd t = (element_centres(mesh).colwise() - body.centre).transpose() * across;
   const Split split = best_split(t / across.norm(), log_factor, element_volumes(mesh));
   VectorXd in_layers(5);

@@ -255,7 +255,7 @@ void add_transverse(const Model& model, const Matrix3d& frame, std::vector<Effec
   VectorXd start = VectorXd::Zero(5);
   start.head(2).setConstant(0.1 * initial_shear_modulus(model.energy));
   for (int i = 0; i < 3; ++i)
-    all.push_back({transverse_around(model, rounded(frame.col(i))), start});
+    all.push_back({transverse_around(model, rounded(frame.col(i), 1.0)), start});
 }
 
 /// From the same stiffnesses.
@@ -273,12 +273,6 @@ Stiffness6 in_rest_axes(const VectorXd& stiffnesses, const Matrix3d& frame) {
 Vector3d turned(const Vector3d& a, double t1, double t2) {
   const auto [first, second] = normal_axes(a);
   return rotation_of(t1 * first + t2 * second) * a.normalized();
-}
-
-Vector3d rounded(const Vector3d& a) {
-  Vector3d out = a.normalized();
-  for (double& x : out) x = std::round(1000.0 * x) / 1000.0;
-  return out;
 }
 
 Vector3d base_axis(const Ingredient& ingredient) {
@@ -329,7 +323,7 @@ std::vector<Effect::Further> further_stiffnesses(const Model& model, const Ingre
   std::vector<Effect::Further> all;
   if (starts_with(refitted.variant(), kTransverse)) {
     // In the plane across, the axes are anyone's: turned by 45 degrees they see another shear.
-    const Vector3d a = rounded(base_axis(refitted));
+    const Vector3d a = rounded(base_axis(refitted), 1.0);
     const VectorXd x = transverse_stiffnesses(values);
     VectorXd start = VectorXd::Zero(11);
     start.head(8) = x.head(8);
@@ -350,7 +344,7 @@ std::shared_ptr<const Ingredient> plainer_stiffnesses(const Model& model,
   if (refitted.variant() != kAll) return nullptr;
   const Stiffness6 C = constants_of(values);
   const Matrix3d frame = symmetry_frame(C);
-  const Vector3d a = rounded(frame.col(0));
+  const Vector3d a = rounded(frame.col(0), 1.0);
   const Matrix3d around = frame_along(a);
   const Stiffness6 own = stiffness_in_frame(C, frame);
   VectorXd plainer(12);

@@ -8,8 +8,6 @@ namespace hookeye {
 
 /// The axis turned by small angles about two axes normal to it.
 Vector3d turned(const Vector3d& a, double t1, double t2);
-/// Digits as they are written into variants, so that what is read back is the same.
-Vector3d rounded(const Vector3d& a);
 /// The direction in the variant's text.
 Vector3d base_axis(const Ingredient& ingredient);
 /// Those of turned().

@@ -48,14 +48,6 @@ class FunctionIngredient final : public Ingredient {
   VectorXd null_;
 };
 
-/// Rounded so that the text "{:g}" of it reads back as the very same number.
-double round_to(double value, double step) {
-  return std::stod(fmt::format("{:g}", std::round(value / step) * step)) + 0.0;
-}
-
-/// Power of ten such that `size` has 4 digits before it.
-double rounding_step(double size) { return std::pow(10.0, std::floor(std::log10(size)) - 3.0); }
-
 bool same(const EnergyModel& a, const EnergyModel& b) {
   if (a.parts.size() != b.parts.size()) return false;
   if (a.swelling.size() != b.swelling.size() || a.swelling != b.swelling) return false;
@@ -105,17 +97,15 @@ VectorXd element_volumes(const TetMesh& mesh) {
 std::vector<Vector3d> spread_centres(const Scene& scene, int count) {
   const Matrix3Xd centres = element_centres(scene.body->mesh);
   const BodySize body = body_size(scene);
-  const double step = rounding_step(body.size);
   std::vector<Vector3d> out;
   VectorXd distance = (centres.colwise() - body.centre).colwise().norm();
   int next = 0;
   distance.minCoeff(&next);  // the element nearest to the middle comes first
   distance.setConstant(std::numeric_limits<double>::infinity());
   while (static_cast<int>(out.size()) < std::min(count, static_cast<int>(centres.cols()))) {
-    Vector3d c = centres.col(next);
+    const Vector3d c = centres.col(next);
     distance = distance.cwiseMin((centres.colwise() - c).colwise().norm().transpose());
-    for (double& x : c) x = round_to(x, step);
-    out.push_back(c);
+    out.push_back(rounded(c, body.size));
     distance.maxCoeff(&next);
   }
   return out;
@@ -164,6 +154,15 @@ double initial_shear_modulus(const EnergyModel& energy) {
     if (part.weight.size() == 0 || &part == &energy.parts.front()) mu += here;
   }
   return mu > 0.0 ? mu : 1.0;
+}
+
+double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)) + 0.0; }
+
+Vector3d rounded(const Vector3d& x, double size) {
+  const double step = std::pow(10.0, std::floor(std::log10(size)) - 3.0);
+  return x.unaryExpr([step](double value) {
+    return std::stod(fmt::format("{:g}", std::round(value / step) * step)) + 0.0;
+  });
 }
 
 std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction) {

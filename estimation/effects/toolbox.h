@@ -39,8 +39,7 @@ BodySize body_size(const Scene& scene);
 /// Rest centroids of the elements, 3 x m.
 Matrix3Xd element_centres(const TetMesh& mesh);
 VectorXd element_volumes(const TetMesh& mesh);
-/// `count` centres spread over the body by farthest points, rounded to 4 digits (they are written
-/// into variants, and read back they must be the same).
+/// `count` centres spread over the body by farthest points, rounded().
 std::vector<Vector3d> spread_centres(const Scene& scene, int count);
 /// The boundary of the mesh as a region.
 Region whole_boundary(const TetMesh& mesh);
@@ -73,6 +72,10 @@ std::string parameter_prefix(const std::string& effect, const std::string& what,
                              const std::string& when);
 /// "cam0 from twist on", as variants have it, for a sentence: "cam0 from 'twist' on".
 std::string examples_quoted(const Scene& scene, std::string variant);
+/// To five digits, or to the fourth of `size`: a variant is written with "{:g}", and read back it
+/// must be the very same.
+double rounded(double value);
+Vector3d rounded(const Vector3d& x, double size);
 /// Two unit axes normal to `direction` and to each other.
 std::pair<Vector3d, Vector3d> normal_axes(const Vector3d& direction);
 Eigen::Matrix3d rotation_of(const Vector3d& rotation_vector);
