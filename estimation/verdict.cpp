@@ -104,6 +104,11 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
     else if (!photos)
       *why += spoils_held_out(fitted, diagnosis.floor) ? shown_by_held_out(fitted)
                                                        : hidden_by_mesh(diagnosis);
+    else if (measured && !all && !at_floor(fitted, diagnosis.floor, kLeftByRenderers))
+      *why += fmt::format(
+          ", over {:g}: what the mesh or the renderer may err by, or something small that is not "
+          "named",
+          kLeftByRenderers);
   }
   // Two that leave as much are no answer to choose from where that is much.
   if (!photos || !measured) return Verdict::unexplained;

@@ -155,6 +155,10 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
   weight.fall = 0.2, fitted.evaluation.examples[0].photos[0].r2 = 110.0;
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained);
   EXPECT_THAT(why, testing::EndsWith("the noise floor"));
+  fitted.evaluation.examples[0].photos[0].r2 = 140.0;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained);
+  EXPECT_THAT(why, testing::EndsWith("over 1.1: what the mesh or the renderer may err by, or "
+                                     "something small that is not named"));
 }
 
 /// Two that leave as much are a choice where that is little, and no answer where it is much.
