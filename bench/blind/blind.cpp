@@ -8,6 +8,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
@@ -60,6 +61,19 @@ int photograph(const Options& options, const std::string& effect, unsigned seed,
   return status;
 }
 
+/// Of the hidden effects, which were left out, those that a diagnosis by the whole catalogue names
+/// beside what the search in `folder` ended with; nothing where there is no diagnosis.
+std::optional<std::vector<std::string>> missed_in(const Options& options, const std::string& hidden,
+                                                  const fs::path& folder) {
+  const fs::path diagnosis = folder / "diagnose.json";
+  if (!fs::exists(diagnosis) &&
+      run(fmt::format("{0} diagnose --json {1} > {2}.part 2> {3} && mv {2}.part {2}",
+                      shell_quoted(options.hookeye), shell_quoted(folder / "run"),
+                      shell_quoted(diagnosis), shell_quoted(folder / "diagnose.log"))) != 0)
+    return {};
+  return named_beside(nlohmann::json::parse(read_text(diagnosis)), effects_of(hidden));
+}
+
 /// One capture in a folder of its own. What is there already is not made again.
 Score one(const Options& options, const std::string& effect, unsigned seed) {
   const fs::path folder = fs::path(options.out) / fmt::format("{}-{}", effect, seed);
@@ -95,6 +109,7 @@ Score one(const Options& options, const std::string& effect, unsigned seed) {
                      nlohmann::json::parse(read_text(truth_file(capture))));
   done.seed = seed;
   done.left_out = options.left_out;
+  if (done.explained_by_another()) done.missed = missed_in(options, done.hidden, folder);
   done.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return done;
 }

@@ -76,9 +76,7 @@ std::string cell(const std::optional<double>& value) {
 }  // namespace
 
 bool Score::right_first() const {
-  if (left_out)
-    return verdict == "unexplained" || first == "none" || first == "stiffness_field" ||
-           first == "swelling";
+  if (left_out) return !explained_by_another();
   if (hidden == "none") return first == "none";
   const auto names = effects_of(hidden);
   return std::find(names.begin(), names.end(), first) != names.end();
@@ -92,6 +90,14 @@ bool Score::right_or_tie() const {
   });
 }
 
+bool Score::explained_by_another() const {
+  return left_out && hidden != "none" && verdict != "unexplained" && first != "none";
+}
+
+bool Score::explained_by_double() const {
+  return explained_by_another() && missed && missed->empty();
+}
+
 bool Score::exact_set() const {
   const auto names = effects_of(hidden);
   const std::set<std::string> asked(names.begin(), names.end());
@@ -99,6 +105,17 @@ bool Score::exact_set() const {
   for (const std::string& name : added)
     if (!numerical(name) || asked.count(name)) found.insert(name);
   return found == asked;
+}
+
+std::vector<std::string> named_beside(const json& diagnosis,
+                                      const std::vector<std::string>& effects) {
+  std::vector<std::string> out;
+  for (const json& one : diagnosis["effects"]) {
+    const std::string name = one["effect"];
+    if (one["named"] && std::find(effects.begin(), effects.end(), name) != effects.end())
+      out.push_back(name);
+  }
+  return out;
 }
 
 Score score(const json& run, const json& truth) {
@@ -131,21 +148,22 @@ std::string csv(const std::vector<Score>& scores) {
       "hidden,seed,status,first,right_first,right_or_tie,exact_set,verdict,added,tie,hidden_px,"
       "floor,"
       "fit_before,fit_after,held_out_before,held_out_after,seconds,material_error,effect_error,"
-      "values,inside\n";
+      "values,inside,explained_by_another,missed\n";
   for (const Score& s : scores)
     out += fmt::format(
         "{},{},{},{},{:d},{:d},{:d},{},{},{},{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},"
-        "{:.0f},{},{},{},{}\n",
+        "{:.0f},{},{},{},{},{:d},{}\n",
         s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(), s.exact_set(),
         s.verdict, fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px, s.floor,
         s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds, cell(s.material_error),
-        cell(s.effect_error), s.values, s.inside);
+        cell(s.effect_error), s.values, s.inside, s.explained_by_another(),
+        fmt::join(s.missed.value_or(std::vector<std::string>{}), " "));
   return out;
 }
 
 std::string summary(const std::vector<Score>& scores) {
   int guilty = 0, right = 0, tie = 0, exact = 0, finer = 0, innocent = 0, alarms = 0, failed = 0;
-  int values = 0, inside = 0, good = 0;
+  int values = 0, inside = 0, good = 0, another = 0, doubles = 0;
   constexpr double kGoal = 1.15;
   std::vector<double> share, material, effect;
   for (const Score& s : scores) {
@@ -164,6 +182,8 @@ std::string summary(const std::vector<Score>& scores) {
       ++guilty;
       right += s.right_first();
       tie += s.right_or_tie();
+      another += s.explained_by_another();
+      doubles += s.explained_by_double();
       exact += s.exact_set();
       good += s.exact_set() && s.held_after <= kGoal * s.floor;
       share.push_back(left(s.held_before, s.held_after, s.floor));
@@ -178,6 +198,9 @@ std::string summary(const std::vector<Score>& scores) {
   out +=
       fmt::format("held-out chi within {:g} times the floor: {} of {} where exactly the hidden\n",
                   kGoal, good, exact);
+  if (another > 0)
+    out += fmt::format("explained by another      {}; to the photos it is the same: {}\n", another,
+                       doubles);
   if (const auto stays = median(share))
     out += fmt::format("held-out error over the floor that stays: {:.0f} % in the median\n",
                        100.0 * *stays);

@@ -122,10 +122,33 @@ TEST(BlindScore, PairsWantBoth) {
 
 TEST(BlindScore, LeftOutOfTheCatalogueNoNameMayExplainIt) {
   Score s = score(run_of({"creep"}, kFound), truth_of("gravity", kGravity));
+  EXPECT_FALSE(s.explained_by_another()) << "gravity could have been named";
   s.left_out = true;
   EXPECT_FALSE(s.right_first());
+  EXPECT_TRUE(s.explained_by_another());
   s.verdict = "unexplained";
   EXPECT_TRUE(s.right_first());
+  EXPECT_FALSE(s.explained_by_another());
+}
+
+TEST(BlindScore, LeftOutADoubleIsWhatAWholeCatalogueFindsNothingBeside) {
+  const json diagnosis = {{"effects",
+                           {{{"effect", "gravity"}, {"named", true}},
+                            {{"effect", "swelling"}, {"named", true}},
+                            {{"effect", "creep"}, {"named", false}}}}};
+  EXPECT_THAT(named_beside(diagnosis, {"gravity", "creep"}), testing::ElementsAre("gravity"));
+  Score s = score(run_of({"creep"}, kFound), truth_of("gravity", kGravity));
+  s.left_out = true;
+  EXPECT_FALSE(s.explained_by_double()) << "nobody asked";
+  s.missed = named_beside(diagnosis, {"gravity"});
+  EXPECT_FALSE(s.explained_by_double()) << "the weight is still seen";
+  EXPECT_THAT(summary({s}),
+              HasSubstr("explained by another      1; to the photos it is the same: 0"));
+  s.missed = named_beside(diagnosis, {"creep"});
+  EXPECT_TRUE(s.explained_by_double());
+  EXPECT_FALSE(s.right_first()) << "a wrong name all the same";
+  EXPECT_THAT(summary({s}),
+              HasSubstr("explained by another      1; to the photos it is the same: 1"));
 }
 
 TEST(BlindScore, FailedRunsAreCountedApart) {
