@@ -190,7 +190,7 @@ class Search {
     if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
     auto& pair = std::get<std::optional<Pair>>(beside);
     if (!pair) {
-      if (at_floor(step.fitted, step.diagnosis.floor) &&
+      if (explains_photos(step.fitted, step.diagnosis.floor) &&
           measured_explained(step.fitted, step.diagnosis))
         return false;
       auto tried = refit_pairs(workspace_, step, contest, options_, events_);

@@ -129,7 +129,8 @@ std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& wo
   use_as(fitted.form.scene->capture, all);
   out.chi_fit = all.chi(false);
   out.chi_validate = all.chi(true);
-  const bool explained = at_floor(out.fitted, floor) && measured_explained(out.fitted, diagnosis);
+  const bool explained =
+      explains_photos(out.fitted, floor) && measured_explained(out.fitted, diagnosis);
   use_as(out.fitted.form.scene->capture, all);
   const double err = least_fall(diagnosis, fitted.form.ingredients.back()->name());
   const double given_up = std::pow(out.chi_fit, 2) - std::pow(fitted.evaluation.chi(false), 2);

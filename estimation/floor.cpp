@@ -79,7 +79,12 @@ double r2_of_middle_cell(const FlowField& flow, double pixels) {
 
 struct Left {
   double r2 = 0.0, count = 0.0;
+  void add(const Left& other) { r2 += other.r2, count += other.count; }
+  double chi() const { return std::sqrt(std::max(r2, 0.0) / count); }
 };
+
+/// Some cells' worth of pixels; of fewer, the told noise is the better witness.
+constexpr double kLeastPixels = 1000.0;
 
 /// What is left of a photo at rest without what moved. Polynomials take the motion out where the
 /// picture is linear in it. Past that the pictures are aligned, and rims and what came into view
@@ -135,7 +140,9 @@ double fall_per_px2(const Evaluation& evaluation) {
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   Floor floor;
   floor.per_px2 = fall_per_px2(evaluation);
-  double r2 = 0.0, count = 0.0, cells = 0.0, cell_count = 0.0;
+  Left all;
+  std::map<std::string, Left> cameras;
+  double cells = 0.0, cell_count = 0.0;
   Inflations inflations;
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
@@ -145,8 +152,8 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
       if (degree < 0) continue;
       const auto& spec = scene.capture.examples[example.example].photos[photo.photo];
       const Left left = without_motion(photo, spec.kind == PhotoSpec::Kind::silhouette, degree);
-      r2 += left.r2;
-      count += left.count;
+      all.add(left);
+      cameras[spec.camera].add(left);
       // Cells are judged after the motion that the registration found, however rough, is out.
       const SmoothPart aligned = smooth_part(photo.aligned, degree);
       cells -= aligned.explained;
@@ -158,9 +165,10 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
     }
     for (const auto& [photo, fields] : channels) inflations.add(fields);
   }
-  // Some cells' worth of pixels at least, else the told noise is the better witness.
-  if (count < 1000.0) return floor;
-  floor.chi = std::sqrt(std::max(r2, 0.0) / count);
+  if (all.count < kLeastPixels) return floor;
+  floor.chi = all.chi();
+  for (const auto& [camera, left] : cameras)
+    if (left.count >= kLeastPixels) floor.by_camera[camera] = left.chi();
   floor.source = "rest photos";
   floor.cell_inflation = std::max(1.0, inflations.sum / inflations.count);
   if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);
@@ -176,6 +184,28 @@ double measured_weight(const Scene& scene, const Evaluation& evaluation) {
 bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
   return fitted.evaluation.chi(false) <= times * floor.chi &&
          fitted.evaluation.chi(true) <= times * floor.chi;
+}
+
+CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor) {
+  CameraOverFloor most;
+  if (floor.by_camera.empty()) return most;
+  std::map<std::pair<std::string, bool>, Left> sums;
+  for (const auto& example : fitted.evaluation.examples)
+    for (const auto& photo : example.photos) {
+      const auto& spec = fitted.form.scene->capture.examples[example.example].photos[photo.photo];
+      sums[{spec.camera, example.held_out}].add({photo.r2, photo.count});
+    }
+  for (const auto& [of, left] : sums) {
+    const auto own = floor.by_camera.find(of.first);
+    if (own == floor.by_camera.end() || left.count <= 0.0) continue;
+    const double times = left.chi() / own->second;
+    if (times > most.times) most = {of.first, times, of.second};
+  }
+  return most;
+}
+
+bool explains_photos(const Fitted& fitted, const Floor& floor) {
+  return at_floor(fitted, floor) && most_over_floor(fitted, floor).times <= kAtFloor;
 }
 
 double over_floor(const Fitted& fitted, const Floor& floor, bool held_out) {

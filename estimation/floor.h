@@ -1,6 +1,7 @@
 // The floor: what misfit would remain if only noise, texture and shading errors were left.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "estimation/fit.h"
@@ -21,6 +22,8 @@ struct Floor {
   /// the fitted photos: how sharp and how free of noise they are.
   double per_px2 = 0.0;
   std::string source = "noise model";  ///< or "rest photos"
+  /// chi of each camera whose rest photos are enough to tell it.
+  std::map<std::string, double> by_camera;
 };
 
 /// From the rest photos, after motion and brightness that are smooth over a photo (up to cubic in
@@ -41,6 +44,16 @@ constexpr double kLeftByRenderers = 1.1;
 
 /// Within `times` the floor on the fitted photos and on the held-out ones.
 bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);
+/// Who keeps most over the floor of its own (Floor::by_camera), on fitted or on held-out photos.
+struct CameraOverFloor {
+  std::string camera;  ///< "": no camera has a floor of its own
+  double times = 0.0;
+  bool held_out = false;
+};
+CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor);
+/// At the floor, every camera by itself too: what is wrong with one of them is thin in the mean of
+/// many.
+bool explains_photos(const Fitted& fitted, const Floor& floor);
 /// What chi^2 has over the floor's.
 double over_floor(const Fitted& fitted, const Floor& floor, bool held_out);
 /// The effects explain the fitted photos and not the held-out ones.

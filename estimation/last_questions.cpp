@@ -8,7 +8,7 @@ namespace hookeye {
 
 LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const DiscoverOptions& options,
                         const DiscoverEvents& events) {
-  if (at_floor(newest.fitted, newest.diagnosis.floor)) return std::nullopt;
+  if (explains_photos(newest.fitted, newest.diagnosis.floor)) return std::nullopt;
   for (const EffectScore& score : newest.diagnosis.effects) {
     if (!numerical(score.effect) || !score.testable ||
         score.evidence < std::max(kNameable, newest.diagnosis.gate))

@@ -23,7 +23,8 @@ json to_json(const Floor& floor) {
   return {{"chi", floor.chi},
           {"cell_variance", floor.cell_variance},
           {"per_px2", floor.per_px2},
-          {"source", floor.source}};
+          {"source", floor.source},
+          {"by_camera", floor.by_camera}};
 }
 
 json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& value,

@@ -13,7 +13,7 @@ namespace hookeye {
 
 bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis, const FitToAll* all) {
   const bool explained =
-      all || (at_floor(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis));
+      all || (explains_photos(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis));
   return explained &&
          std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
            return numerical(effect.effect) || !nameable(effect, diagnosis);
@@ -74,6 +74,15 @@ std::string held_out_by_values(const FitToAll& all, const Floor& floor) {
       all.chi_fit / floor.chi, all.chi_validate / floor.chi, fmt::join(all.hardly_known, ", "));
 }
 
+/// A camera's own floor is told where that alone is left behind: ", but 1.45 times its own in
+/// camera 'cam1'".
+std::string left_in_one_camera(const Fitted& fitted, const Floor& floor) {
+  if (!at_floor(fitted, floor) || explains_photos(fitted, floor)) return "";
+  const CameraOverFloor most = most_over_floor(fitted, floor);
+  return fmt::format(", but {:.2f} times its own in the {} photos of camera '{}', more than {:g}",
+                     most.times, most.held_out ? "held-out" : "fitted", most.camera, kAtFloor);
+}
+
 bool seen(const Fitted& fitted) {
   return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
                      [](const auto& example) { return !example.photos.empty(); });
@@ -87,7 +96,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   const auto standing =
       only_numerical_left(fitted, diagnosis, all) ? std::vector<std::string>() : leaders(diagnosis);
   std::string sensors;
-  const bool photos = all || at_floor(fitted, diagnosis.floor);
+  const bool photos = all || explains_photos(fitted, diagnosis.floor);
   const bool measured = all || measured_explained(fitted, diagnosis, &sensors);
   if (why) {
     *why = fmt::format(
@@ -95,7 +104,9 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
         held_out > 0.0 ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
                                      seen(fitted) ? "photos" : "values")
                        : "",
-        photos ? "" : fmt::format(", more than {:g}", kAtFloor));
+        photos || at_floor(fitted, diagnosis.floor) ? ""
+                                                    : fmt::format(", more than {:g}", kAtFloor));
+    if (!all) *why += left_in_one_camera(fitted, diagnosis.floor);
     if (!sensors.empty()) *why += ", but " + sensors;
     if (all) *why += held_out_by_values(*all, diagnosis.floor);
     if (!standing.empty())

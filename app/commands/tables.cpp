@@ -267,12 +267,18 @@ bool by_hand(const json& step) {
 std::string high_floor(const Floor& floor) {
   // Photos that other renderers took keep 1.1 to 2.4 times their noise (docs/benchmarks.md).
   constexpr double kUsual = 3.0;
-  if (floor.source != "rest photos" || floor.chi < kUsual) return "";
+  if (floor.source != "rest photos") return "";
+  std::string of;
+  double chi = floor.chi;
+  for (const auto& [camera, own] : floor.by_camera)
+    if (own > std::max(chi, kUsual)) of = fmt::format(" of camera '{}'", camera), chi = own;
+  if (chi < kUsual) return "";
   return fmt::format(
-      "the floor itself is {:.2f} times the told noise: the rest photos are missed by something "
-      "that no smooth motion or brightness explains, as blur, gloss, a texture that is off or "
-      "noise that was told too low. What is as large as that in every photo passes for noise here",
-      floor.chi);
+      "the floor itself{0} is {1:.2f} times the told noise: the rest photos{0} are missed by "
+      "something that no smooth motion or brightness explains, as blur, gloss, a texture that is "
+      "off or noise that was told too low. What is as large as that in every photo passes for "
+      "noise here",
+      of, chi);
 }
 
 std::string choice_table(const json& before, const json& step, double floor) {

@@ -70,10 +70,15 @@ TEST(Text, ADiagnosisFitsAHundredColumns) {
 
 /// Photos that are blurred from rest on are at "the floor" of such photos.
 TEST(Text, AFloorFarAboveTheToldNoiseIsTold) {
-  EXPECT_EQ(high_floor({.chi = 2.4, .source = "rest photos"}), "");
-  EXPECT_EQ(high_floor({.chi = 5.44, .source = "noise model"}), "");
-  EXPECT_THAT(high_floor({.chi = 5.44, .source = "rest photos"}),
+  EXPECT_EQ(high_floor({.chi = 2.4, .source = "rest photos", .by_camera = {}}), "");
+  EXPECT_EQ(high_floor({.chi = 5.44, .source = "noise model", .by_camera = {}}), "");
+  EXPECT_THAT(high_floor({.chi = 5.44, .source = "rest photos", .by_camera = {}}),
               HasSubstr("5.44 times the told noise"));
+  EXPECT_EQ(high_floor({.chi = 2.4, .source = "rest photos", .by_camera = {{"left", 2.9}}}), "");
+  EXPECT_THAT(
+      high_floor(
+          {.chi = 2.79, .source = "rest photos", .by_camera = {{"left", 1.04}, {"right", 4.49}}}),
+      HasSubstr("of camera 'right' is 4.49 times"));
 }
 
 /// Effects that stood out are told whether they were tried or not.

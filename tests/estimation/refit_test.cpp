@@ -72,12 +72,14 @@ TEST_F(TwoForms, ARivalsEquilibriumIsNotSoughtForEver) {
 TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   Diagnosis diagnosis;
   diagnosis.effects = {score_};
+  diagnosis.floor.by_camera = {{"cam0", 1.25}};
   const Diagnosis again =
       diagnosis_from_json(to_json(diagnosis), base_.form.realise(base_.p), "diagnosis.json");
   ASSERT_TRUE(again.effects.at(0).other_form);
   EXPECT_EQ(again.effects[0].other_form->best->variant(), "in all");
   EXPECT_EQ(again.effects[0].other_form->values, score_.other_form->values);
   EXPECT_EQ(again.effects[0].base_step, score_.base_step);
+  EXPECT_EQ(again.floor.by_camera, diagnosis.floor.by_camera);
 }
 
 /// The first explains nearly all: who promises little does not run.

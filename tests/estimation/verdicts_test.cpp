@@ -215,6 +215,28 @@ std::pair<Fitted, Diagnosis> at_its_floor(const SmallScene& small) {
   return {std::move(fitted), std::move(diagnosis)};
 }
 
+/// In the mean over both cameras photos are at the floor; one camera alone is not.
+TEST(Verdict, WantsEveryCameraExplained) {
+  const SmallScene small({.same_renderer = true});
+  auto [fitted, diagnosis] = at_its_floor(small);
+  const auto& own = diagnosis.floor.by_camera;
+  ASSERT_THAT(own, testing::SizeIs(2));
+  EXPECT_NEAR(own.at("cam0"), 1.0, 0.1);
+  EXPECT_NEAR(own.at("cam1"), 1.0, 0.1);
+  std::string why;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained) << why;
+  const auto& examples = small.scene->capture.examples;
+  for (auto& example : fitted.evaluation.examples)
+    for (auto& photo : example.photos)
+      if (examples[example.example].photos[photo.photo].camera == "cam1") photo.r2 *= 2.1;
+  ASSERT_TRUE(at_floor(fitted, diagnosis.floor));
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
+  EXPECT_THAT(why, testing::ContainsRegex("floor .*, but 1.[45][0-9] times its own in the [a-z-]+ "
+                                          "photos of camera 'cam1', more than 1.3"));
+  diagnosis.floor.by_camera["cam1"] *= 1.45;
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained) << "its rest photos are as bad";
+}
+
 /// Fitted photos at their floor cannot tell what the held-out ones lack; the user hears which
 /// would.
 TEST(Verdict, SaysWhichHeldOutLoadShowsWhatIsMissing) {
