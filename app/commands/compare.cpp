@@ -18,14 +18,20 @@ double scale_of(const std::vector<double>& chi, double floor) {
   return std::max(floor, chi.empty() ? 0.0 : *std::max_element(chi.begin(), chi.end()));
 }
 
-std::string chi_rows(const json& table_json, const std::string& head, double floor) {
+/// `own`: floors of some of the rows by themselves, in a column if there are any.
+std::string chi_rows(const json& table_json, const std::string& head, double floor,
+                     const json& own = json::object()) {
   std::vector<std::vector<std::string>> rows = {{head, "chi", "over floor", "|: floor"}};
+  if (!own.empty()) rows.front().push_back("own floor");
   std::vector<double> all;
   for (const auto& chi : table_json) all.push_back(chi);
-  for (const auto& [name, chi] : table_json.items())
+  for (const auto& [name, chi] : table_json.items()) {
     rows.push_back({name, fmt::format("{:.2f}", chi.get<double>()),
                     fmt::format("{:.2f}", chi.get<double>() / floor),
                     marked_bar(chi, floor, scale_of(all, floor))});
+    if (own.empty()) continue;
+    rows.back().push_back(own.contains(name) ? fmt::format("{:.2f}", own[name].get<double>()) : "");
+  }
   return table(rows);
 }
 
@@ -96,7 +102,8 @@ void run_compare(const std::string& folder, Session& session) {
   if (photos) {
     session.say("{}\n", photo_rows(metrics["photos"], floor));
     session.say("{}\n", chi_rows(metrics["chi_by_example"], "by example", floor));
-    session.say("{}\n", chi_rows(metrics["chi_by_camera"], "by camera", floor));
+    session.say("{}\n", chi_rows(metrics["chi_by_camera"], "by camera", floor,
+                                 metrics["floor"].value("by_camera", json::object())));
   }
   if (metrics.contains("chi_by_region") && !metrics["chi_by_region"].empty())
     session.say("{}\n", chi_rows(metrics["chi_by_region"], "by region", floor));

@@ -310,7 +310,7 @@ TEST_F(FittedRun, CompareHasAPictureOfEveryPhoto) {
   }
   const Result said = hookeye("compare run");
   ASSERT_EQ(said.status, 0) << said.err;
-  for (const char* what : {"by example", "by camera", "by region", "what is left"})
+  for (const char* what : {"by example", "by camera", "own floor", "by region", "what is left"})
     EXPECT_THAT(said.out, HasSubstr(what));
 }
 
