@@ -197,7 +197,7 @@ CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor) {
     }
   for (const auto& [of, left] : sums) {
     const auto own = floor.by_camera.find(of.first);
-    if (own == floor.by_camera.end() || left.count <= 0.0) continue;
+    if (own == floor.by_camera.end() || own->second <= 0.0 || left.count <= 0.0) continue;
     const double times = left.chi() / own->second;
     if (times > most.times) most = {of.first, times, of.second};
   }

@@ -74,8 +74,8 @@ std::string held_out_by_values(const FitToAll& all, const Floor& floor) {
       all.chi_fit / floor.chi, all.chi_validate / floor.chi, fmt::join(all.hardly_known, ", "));
 }
 
-/// A camera's own floor is told where that alone is left behind: ", but 1.45 times its own in
-/// camera 'cam1'".
+/// All photos together are at the floor, those of one camera are not: ", but 1.45 times its own in
+/// the fitted photos of camera 'cam1', more than 1.3".
 std::string left_in_one_camera(const Fitted& fitted, const Floor& floor) {
   if (!at_floor(fitted, floor) || explains_photos(fitted, floor)) return "";
   const CameraOverFloor most = most_over_floor(fitted, floor);

@@ -274,7 +274,7 @@ std::string high_floor(const Floor& floor) {
     if (own > std::max(chi, kUsual)) of = fmt::format(" of camera '{}'", camera), chi = own;
   if (chi < kUsual) return "";
   return fmt::format(
-      "the floor itself{0} is {1:.2f} times the told noise: the rest photos{0} are missed by "
+      "the floor{0} itself is {1:.2f} times the told noise: the rest photos{0} are missed by "
       "something that no smooth motion or brightness explains, as blur, gloss, a texture that is "
       "off or noise that was told too low. What is as large as that in every photo passes for "
       "noise here",

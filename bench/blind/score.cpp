@@ -73,6 +73,12 @@ std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.5f}", *value) : "";
 }
 
+/// "?": the diagnosis that would tell failed.
+std::string missed_cell(const Score& s) {
+  if (s.explained_by_another() && !s.missed) return "?";
+  return s.missed ? fmt::format("{}", fmt::join(*s.missed, " ")) : "";
+}
+
 }  // namespace
 
 bool Score::right_first() const {
@@ -156,8 +162,7 @@ std::string csv(const std::vector<Score>& scores) {
         s.hidden, s.seed, s.status, s.first, s.right_first(), s.right_or_tie(), s.exact_set(),
         s.verdict, fmt::join(s.added, " "), fmt::join(s.tie, " "), s.hidden_px, s.floor,
         s.fit_before, s.fit_after, s.held_before, s.held_after, s.seconds, cell(s.material_error),
-        cell(s.effect_error), s.values, s.inside, s.explained_by_another(),
-        fmt::join(s.missed.value_or(std::vector<std::string>{}), " "));
+        cell(s.effect_error), s.values, s.inside, s.explained_by_another(), missed_cell(s));
   return out;
 }
 
@@ -189,12 +194,15 @@ std::string summary(const std::vector<Score>& scores) {
       share.push_back(left(s.held_before, s.held_after, s.floor));
     }
   }
+  const bool another_catalogue =
+      std::any_of(scores.begin(), scores.end(), [](const Score& s) { return s.left_out; });
   std::string out = fmt::format(
-      "right name first      {} of {}\nright or declared tie {} of {}\n"
+      "{} {} of {}\nright or declared tie {} of {}\n"
       "exactly the hidden    {} of {}\n"
       "false alarms          {} of {} captures that hide nothing\n"
       "finer mesh asked for  {} of {}\nfailed                {}\n",
-      right, guilty, tie, guilty, exact, guilty, alarms, innocent, finer, scores.size(), failed);
+      another_catalogue ? "no other name explains" : "right name first     ", right, guilty, tie,
+      guilty, exact, guilty, alarms, innocent, finer, scores.size(), failed);
   out +=
       fmt::format("held-out chi within {:g} times the floor: {} of {} where exactly the hidden\n",
                   kGoal, good, exact);

@@ -78,7 +78,7 @@ TEST(Text, AFloorFarAboveTheToldNoiseIsTold) {
   EXPECT_THAT(
       high_floor(
           {.chi = 2.79, .source = "rest photos", .by_camera = {{"left", 1.04}, {"right", 4.49}}}),
-      HasSubstr("of camera 'right' is 4.49 times"));
+      HasSubstr("of camera 'right' itself is 4.49 times"));
 }
 
 /// Effects that stood out are told whether they were tried or not.

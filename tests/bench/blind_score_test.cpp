@@ -140,13 +140,16 @@ TEST(BlindScore, LeftOutADoubleIsWhatAWholeCatalogueFindsNothingBeside) {
   Score s = score(run_of({"creep"}, kFound), truth_of("gravity", kGravity));
   s.left_out = true;
   EXPECT_FALSE(s.explained_by_double()) << "nobody asked";
+  EXPECT_THAT(csv({s}), testing::EndsWith(",1,?\n"));
   s.missed = named_beside(diagnosis, {"gravity"});
   EXPECT_FALSE(s.explained_by_double()) << "the weight is still seen";
+  EXPECT_THAT(csv({s}), testing::EndsWith(",1,gravity\n"));
   EXPECT_THAT(summary({s}),
               HasSubstr("explained by another      1; to the photos it is the same: 0"));
   s.missed = named_beside(diagnosis, {"creep"});
   EXPECT_TRUE(s.explained_by_double());
   EXPECT_FALSE(s.right_first()) << "a wrong name all the same";
+  EXPECT_THAT(summary({s}), HasSubstr("no other name explains 0 of 1"));
   EXPECT_THAT(summary({s}),
               HasSubstr("explained by another      1; to the photos it is the same: 1"));
 }
