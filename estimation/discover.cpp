@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "estimation/contest.h"
+#include "estimation/diagnosis_sums.h"
 #include "estimation/fit_to_all.h"
 #include "estimation/last_questions.h"
 #include "estimation/pairs.h"
@@ -22,6 +23,27 @@ std::vector<std::string> effects_in(const ModelForm& form) {
         std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(name);
   return names;
+}
+
+Contested contested(const Step& step) {
+  const Evaluation& left = step.fitted.evaluation;
+  return {step.added,      step.dropped,   step.rivals,
+          left.chi(false), left.chi(true), measured_r2(left)};
+}
+
+TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& floor) {
+  TakenByNames out;
+  const auto over = [&](double chi) { return std::max(0.0, chi * chi - floor.chi * floor.chi); };
+  for (size_t k = 1; k < steps.size(); ++k) {
+    const Contested &before = steps[k - 1], &after = steps[k];
+    if (numerical(after.added) ||
+        std::any_of(after.dropped.begin(), after.dropped.end(), numerical))
+      continue;
+    out.fit += over(before.chi_fit) - over(after.chi_fit);
+    out.held_out += over(before.chi_validate) - over(after.chi_validate);
+    out.measured += before.measured_r2 - after.measured_r2;
+  }
+  return out;
 }
 
 namespace {
@@ -285,10 +307,14 @@ class Search {
   void ask_all_again() {
     if (!out_.all) return;
     settle_tie(out_.tie, effects_in(newest().fitted.form));
-    std::vector<Contested> past = options_.past;
-    for (const Step& step : out_.steps) past.push_back({step.added, step.dropped, step.rivals});
-    out_.tie =
-        tie_of_all(workspace_, *out_.all, past, out_.tie, out_.floor, base_, options_, events_);
+    out_.tie = tie_of_all(workspace_, *out_.all, whole_run(), out_.tie, out_.floor, base_, options_,
+                          events_);
+  }
+
+  std::vector<Contested> whole_run() const {
+    std::vector<Contested> steps = options_.past;
+    for (const Step& step : out_.steps) steps.push_back(contested(step));
+    return steps;
   }
 
   Discovery finish() {
@@ -297,6 +323,11 @@ class Search {
     out_.missing = effects_in(last.fitted.form);
     settle_tie(out_.tie, out_.missing);
     out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
+    if (out_.verdict != Verdict::unexplained && !out_.all)
+      if (const std::string stays =
+              more_stays(last.fitted, last.diagnosis, taken_by_names(whole_run(), out_.floor));
+          !stays.empty())
+        out_.verdict = Verdict::unexplained, why += stays;
     out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
     return std::move(out_);
   }

@@ -53,11 +53,13 @@ struct Rival {
   double chi_fit = 0.0, chi_validate = 0.0;
 };
 
-/// Who won a contest, what left the model for it and who stood in it.
+/// Who won a contest, what left the model for it, who stood in it and what the step's model leaves.
 struct Contested {
   std::string added;
   std::vector<std::string> dropped;
   std::vector<Rival> rivals;
+  double chi_fit = 0.0, chi_validate = 0.0;
+  double measured_r2 = 0.0;  ///< of forces, moments and positions, in told deviations
 };
 
 struct DiscoverOptions {
@@ -85,6 +87,11 @@ struct Step {
 /// Names of what stands in `form` beyond the capture's own model, in order; each
 /// once (Effect::several).
 std::vector<std::string> effects_in(const ModelForm& form);
+
+Contested contested(const Step& step);
+
+/// What the named effects took over the steps of a run, one after the other.
+TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& floor);
 
 struct Discovery {
   std::vector<Step> steps;

@@ -8,6 +8,7 @@
 
 #include "capture_io/run.h"
 #include "estimation/compare_picture.h"
+#include "estimation/diagnosis_sums.h"
 #include "estimation/energy_curves.h"
 #include "estimation/fitted_fields.h"
 #include "estimation/lost_ellipticity.h"
@@ -59,6 +60,7 @@ json timeline_entry(const Step& step) {
                 {"chi_validate", held > 0.0 ? json(held) : json()},
                 {"rms_px_fit", fitted.evaluation.rms_px(false)},
                 {"rms_px_validate", held > 0.0 ? json(fitted.evaluation.rms_px(true)) : json()},
+                {"measured_r2", measured_r2(fitted.evaluation)},
                 {"converged", fitted.converged},
                 {"iterations", fitted.iterations},
                 {"undetermined", fitted.undetermined},

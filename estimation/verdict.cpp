@@ -126,6 +126,23 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   return tie.empty() ? Verdict::explained : Verdict::ambiguous;
 }
 
+std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis,
+                       const TakenByNames& taken) {
+  const Floor& floor = diagnosis.floor;
+  const bool named = taken.fit > 0.0 || taken.held_out > 0.0;
+  if (!named || !seen(fitted) || at_floor(fitted, floor, kLeftByRenderers) ||
+      sensors_speak(taken.measured, diagnosis) || taken.fit >= over_floor(fitted, floor, false) ||
+      taken.held_out > over_floor(fitted, floor, true))
+    return "";
+  const bool mesh = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                [&](const EffectScore& effect) {
+                                  return numerical(effect.effect) && nameable(effect, diagnosis);
+                                });
+  return fmt::format(
+      "; that is more than what was named has taken, which may be part of what is not named{}",
+      mesh ? ". A finer mesh would tell (mesh: {edge: ...}): run again on it" : "");
+}
+
 std::vector<std::string> effects_in_words(const Fitted& fitted) {
   std::vector<std::string> out;
   ModelForm before = fitted.form;

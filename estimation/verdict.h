@@ -27,6 +27,18 @@ struct FitToAll {
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
               std::string* why, const FitToAll* all = nullptr);
 
+/// Falls over the steps that added a named effect: of what chi^2 of fitted and of held-out photos
+/// has over the floor's, and of the sum of squares of forces, moments and positions.
+struct TakenByNames {
+  double fit = 0.0, held_out = 0.0, measured = 0.0;
+};
+
+/// Photos that were near the floor all along do not tell a small effect from part of another that
+/// the catalogue does not have: what stays over the floor, fitted and held out, is more than what
+/// meshes and renderers leave at least (kLeftByRenderers) and than what the named effects took, of
+/// which there is some, and no sensor spoke for them. Said in words; "": it is not so.
+std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis, const TakenByNames& taken);
+
 /// The photos are explained but for what a finer mesh would change. That is told beside the
 /// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
 /// times all that was fitted before, and name nothing.

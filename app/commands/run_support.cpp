@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/commands/tables.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "estimation/contest.h"
@@ -117,6 +118,9 @@ Contested contested_in(const nlohmann::json& step) {
   out.dropped = step.value("dropped", std::vector<std::string>());
   for (const auto& rival : step.value("rivals", nlohmann::json::array()))
     out.rivals.push_back({rival.at("effect"), rival.at("score"), rival.at("chi_fit"), 0.0});
+  out.chi_fit = number_in(step, "chi_fit");
+  out.chi_validate = number_in(step, "chi_validate");
+  out.measured_r2 = number_in(step, "measured_r2");
   return out;
 }
 

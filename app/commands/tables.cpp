@@ -28,11 +28,6 @@ std::string few(const std::vector<Confusion>& confused) {
   return text;
 }
 
-/// 0: null, or left out.
-double number_in(const nlohmann::json& object, const char* key) {
-  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : 0.0;
-}
-
 /// The least that the simulated null can tell is an upper bound.
 std::string p_text(double p) {
   const double least = 1.0 / (1.0 + DiagnosisOptions().null_simulations);
@@ -40,6 +35,10 @@ std::string p_text(double p) {
 }
 
 }  // namespace
+
+double number_in(const nlohmann::json& object, const char* key) {
+  return object.contains(key) && object[key].is_number() ? object[key].get<double>() : 0.0;
+}
 
 std::string parameter_table(const Fitted& fitted) {
   std::vector<std::vector<std::string>> rows = {

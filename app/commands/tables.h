@@ -22,6 +22,8 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
 /// with all photos alike; "" where they are not.
 std::string high_floor(const Floor& floor);
 
+/// A number of `run.json`; 0: null, or left out.
+double number_in(const nlohmann::json& object, const char* key);
 /// "gravity", "strain_stiffening, without softening".
 std::string name_of(const Step& step);
 /// "1.234"; "-" where no photo counts (chi 0), as where nothing is held out.

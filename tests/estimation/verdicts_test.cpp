@@ -161,6 +161,57 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
                                      "something small that is not named"));
 }
 
+/// A small effect near the floor: what stays and has no name must not be more than what it took.
+TEST(Verdict, ANameThatTakesLessThanWhatStaysIsNotEnough) {
+  Fitted fitted;
+  fitted.evaluation.examples.resize(2);
+  const auto leave = [&](double fit, double held_out) {
+    for (auto& example : fitted.evaluation.examples) {
+      example.held_out = &example == &fitted.evaluation.examples[1];
+      example.photos.resize(1);
+      example.photos[0].count = 100.0;
+      example.photos[0].r2 = 100.0 * (example.held_out ? held_out : fit);
+    }
+  };
+  Diagnosis diagnosis;
+  leave(1.3, 1.3);
+  EXPECT_THAT(more_stays(fitted, diagnosis, {0.2, 0.1}),
+              testing::HasSubstr("more than what was named has taken"));
+  EXPECT_EQ(more_stays(fitted, diagnosis, {0.35, 0.1}), "") << "of the fitted photos it took more";
+  EXPECT_EQ(more_stays(fitted, diagnosis, {0.2, 0.35}), "") << "of the held-out ones";
+  EXPECT_EQ(more_stays(fitted, diagnosis, {0.0, 0.0}), "") << "nothing was named";
+  EXPECT_EQ(more_stays(fitted, diagnosis, {0.2, 0.1, 50.0}), "") << "sensors speak for it";
+  leave(1.2, 1.2);
+  EXPECT_EQ(more_stays(fitted, diagnosis, {0.1, 0.1}), "") << "as little as renderers leave";
+  leave(1.3, 1.3);
+  diagnosis.effects.resize(1);
+  EffectScore& mesh = diagnosis.effects[0];
+  mesh.effect = "mesh_resolution", mesh.evidence = 50.0, mesh.fall = 0.2, mesh.testable = true;
+  EXPECT_THAT(more_stays(fitted, diagnosis, {0.2, 0.1}),
+              testing::HasSubstr("A finer mesh would tell"));
+}
+
+TEST(Verdict, WhatAFinerMeshTakesNoNameHasTaken) {
+  Floor floor;
+  floor.chi = 2.0;
+  std::vector<Contested> steps(4);
+  const auto left = [&](int step, const char* added, double chi_fit, double chi_validate) {
+    steps[step].added = added;
+    steps[step].chi_fit = chi_fit, steps[step].chi_validate = chi_validate;
+  };
+  left(0, "", 5.0, 4.0), steps[0].measured_r2 = 9.0;
+  left(1, "mesh_resolution", 4.0, 3.5), steps[1].measured_r2 = 8.0;
+  left(2, "gravity", 3.0, 3.0), steps[2].measured_r2 = 5.0;
+  left(3, "exposure", 1.5, 2.5), steps[3].measured_r2 = 6.0;
+  const TakenByNames taken = taken_by_names(steps, floor);
+  EXPECT_DOUBLE_EQ(taken.fit, 12.0) << "down to the floor's 4 of 16";
+  EXPECT_DOUBLE_EQ(taken.held_out, 6.0);
+  EXPECT_DOUBLE_EQ(taken.measured, 2.0);
+  steps.push_back(steps[2]);  // exposure taken back
+  steps.back().added = "", steps.back().dropped = {"exposure"};
+  EXPECT_DOUBLE_EQ(taken_by_names(steps, floor).fit, 7.0);
+}
+
 /// Two that leave as much are a choice where that is little, and no answer where it is much.
 TEST(Verdict, ATieIsAmbiguousOnlyAtTheFloor) {
   Fitted fitted;
