@@ -70,6 +70,8 @@ export interface Metrics {
   chi_by_example: Record<string, number>;
   chi_by_camera: Record<string, number>;
   chi_by_region?: Record<string, number>;
+  /** The camera that keeps most over the floor of its own rest photos. */
+  most_over_floor?: {camera: string; times: number; use: string};
   measured: {
     example: string;
     kind: string;

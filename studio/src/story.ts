@@ -160,7 +160,7 @@ function fell(base: StepEntry, newest: StepEntry): Told {
   };
 }
 
-/** The newest step's state where no `discover` has judged it (estimation/discover.cpp: kAtFloor). */
+/** The newest step's state where no `discover` has judged it (estimation/floor.h: kAtFloor). */
 export function provisional(): Told {
   const atFloor = 1.3;
   const newest = run.value.steps[run.value.steps.length - 1];
@@ -168,17 +168,20 @@ export function provisional(): Told {
   if (!now) return {headline: 'not judged yet', sentence: 'no step is finished'};
   const over = (chi: number): string => figure(chi / floor.value.chi);
   const heldOut = now.chi_validate === null ? '' : ` (${over(now.chi_validate)} on held-out photos)`;
-  const left = `what is left is ${over(now.chi_fit)} times the noise floor${heldOut}`;
+  const all = Math.max(now.chi_fit, now.chi_validate ?? 0) <= atFloor * floor.value.chi;
+  const most = newest.metrics?.most_over_floor;
+  const alone = all && most && most.times > atFloor
+    ? `, but ${figure(most.times)} times its own in the ${most.use === 'fit' ? 'fitted' : 'held-out'} photos of camera '${most.camera}'` : '';
+  const left = `what is left is ${over(now.chi_fit)} times the noise floor${heldOut}${alone}`;
   const effects = now.effects?.length ? `with ${listed(now.effects.map(spaced))}, ` : '';
   const tested = effectsOf(newest).filter(wasTested);
   if (!tested.length) return {headline: 'not judged yet', sentence: effects + left};
   const named = tested.filter((e) => isNamed(e, newest));
   const standing = named.filter((e) => !isNumerical(e.effect)).map((e) => spaced(e.effect));
-  const reached = Math.max(now.chi_fit, now.chi_validate ?? 0) <= atFloor * floor.value.chi;
   const rest = named.length > 0 && isNumerical(named[0].effect) ? `${spaced(named[0].effect)} leads: a finer mesh comes before any other effect`
     : standing.length === 0 ? 'nothing else stands out'
     : `${listed(standing.slice(0, 2))}${standing.length > 2 ? ` and ${standing.length - 2} more` : ''} stand${standing.length === 1 ? 's' : ''} out`;
-  return {headline: reached ? 'at the floor' : 'above the floor', sentence: `${effects}${left}; ${rest}`};
+  return {headline: all && !alone ? 'at the floor' : 'above the floor', sentence: `${effects}${left}; ${rest}`};
 }
 
 export function story(lengthPerPx: number): Record<Verb, Told> {

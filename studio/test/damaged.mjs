@@ -1,4 +1,4 @@
-// Runs with parts lost or damaged: the page says so and shows the rest. Each tells what it tried.
+// Runs with parts lost, damaged or altered: the page says so and shows the rest. Each tells what it tried.
 import assert from 'node:assert/strict';
 import {cpSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
@@ -58,4 +58,23 @@ export async function withoutSteps({folder, run, tell, open, walk}) {
   assert.deepEqual(faults, []);
   await close();
   return 'a run without steps';
+}
+
+/** All photos together are at the floor, those of one camera are not: nor is the step. */
+export async function oneCameraOver({folder, run, tell, open}) {
+  const altered = join(folder, 'one-camera');
+  cpSync(run, altered, {recursive: true});
+  const newest = join(altered, 'steps', readdirSync(join(altered, 'steps')).sort().at(-1), 'metrics.json');
+  const metrics = JSON.parse(readFileSync(newest, 'utf8'));
+  const {camera, times} = metrics.most_over_floor;
+  assert.ok(Object.hasOwn(metrics.floor.by_camera, camera) && times < 1.3, JSON.stringify(metrics.most_over_floor));
+  metrics.most_over_floor.times = 1.45;
+  writeFileSync(newest, JSON.stringify(metrics));
+  tell('report', altered, '-o', join(folder, 'one-camera.html'));
+  const {page, faults, close} = await open('file://' + join(folder, 'one-camera.html'));
+  assert.match(await page.textContent('.verdict'),
+    new RegExp(`^above the floor.*, but 1.45 times its own in the (fitted|held-out) photos of camera '${camera}'; `));
+  assert.deepEqual(faults, []);
+  await close();
+  return 'one camera over its own floor';
 }

@@ -8,7 +8,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {launch} from './browser.mjs';
-import {broken, lost, withoutSteps} from './damaged.mjs';
+import {broken, lost, oneCameraOver, withoutSteps} from './damaged.mjs';
 import {choiceIsTold, hoverIsNoChoice, removedIsDrawn, whereToLook} from './missing.mjs';
 import {smallCapture} from './small_capture.mjs';
 
@@ -433,7 +433,7 @@ try {
   await unexplained(capture);
   await longNames();
   await large();
-  for (const tried of [broken, lost, withoutSteps]) say(await tried({folder, run, tell, open, walk, until}));
+  for (const tried of [broken, lost, withoutSteps, oneCameraOver]) say(await tried({folder, run, tell, open, walk, until}));
 } finally {
   if (program?.exitCode === null) program.kill('SIGTERM');
   await browser.close();

@@ -284,8 +284,12 @@ TEST(Verdict, WantsEveryCameraExplained) {
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::unexplained);
   EXPECT_THAT(why, testing::ContainsRegex("floor .*, but 1.[45][0-9] times its own in the [a-z-]+ "
                                           "photos of camera 'cam1', more than 1.3"));
-  diagnosis.floor.by_camera["cam1"] *= 1.45;
+  const double of_cam1 = diagnosis.floor.by_camera["cam1"];
+  diagnosis.floor.by_camera["cam1"] = 1.45 * of_cam1;
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained) << "its rest photos are as bad";
+  diagnosis.floor.by_camera["cam1"] = 0.0;
+  EXPECT_EQ(most_over_floor(fitted, diagnosis.floor).camera, "cam0")
+      << "of 0 nothing is a multiple";
 }
 
 /// Fitted photos at their floor cannot tell what the held-out ones lack; the user hears which
