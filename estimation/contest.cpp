@@ -277,9 +277,10 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
   const double before_r2 = measured_r2(step.fitted.evaluation);
   const double after_r2 = measured_r2(with.fitted.evaluation);
   const bool speak = sensors_speak(before_r2 - after_r2, step.diagnosis);
-  const double seen =
-      spoils_held_out(step.fitted, floor) ? std::max(fell(false), fell(true)) : fell(false);
-  if (seen < least && moves_photos && !speak)
+  const bool seen =
+      fell(false) >= least || (step.fitted.evaluation.chi(true) > kAtFloor * floor.chi &&
+                               fell(true) >= least_fall(step.diagnosis, with.effect, true));
+  if (!seen && moves_photos && !speak)
     return with.effect + " was refitted, but takes away less than renderers and meshes err by";
   const auto leaves = [&](bool held_out) {
     const double before = over_floor(step.fitted, floor, held_out);

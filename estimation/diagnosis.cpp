@@ -83,13 +83,14 @@ struct Context {
   const Evaluation& evaluation;
   const DiagnosisSums& sums;
   const Model model;
-  bool held_out_missed;
+  const Diagnosis& diagnosis;  ///< what of it is known before the effects
 };
 
 EffectScore describe(const Context& context, const Candidate& candidate,
-                     const ProjectedHypothesis& weighted) {
+                     const ProjectedHypothesis& weighted, double evidence) {
   EffectScore score;
   score.effect = candidate.effect->name();
+  score.evidence = evidence;
   score.best = candidate.ingredient;
   score.dof = candidate.hypothesis.count;
   const auto parameters = candidate.ingredient->parameters();
@@ -110,9 +111,11 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   const double fall = -change(sums.seen.JtJ, sums.seen.Jtr, step);
   if (structured > 0.0) score.explains = std::clamp(fall / structured, 0.0, 1.0) + 0.0;  // no -0
   score.fall = fall / std::max(sums.photo_count, 1.0);
-  if (held > 0.0)
-    score.explains_held_out =
-        std::clamp(-change(sums.seen_held_out.JtJ, sums.seen_held_out.Jtr, step) / held, -1.0, 1.0);
+  if (held > 0.0) {
+    const double taken = -change(sums.seen_held_out.JtJ, sums.seen_held_out.Jtr, step);
+    score.explains_held_out = std::clamp(taken / held, -1.0, 1.0);
+    score.fall_held_out = taken / sums.held_count;
+  }
   const Eigen::MatrixXd V = context.sums.noise.block(
       candidate.hypothesis.first, candidate.hypothesis.first, score.dof, score.dof);
   const Eigen::MatrixXd inverse = weighted.inverse();
@@ -122,11 +125,13 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   const double before = measured_r2(context.evaluation);
   const double after = measured_r2(context.evaluation, &step);
   score.measured_fall = before - after;
+  const bool hidden =
+      score.fall < least_fall(context.diagnosis, score.effect) || context.diagnosis.held_out_missed;
   score.why = sensors_alone(*candidate.ingredient)
                   ? sentence + "; seen in the measured forces, not in photos"
                   : fmt::format("{} would remove {:.0f} % of the misfit{}{}", sentence,
                                 100.0 * score.explains,
-                                held_out_say_so(score, context.held_out_missed)
+                                hidden && held_out_say_so(score, context.diagnosis)
                                     ? fmt::format(" and {:.0f} % of the held-out photos'",
                                                   100.0 * score.explains_held_out)
                                     : "",
@@ -155,7 +160,7 @@ std::shared_ptr<const EffectScore> other_form(const Context& context,
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].effect->name() != best.effect || candidates[i].ingredient == best.best)
       continue;
-    EffectScore score = describe(context, candidates[i], projected[i]);
+    EffectScore score = describe(context, candidates[i], projected[i], best.evidence);
     const bool tie = information_of(context.sums, projected[i], r2) > best.bic - kTie;
     if ((tie || score.explains_held_out > best.explains_held_out + kMore) &&
         score.explains > 0.5 * best.explains &&
@@ -250,8 +255,7 @@ EffectScore score_effect(const Context& context, const Scored& scored, size_t be
                          const Diagnosis& diagnosis) {
   const Candidate& candidate = scored.candidates[best];
   const ProjectedHypothesis& projected = scored.projected[best];
-  EffectScore score = describe(context, candidate, projected);
-  score.evidence = evidence;
+  EffectScore score = describe(context, candidate, projected, evidence);
   score.mesh_fall = brightness_alone(*score.best)
                         ? imitated_by_mesh(context.fitted, context.sums, candidate.hypothesis)
                         : diagnosis.mesh_fall;
@@ -311,6 +315,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   out.floor = measure_floor(scene, evaluation);
   evaluation.measured_weight = measured_weight(out.floor);
   out.held_out_missed = spoils_held_out(fitted, out.floor);
+  out.held_out_over = fitted.evaluation.chi(true) > kAtFloor * out.floor.chi;
   const DiagnosisSums sums = diagnosis_sums(evaluation, out.floor);
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
@@ -328,8 +333,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
     if (!first && scored.evidence[i] > scored.evidence[at->second]) at->second = i;
   }
 
-  const Context context{
-      fitted, scene, evaluation, sums, fitted.form.realise(fitted.p), out.held_out_missed};
+  const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p), out};
   for (const auto& [name, value] : by_effect(scored.candidates, scored.evidence))
     out.effects.push_back(score_effect(context, scored, scored.best.at(name), value, out));
   find_confusions(sums.effective.H, scored.projected, scored.best, out.effects);

@@ -31,6 +31,7 @@ struct EffectScore {
   double explains = 0.0;           ///< predicted share of (chi^2 - floor^2) removed, fitted photos
   double explains_held_out = 0.0;  ///< the same step on the held-out photos
   double fall = 0.0;               ///< predicted fall of chi^2 on the fitted photos
+  double fall_held_out = 0.0;      ///< the same step on the held-out photos
   /// Predicted fall of the sum of squares of fitted forces, moments and positions over told noise.
   double measured_fall = 0.0;
   /// As much of `fall` could be the mesh's own error: Diagnosis::mesh_fall, or, of an effect on
@@ -70,9 +71,11 @@ struct Diagnosis {
   double mesh_in_measured = 0.0;
   /// Fitted photos are at the floor, held-out ones are not: those alone show what is missing.
   bool held_out_missed = false;
+  bool held_out_over = false;  ///< held-out photos are not at the floor, whatever the fitted are
   /// Change of chi^2 by what the next finer mesh would do to a model whose mesh has been refined:
   /// by Richardson's rule, second order, 0.7^2 of what the refinement did. 0: not refined.
   double mesh_fall = 0.0;
+  double mesh_fall_held_out = 0.0;  ///< of the held-out photos' chi^2, the fitted values following
 };
 
 struct DiagnosisOptions {
@@ -105,8 +108,9 @@ constexpr int kPictured = 5;
 /// renderer gets wrong, the same way in every photo, so no null of independent noise knows it), and
 /// what 0.01 px of motion all over the surface would bring. Below that two renderers of one scene
 /// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
-/// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error.
-double least_fall(const Diagnosis& diagnosis, const std::string& effect);
+/// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error. Of
+/// the fitted photos, or of the held-out ones.
+double least_fall(const Diagnosis& diagnosis, const std::string& effect, bool held_out = false);
 /// The effect stands for errors of the computation.
 bool numerical(const std::string& effect);
 /// `fall` of the sum of squares of measured values over told noise is kNameable in log-likelihood,
@@ -116,13 +120,16 @@ bool sensors_speak(double fall, const Diagnosis& diagnosis);
 bool sensors_alone(const Ingredient& ingredient);
 /// It changes how bright or sharp photos are, and nothing of where they show the body.
 bool brightness_alone(const Ingredient& ingredient);
-/// Held-out photos alone show what is missing, and what fitted data make of the effect takes more
-/// than half of what those have over the floor: they had no part in its values.
-bool held_out_say_so(const EffectScore& score, bool held_out_missed);
+/// What fitted data make of the effect takes more than half of what held-out photos have over the
+/// floor, which had no part in its values: those alone show that something is missing, or it has
+/// evidence enough to be named and takes more there than renderers and the mesh err by there. (On a
+/// mesh that was coarse that may be more than a small effect takes of the fitted photos, which
+/// values wronged by it have made up for.)
+bool held_out_say_so(const EffectScore& score, const Diagnosis& diagnosis);
 /// Testable, above the simulated gate, and, where it is seen in photos alone, above the renderer's
 /// and the mesh's own errors; or sensors speak for it (sensors_speak; of the mesh they have
 /// mesh_in_measured). (The mesh's own effect is not held to the mesh's error: it is not offered
-/// then.) Where held-out photos say so: above the gate.
+/// then.) Or held-out photos say so, and it is above the gate.
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
 /// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
 /// or because the information criterion puts them before it (method.md, 3 and 5). Without the

@@ -18,6 +18,7 @@ json effect_json(const EffectScore& score) {
   out["explains"] = score.explains;
   out["explains_held_out"] = score.explains_held_out;
   out["fall"] = score.fall;
+  out["fall_held_out"] = score.fall_held_out;
   out["measured_fall"] = score.measured_fall;
   out["mesh_fall"] = score.mesh_fall;
   out["dof"] = score.dof;
@@ -55,6 +56,9 @@ json to_json(const Diagnosis& diagnosis) {
           {"whiteness_p", diagnosis.whiteness_p},
           {"mesh_note", diagnosis.mesh_note},
           {"mesh_fall", diagnosis.mesh_fall},
+          {"mesh_fall_held_out", diagnosis.mesh_fall_held_out},
+          {"held_out_missed", diagnosis.held_out_missed},
+          {"held_out_over", diagnosis.held_out_over},
           {"mesh_in_measured", diagnosis.mesh_in_measured},
           {"leaders", leaders(diagnosis)},
           {"conclusion", conclusion(diagnosis)},
@@ -86,6 +90,7 @@ EffectScore score_from_json(const json& one, const Model& model) {
   score.explains = one.at("explains");
   score.explains_held_out = one.at("explains_held_out");
   score.fall = one.at("fall");
+  score.fall_held_out = one.value("fall_held_out", 0.0);
   score.measured_fall = one.value("measured_fall", 0.0);
   score.mesh_fall = one.value("mesh_fall", 0.0);
   score.evidence = one.at("evidence");
@@ -117,6 +122,9 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     out.whiteness_p = document.at("whiteness_p");
     out.mesh_note = document.value("mesh_note", "");
     out.mesh_fall = document.value("mesh_fall", 0.0);
+    out.mesh_fall_held_out = document.value("mesh_fall_held_out", 0.0);
+    out.held_out_missed = document.value("held_out_missed", false);
+    out.held_out_over = document.value("held_out_over", false);
     out.mesh_in_measured = document.value("mesh_in_measured", 0.0);
     for (const auto& one : document.at("effects"))
       out.effects.push_back(score_from_json(one, model));

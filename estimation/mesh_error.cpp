@@ -110,6 +110,12 @@ void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
   VectorXd by_share = VectorXd::Zero(share->last + 1);
   by_share.head(share->last) = -share->column.to_base.col(0);
   std::swap(by_share[share->at], by_share[share->last]);
+  VectorXd change = next * by_share;
+  change[share->at] += next;
+  const Eigen::MatrixXd& held_out = sums.seen_held_out.JtJ;
+  if (sums.held_count > 0.0)
+    out.mesh_fall_held_out =
+        change.dot(held_out.topLeftCorner(change.size(), change.size()) * change) / sums.held_count;
   const double left = next / (1.0 - next) - fitted.p[share->at];
   out.mesh_shift = left * by_share;
   VectorXd others = out.mesh_shift;

@@ -7,14 +7,16 @@
 
 namespace hookeye {
 
-double least_fall(const Diagnosis& diagnosis, const std::string& effect) {
+double least_fall(const Diagnosis& diagnosis, const std::string& effect, bool held_out) {
   constexpr double kTrustedPx = 0.01;
   const Floor& floor = diagnosis.floor;
   const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
                                   [&](const auto& one) { return one.effect == effect; });
   return std::max({0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
                    kTrustedPx * kTrustedPx * floor.per_px2,
-                   score == diagnosis.effects.end() ? diagnosis.mesh_fall : score->mesh_fall});
+                   held_out                           ? diagnosis.mesh_fall_held_out
+                   : score == diagnosis.effects.end() ? diagnosis.mesh_fall
+                                                      : score->mesh_fall});
 }
 
 bool sensors_alone(const Ingredient& ingredient) {
@@ -60,13 +62,16 @@ bool sensors_speak(double fall, const Diagnosis& diagnosis) {
   return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= kNameable;
 }
 
-bool held_out_say_so(const EffectScore& score, bool held_out_missed) {
-  return held_out_missed && !numerical(score.effect) && score.explains_held_out > 0.5;
+bool held_out_say_so(const EffectScore& score, const Diagnosis& diagnosis) {
+  if (numerical(score.effect) || score.explains_held_out <= 0.5) return false;
+  return diagnosis.held_out_missed ||
+         (diagnosis.held_out_over && score.evidence >= kNameable &&
+          score.fall_held_out >= least_fall(diagnosis, score.effect, true));
 }
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   if (!score.testable || score.evidence < diagnosis.gate) return false;
-  if (held_out_say_so(score, diagnosis.held_out_missed)) return true;
+  if (held_out_say_so(score, diagnosis)) return true;
   return score.evidence >= kNameable &&
          ((score.best && sensors_alone(*score.best)) ||
           score.fall >= least_fall(diagnosis, score.effect) ||

@@ -108,6 +108,25 @@ TEST(Leaders, WhatHeldOutPhotosAloneShowIsNamedByThem) {
   EXPECT_THAT(leaders(left), IsEmpty());
 }
 
+/// What the next finer mesh would change in fitted photos hides an effect, unless held-out photos
+/// show it by more than it would change there.
+TEST(Leaders, WhatTheMeshHidesIsNamedByHeldOutPhotos) {
+  EffectScore creep = scored("creep", 800.0);
+  creep.fall = 0.7, creep.mesh_fall = 0.8;
+  creep.explains_held_out = 0.9, creep.fall_held_out = 30.0;
+  Diagnosis left = of({creep});
+  left.gate = 3.0, left.mesh_fall_held_out = 10.0;
+  EXPECT_THAT(leaders(left), IsEmpty()) << "held-out photos are at the floor";
+  left.held_out_over = true;
+  EXPECT_THAT(leaders(left), ElementsAre("creep"));
+  left.mesh_fall_held_out = 31.0;
+  EXPECT_THAT(leaders(left), IsEmpty());
+  left.mesh_fall_held_out = 10.0, left.effects[0].evidence = kNameable - 0.1;
+  EXPECT_THAT(leaders(left), IsEmpty());
+  left.effects[0].evidence = 800.0, left.effects[0].explains_held_out = 0.5;
+  EXPECT_THAT(leaders(left), IsEmpty()) << "not more than half";
+}
+
 /// Told as a hint alone, and only where photos that no score has seen speak for it.
 TEST(Leaders, WhatIsTooLittleToBeNamedIsAHint) {
   EffectScore small = scored("strain_stiffening", 50.0);

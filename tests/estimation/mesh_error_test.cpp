@@ -34,6 +34,9 @@ Refined refined(const Eigen::MatrixXd& J) {
   out.fitted.low = VectorXd::Constant(2, -1e9), out.fitted.high = VectorXd::Constant(2, 1e9);
   out.sums.fitted.JtJ = J.transpose() * J;
   out.sums.photo_count = static_cast<double>(J.rows());
+  out.sums.seen_held_out.JtJ =
+      4.0 * out.sums.fitted.JtJ;  // half as many pixels, of twice the change
+  out.sums.held_count = 0.5 * out.sums.photo_count;
   out.effect.first = 2, out.effect.count = 1;
   out.effect.typical = VectorXd::Ones(1);
   return out;
@@ -54,6 +57,7 @@ TEST(MeshError, AnEffectImitatesWhatItLooksLike) {
     Diagnosis out;
     tell_of_refined_mesh(model.fitted, Evaluation(), model.sums, out);
     EXPECT_NEAR(out.mesh_fall, std::pow(0.1 * 20.0, 2) / 100.0, 1e-12);
+    EXPECT_NEAR(out.mesh_fall_held_out, 8.0 * out.mesh_fall, 1e-12) << "the modulus follows";
     EXPECT_NEAR(imitated_by_mesh(model.fitted, model.sums, model.effect),
                 out.mesh_fall * std::pow(std::cos(angle), 2), 1e-12)
         << angle;
@@ -66,6 +70,7 @@ TEST(MeshError, AModelOnItsToldMeshHasNone) {
   Diagnosis out;
   tell_of_refined_mesh(model.fitted, Evaluation(), model.sums, out);
   EXPECT_EQ(out.mesh_fall, 0.0);
+  EXPECT_EQ(out.mesh_fall_held_out, 0.0);
   EXPECT_EQ(imitated_by_mesh(model.fitted, model.sums, model.effect), 0.0);
 }
 
