@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <utility>
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
@@ -28,9 +29,13 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
     spdlog::info("{}: chi {} fitted, {} held out (floor {:.3f})", name_of(step),
                  chi_text(step.fitted.evaluation.chi(false)),
                  chi_text(step.fitted.evaluation.chi(true)), step.diagnosis.floor.chi);
-    for (const auto& effect : step.diagnosis.effects)
-      if (nameable(effect, step.diagnosis))
-        spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
+    bool announced = false;
+    for (const auto& effect : step.diagnosis.effects) {
+      if (!nameable(effect, step.diagnosis)) continue;
+      if (!std::exchange(announced, true))
+        spdlog::info("  what stands out, guessed from one linear step (refits decide):");
+      spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
+    }
   };
   events.tried = [](const Racer& racer) {
     spdlog::info("trial of {}: {} fitted, {} held out, {}", racer.effect,
