@@ -126,14 +126,36 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   return tie.empty() ? Verdict::explained : Verdict::ambiguous;
 }
 
+namespace {
+
+/// Every named effect changes how bright or sharp photos are, and nothing of where they show the
+/// body.
+bool brightness_alone_is_named(const Fitted& fitted) {
+  return std::all_of(
+      fitted.form.ingredients.begin(), fitted.form.ingredients.end(), [](const auto& ingredient) {
+        const std::string& name = ingredient->name();
+        return !find_effect(name) || numerical(name) || brightness_alone(*ingredient);
+      });
+}
+
+}  // namespace
+
 std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis,
                        const TakenByNames& taken) {
-  const Floor& floor = diagnosis.floor;
+  // The rest photos' floor is shading and texture gone wrong: of brightness' own kind.
+  Floor floor = diagnosis.floor;
+  const bool bright = floor.chi > kLeftByRenderers && brightness_alone_is_named(fitted);
+  if (bright) floor.chi = 1.0;
   const bool named = taken.fit > 0.0 || taken.held_out > 0.0;
   if (!named || !seen(fitted) || at_floor(fitted, floor, kLeftByRenderers) ||
       sensors_speak(taken.measured, diagnosis) || taken.fit >= over_floor(fitted, floor, false) ||
       taken.held_out > over_floor(fitted, floor, true))
     return "";
+  if (bright)
+    return fmt::format(
+        "; what was named changes brightness alone, and has taken less than what stays over the "
+        "told noise ({:.2f} times it in the rest photos), of which it may be part",
+        diagnosis.floor.chi);
   const bool mesh = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
                                 [&](const EffectScore& effect) {
                                   return numerical(effect.effect) && nameable(effect, diagnosis);

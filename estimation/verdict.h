@@ -33,10 +33,10 @@ struct TakenByNames {
   double fit = 0.0, held_out = 0.0, measured = 0.0;
 };
 
-/// Photos that were near the floor all along do not tell a small effect from part of another that
-/// the catalogue does not have: what stays over the floor, fitted and held out, is more than what
-/// meshes and renderers leave at least (kLeftByRenderers) and than what the named effects took, of
-/// which there is some, and no sensor spoke for them. Said in words; "": it is not so.
+/// Of photos near the floor all along a small effect may be part of what has no name: what stays
+/// over the floor is more than renderers leave at least (kLeftByRenderers) and than the named took,
+/// for which no sensor speaks. Where they change brightness alone it is over the told noise: the
+/// floor is of that kind, a gloss without a name is in it. Said in words; "": it is not so.
 std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis, const TakenByNames& taken);
 
 /// The photos are explained but for what a finer mesh would change. That is told beside the

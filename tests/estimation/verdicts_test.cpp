@@ -4,6 +4,7 @@
 
 #include "estimation/contest.h"
 #include "estimation/discover.h"
+#include "estimation/effects/toolbox.h"
 #include "estimation/refit.h"
 #include "tests/estimation/small_capture.h"
 
@@ -189,6 +190,31 @@ TEST(Verdict, ANameThatTakesLessThanWhatStaysIsNotEnough) {
   mesh.effect = "mesh_resolution", mesh.evidence = 50.0, mesh.fall = 0.2, mesh.testable = true;
   EXPECT_THAT(more_stays(fitted, diagnosis, {0.2, 0.1}),
               testing::HasSubstr("A finer mesh would tell"));
+}
+
+/// A gloss is in the rest photos' floor too: a lamp that is named in its place may be part of it.
+TEST(Verdict, BrightnessMustTakeMoreThanStaysOverTheToldNoise) {
+  Fitted fitted;
+  fitted.evaluation.examples.resize(1);
+  fitted.evaluation.examples[0].photos.resize(1);
+  PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
+  photo.count = 100.0, photo.r2 = 410.0;
+  Diagnosis diagnosis;
+  diagnosis.floor.chi = 2.0;
+  IngredientSpec lamp;
+  lamp.name = "light_direction", lamp.touches.photos = true;
+  lamp.apply = [](const VectorXd&, Model&) {};
+  IngredientSpec weight = lamp;
+  weight.name = "gravity", weight.touches = {}, weight.touches.loading = true;
+  fitted.form.ingredients = {make_ingredient(lamp)};
+  EXPECT_THAT(more_stays(fitted, diagnosis, {2.9}),
+              testing::HasSubstr("less than what stays over the told noise (2.00 times it in the"));
+  EXPECT_EQ(more_stays(fitted, diagnosis, {3.2}), "");
+  fitted.form.ingredients.push_back(make_ingredient(weight));
+  EXPECT_EQ(more_stays(fitted, diagnosis, {2.9}), "") << "the body moves, the floor does not";
+  fitted.form.ingredients.pop_back();
+  diagnosis.floor.chi = 1.05, photo.r2 = 120.0;
+  EXPECT_EQ(more_stays(fitted, diagnosis, {0.1}), "") << "as little as renderers leave";
 }
 
 TEST(Verdict, WhatAFinerMeshTakesNoNameHasTaken) {
