@@ -186,9 +186,12 @@ bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
          fitted.evaluation.chi(true) <= times * floor.chi;
 }
 
-CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor) {
-  CameraOverFloor most;
-  if (floor.by_camera.empty()) return most;
+namespace {
+
+/// What every camera with a floor of its own keeps of it, on fitted and on held-out photos.
+std::vector<CameraOverFloor> cameras_over_floor(const Fitted& fitted, const Floor& floor) {
+  std::vector<CameraOverFloor> out;
+  if (floor.by_camera.empty()) return out;
   std::map<std::pair<std::string, bool>, Left> sums;
   for (const auto& example : fitted.evaluation.examples)
     for (const auto& photo : example.photos) {
@@ -198,14 +201,42 @@ CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor) {
   for (const auto& [of, left] : sums) {
     const auto own = floor.by_camera.find(of.first);
     if (own == floor.by_camera.end() || own->second <= 0.0 || left.count <= 0.0) continue;
-    const double times = left.chi() / own->second;
-    if (times > most.times) most = {of.first, times, of.second};
+    out.push_back({of.first, left.chi() / own->second, of.second});
   }
-  return most;
+  return out;
+}
+
+/// One camera alone is wrong: of n, all that they have over their floors is its own, n times the
+/// mean; a mesh or a law is wrong in all alike, once the mean. Whether it is over the floor and
+/// nearer to the former.
+bool alone_over_floor(const CameraOverFloor& one, const std::vector<CameraOverFloor>& all) {
+  const auto excess = [](const CameraOverFloor& camera) {
+    return std::max(0.0, camera.times * camera.times - 1.0);
+  };
+  double sum = 0.0, count = 0.0;
+  for (const CameraOverFloor& camera : all)
+    if (camera.held_out == one.held_out) sum += excess(camera), count += 1.0;
+  return one.times > kAtFloor && excess(one) > 0.5 * (count + 1.0) * sum / count;
+}
+
+}  // namespace
+
+CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor) {
+  const auto cameras = cameras_over_floor(fitted, floor);
+  const auto rank = [&](const CameraOverFloor& one) {
+    return std::pair(alone_over_floor(one, cameras), one.times);
+  };
+  const auto most = std::max_element(cameras.begin(), cameras.end(), [&](auto& one, auto& other) {
+    return rank(one) < rank(other);
+  });
+  return most == cameras.end() ? CameraOverFloor{} : *most;
 }
 
 bool explains_photos(const Fitted& fitted, const Floor& floor) {
-  return at_floor(fitted, floor) && most_over_floor(fitted, floor).times <= kAtFloor;
+  const auto cameras = cameras_over_floor(fitted, floor);
+  return at_floor(fitted, floor) && std::none_of(cameras.begin(), cameras.end(), [&](auto& one) {
+           return alone_over_floor(one, cameras);
+         });
 }
 
 double over_floor(const Fitted& fitted, const Floor& floor, bool held_out) {

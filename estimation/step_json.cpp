@@ -216,9 +216,11 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
                 {"order", scene.body->mesh.order},
                 {"mean_edge", mesh.mean_edge}}}};
   if (const CameraOverFloor most = most_over_floor(fitted, floor); !most.camera.empty())
-    out["most_over_floor"] = {{"camera", most.camera},
-                              {"times", most.times},
-                              {"use", most.held_out ? "validate" : "fit"}};
+    out["most_over_floor"] = {
+        {"camera", most.camera},
+        {"times", most.times},
+        {"use", most.held_out ? "validate" : "fit"},
+        {"its_own", at_floor(fitted, floor) && !explains_photos(fitted, floor)}};
   out["energy"] = energy(scene, fitted);
   out["ellipticity"] = lost_ellipticity(scene, fitted);
   if (json additive = additive_metrics(fitted); !additive.is_null())

@@ -70,8 +70,9 @@ export interface Metrics {
   chi_by_example: Record<string, number>;
   chi_by_camera: Record<string, number>;
   chi_by_region?: Record<string, number>;
-  /** The camera that keeps most over the floor of its own rest photos. */
-  most_over_floor?: {camera: string; times: number; use: string};
+  /** The camera that keeps most over the floor of its own rest photos; whether it alone keeps the photos from being
+   *  explained. */
+  most_over_floor?: {camera: string; times: number; use: string; its_own?: boolean};
   measured: {
     example: string;
     kind: string;

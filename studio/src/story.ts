@@ -170,7 +170,7 @@ export function provisional(): Told {
   const heldOut = now.chi_validate === null ? '' : ` (${over(now.chi_validate)} on held-out photos)`;
   const all = Math.max(now.chi_fit, now.chi_validate ?? 0) <= atFloor * floor.value.chi;
   const most = newest.metrics?.most_over_floor;
-  const alone = all && most && most.times > atFloor
+  const alone = all && most?.its_own
     ? `, but ${figure(most.times)} times its own in the ${most.use === 'fit' ? 'fitted' : 'held-out'} photos of camera '${most.camera}'` : '';
   const left = `what is left is ${over(now.chi_fit)} times the noise floor${heldOut}${alone}`;
   const effects = now.effects?.length ? `with ${listed(now.effects.map(spaced))}, ` : '';

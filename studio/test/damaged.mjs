@@ -66,9 +66,9 @@ export async function oneCameraOver({folder, run, tell, open}) {
   cpSync(run, altered, {recursive: true});
   const newest = join(altered, 'steps', readdirSync(join(altered, 'steps')).sort().at(-1), 'metrics.json');
   const metrics = JSON.parse(readFileSync(newest, 'utf8'));
-  const {camera, times} = metrics.most_over_floor;
-  assert.ok(Object.hasOwn(metrics.floor.by_camera, camera) && times < 1.3, JSON.stringify(metrics.most_over_floor));
-  metrics.most_over_floor.times = 1.45;
+  const {camera, times, its_own} = metrics.most_over_floor;
+  assert.ok(Object.hasOwn(metrics.floor.by_camera, camera) && times < 1.3 && !its_own, JSON.stringify(metrics.most_over_floor));
+  Object.assign(metrics.most_over_floor, {times: 1.45, its_own: true});
   writeFileSync(newest, JSON.stringify(metrics));
   tell('report', altered, '-o', join(folder, 'one-camera.html'));
   const {page, faults, close} = await open('file://' + join(folder, 'one-camera.html'));

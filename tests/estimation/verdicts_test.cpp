@@ -316,6 +316,16 @@ TEST(Verdict, WantsEveryCameraExplained) {
   diagnosis.floor.by_camera["cam1"] = 0.0;
   EXPECT_EQ(most_over_floor(fitted, diagnosis.floor).camera, "cam0")
       << "of 0 nothing is a multiple";
+  diagnosis.floor.by_camera["cam1"] = of_cam1;
+  for (auto& example : fitted.evaluation.examples)
+    for (auto& photo : example.photos) {
+      const bool cam1 = examples[example.example].photos[photo.photo].camera == "cam1";
+      photo.r2 *= cam1 ? 1.75 / 2.1 : 1.45;
+    }
+  ASSERT_TRUE(at_floor(fitted, diagnosis.floor));
+  EXPECT_GT(most_over_floor(fitted, diagnosis.floor).times, kAtFloor);
+  EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained)
+      << "the other camera is nearly as bad: what is wrong is no camera's";
 }
 
 /// Fitted photos at their floor cannot tell what the held-out ones lack; the user hears which
