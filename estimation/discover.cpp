@@ -323,7 +323,9 @@ class Search {
     out_.missing = effects_in(last.fitted.form);
     settle_tie(out_.tie, out_.missing);
     out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
-    if (out_.verdict != Verdict::unexplained && !out_.all)
+    // What was taken back took nothing, however its refits round.
+    const bool named = !std::all_of(out_.missing.begin(), out_.missing.end(), numerical);
+    if (named && out_.verdict != Verdict::unexplained && !out_.all)
       if (const std::string stays =
               more_stays(last.fitted, last.diagnosis, taken_by_names(whole_run(), out_.floor));
           !stays.empty())
