@@ -28,24 +28,45 @@ struct ScaledForces {
   }};
 };
 
-/// Of single bumps the one that least squares over the volume put nearest to the sum of all: its
-/// centre and amplitude. The rest is a constant and the same amplitude in all bumps, which is none:
-/// they overlap where the body is thick, and hardly at its edges.
-std::pair<Vector3d, double> likest_blob(const TetMesh& mesh, const std::vector<Vector3d>& centres,
-                                        double radius, const VectorXd& values) {
-  const auto m = static_cast<Eigen::Index>(centres.size());
+/// The one Gaussian place, and its amplitude, that least squares over the volume put nearest to the
+/// sum of all bumps: anywhere in the body, for a place between bumps is shared out among them, and
+/// as wide as half a bump to one and a half. The rest is a constant and the same amplitude in all
+/// bumps, which is none: they overlap where the body is thick, and hardly at its edges.
+std::pair<Blob, double> likest_blob(const TetMesh& mesh, const std::vector<Vector3d>& centres,
+                                    double radius, const VectorXd& values) {
+  constexpr Eigen::Index kPlaces = 1000;
   const VectorXd w = element_volumes(mesh).cwiseSqrt();
-  Eigen::MatrixXd bumps(mesh.size(), m);
-  for (Eigen::Index i = 0; i < m; ++i)
-    bumps.col(i) = w.cwiseProduct(gaussian_bump(mesh, centres[static_cast<size_t>(i)], radius));
+  const auto bump = [&](const Vector3d& centre, double r) {
+    return w.cwiseProduct(gaussian_bump(mesh, centre, r)).eval();
+  };
+  VectorXd field = VectorXd::Zero(mesh.size());
   Eigen::MatrixXd rest(mesh.size(), 2);
-  rest << w, bumps.rowwise().sum();
-  bumps -= rest * rest.colPivHouseholderQr().solve(bumps);
-  const VectorXd along = bumps.transpose() * (bumps * values);
-  const VectorXd square = bumps.colwise().squaredNorm();
-  Eigen::Index i = 0;
-  (along.array().square() / square.array().max(1e-12 * square.maxCoeff())).maxCoeff(&i);
-  return {centres[static_cast<size_t>(i)], along[i] / square[i]};
+  rest << w, field;
+  for (size_t i = 0; i < centres.size(); ++i) {
+    const VectorXd one = bump(centres[i], radius);
+    field += values[static_cast<Eigen::Index>(i)] * one;
+    rest.col(1) += one;
+  }
+  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(rest).householderQ() *
+                            Eigen::MatrixXd::Identity(mesh.size(), 2);
+  field -= Q * (Q.transpose() * field);
+  std::vector<Vector3d> places = centres;
+  const Matrix3Xd elements = element_centres(mesh);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, elements.cols() / kPlaces);
+  for (Eigen::Index e = 0; e < elements.cols(); e += stride) places.emplace_back(elements.col(e));
+  std::pair<Blob, double> likest{{centres.front(), radius}, 0.0};
+  double most = 0.0;
+  for (double share : {0.5, 0.7, 1.0, 1.4})
+    for (const Vector3d& place : places) {
+      const VectorXd one = bump(place, share * radius);
+      const double square = one.squaredNorm() - (Q.transpose() * one).squaredNorm();
+      const double along = one.dot(field);
+      // what is hardly more than the rest says nothing
+      if (square < 1e-3 * one.squaredNorm() || along * along <= most * square) continue;
+      most = along * along / square;
+      likest = {{place, share * radius}, along / square};
+    }
+  return likest;
 }
 
 /// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
@@ -96,9 +117,7 @@ class StiffnessField final : public Effect {
     return free_blob(model);
   }
 
-  /// The one blob, of those that the bumps are, that is most like the field but for its mean. (Not
-  /// the bump of the largest value: bumps overlap where the body is thick, and hardly at its
-  /// edges.)
+  /// The one blob that is most like the field but for its mean.
   std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
                                                  VectorXd& values) const override {
     const auto n = numbers_in(refitted.variant());
@@ -106,8 +125,8 @@ class StiffnessField final : public Effect {
     std::vector<Vector3d> centres;
     for (Eigen::Index i = 0; i < values.size(); ++i)
       centres.emplace_back(n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]);
-    const auto [centre, amplitude] = likest_blob(model.scene->body->mesh, centres, n[0], values);
-    values = freed({centre, n[0]}, amplitude);
+    const auto [place, amplitude] = likest_blob(model.scene->body->mesh, centres, n[0], values);
+    values = freed(place, amplitude);
     return free_blob(model);
   }
 

@@ -232,6 +232,35 @@ TEST(StiffnessField, TheSmallerFormIsThePlaceAndTheRestGoesToTheModulus) {
   }
 }
 
+/// Bumps share a place between them out among them: it is none of theirs.
+TEST(StiffnessField, TheSmallerFormIsFoundBetweenBumps) {
+  const Model& model = base_model();
+  const TetMesh& mesh = model.scene->body->mesh;
+  const Effect& effect = *find_effect("stiffness_field");
+  const auto field = effect.candidates(model, nullptr).front();
+  const auto n = numbers_in(field->variant());
+  const auto count = static_cast<Eigen::Index>(field->parameters().size());
+  Matrix3Xd centres(3, count);
+  for (Eigen::Index i = 0; i < centres.size(); ++i) centres(i) = n[static_cast<size_t>(i + 1)];
+  Eigen::MatrixXd bumps(mesh.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) bumps.col(i) = gaussian_bump(mesh, centres.col(i), n[0]);
+  const Matrix3Xd places = element_centres(mesh);
+  const auto nearest = [&](const Vector3d& place) {
+    return (centres.colwise() - place).colwise().norm().minCoeff();
+  };
+  int seen = 0;
+  for (Eigen::Index e = 0; e < places.cols(); ++e) {
+    const Vector3d place = places.col(e);
+    if (nearest(place) < 0.6 * n[0]) continue;
+    VectorXd values = bumps.colPivHouseholderQr().solve(gaussian_bump(mesh, place, n[0]));
+    ASSERT_TRUE(effect.smaller_form(model, *field, values));
+    EXPECT_LT((values.segment<3>(1) - place).norm(), 0.6 * n[0]) << e;
+    EXPECT_NEAR(values[0], 1.0, 0.4) << e;
+    ++seen;
+  }
+  EXPECT_GT(seen, 5);
+}
+
 /// Where the first law is not, it has no stiffness to keep.
 TEST(KeptStiffness, IsThatOfTheElementsThatHaveTheLaw) {
   Model model = base_model();
