@@ -103,13 +103,9 @@ constexpr double kTie = 3.0;
 /// Of so many leading effects what they would remove is drawn at full size (removed.h).
 constexpr int kPictured = 5;
 
-/// Fall of chi^2 below which an effect is not named although noise alone would not give it: a tenth
-/// of what the rest photos keep over their noise after alignment (texture and shading that the
-/// renderer gets wrong, the same way in every photo, so no null of independent noise knows it), and
-/// what 0.01 px of motion all over the surface would bring. Below that two renderers of one scene
-/// disagree (bench/statistics --other-renderer), let alone a lens and its calibration; image
-/// correlation trusts its matches no further. Nor is what is smaller than the mesh's own error. Of
-/// the fitted photos, or of the held-out ones.
+/// Fall of chi^2 below which an effect is not named although noise alone would not give it:
+/// renderers_err_by (floor.h), or what is smaller than the mesh's own error. Of the fitted photos,
+/// or of the held-out ones.
 double least_fall(const Diagnosis& diagnosis, const std::string& effect, bool held_out = false);
 /// The effect stands for errors of the computation.
 bool numerical(const std::string& effect);

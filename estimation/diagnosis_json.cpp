@@ -117,6 +117,7 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     out.floor.per_px2 = floor.value("per_px2", 0.0);
     out.floor.source = floor.at("source");
     out.floor.by_camera = floor.value("by_camera", out.floor.by_camera);
+    out.floor.moved_at_rest = floor.value("moved_at_rest", out.floor.moved_at_rest);
     out.gate = document.at("gate");
     out.effective_count = document.at("effective_count");
     out.whiteness_p = document.at("whiteness_p");

@@ -317,19 +317,25 @@ class Search {
     return steps;
   }
 
+  /// What speaks against photos that are at the floor.
+  std::string in_doubt(const Step& last) const {
+    // What was taken back took nothing, however its refits round.
+    const bool named = !std::all_of(out_.missing.begin(), out_.missing.end(), numerical);
+    std::string stays;
+    if (named)
+      stays = more_stays(last.fitted, last.diagnosis, taken_by_names(whole_run(), out_.floor));
+    return stays.empty() ? moved_at_rest(last.fitted, last.diagnosis) : stays;
+  }
+
   Discovery finish() {
     std::string why;
     const Step& last = newest();
     out_.missing = effects_in(last.fitted.form);
     settle_tie(out_.tie, out_.missing);
     out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
-    // What was taken back took nothing, however its refits round.
-    const bool named = !std::all_of(out_.missing.begin(), out_.missing.end(), numerical);
-    if (named && out_.verdict != Verdict::unexplained && !out_.all)
-      if (const std::string stays =
-              more_stays(last.fitted, last.diagnosis, taken_by_names(whole_run(), out_.floor));
-          !stays.empty())
-        out_.verdict = Verdict::unexplained, why += stays;
+    if (out_.verdict != Verdict::unexplained && !out_.all)
+      if (const std::string doubt = in_doubt(last); !doubt.empty())
+        out_.verdict = Verdict::unexplained, why += doubt;
     out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
     return std::move(out_);
   }

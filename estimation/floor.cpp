@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "estimation/evidence.h"
 #include "estimation/fit.h"
 
 namespace hookeye {
@@ -25,6 +26,7 @@ Eigen::VectorXd monomials(const FlowField& flow, const FlowCell& cell, int degre
 
 struct SmoothPart {
   double explained = 0.0;  ///< of |r|^2
+  double by_motion = 0.0;  ///< of that, what brightness alone does not explain
   double numbers = 0.0;
   Eigen::VectorXd coefficients;  ///< three of every monomial
 };
@@ -50,7 +52,12 @@ SmoothPart smooth_part(const FlowField& flow, int degree) {
     b += basis.transpose() * (cell.information * cell.estimate);
   }
   const Eigen::VectorXd found = A.completeOrthogonalDecomposition().solve(b);
-  return {b.dot(found), static_cast<double>(size), found};
+  const auto brightness = Eigen::seqN(2, size / 3, 3);
+  const Eigen::VectorXd b_bright = b(brightness);
+  const Eigen::VectorXd bright =
+      Eigen::MatrixXd(A(brightness, brightness)).completeOrthogonalDecomposition().solve(b_bright);
+  const double explained = b.dot(found);
+  return {explained, explained - b_bright.dot(bright), static_cast<double>(size), found};
 }
 
 /// The field without its smooth part.
@@ -103,6 +110,27 @@ Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
   return {left.r2 - moved.explained, left.count - moved.numbers};
 }
 
+/// The example's equilibrium is the body as it was given.
+bool unmoved(const Scene& scene, const ExampleEvaluation& example) {
+  const Matrix3Xd& X = scene.body->mesh.X;
+  const double size = (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm();
+  return example.equilibrium &&
+         (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() < 1e-6 * size;
+}
+
+/// Smooth motion of photos at rest, and what noise would give of it.
+struct MotionAtRest {
+  double explained = 0.0, numbers = 0.0, r2 = 0.0, count = 0.0;
+  void add(const PhotoEvaluation& photo, int degree, const Left& left) {
+    const SmoothPart moved = smooth_part(photo.flow, degree);
+    explained += moved.by_motion, numbers += moved.numbers * 2.0 / 3.0;
+    r2 += left.r2, count += left.count;
+  }
+  double noise2() const { return r2 / count; }
+  bool by_chance() const { return explained <= chi2_point(numbers) * noise2(); }
+  double fall() const { return (explained - numbers * noise2()) / count; }
+};
+
 /// Highest degree for which a polynomial has a third of the cells' numbers at most, up to cubic;
 /// -1: too few cells.
 int degree_for(const FlowField& flow) {
@@ -142,18 +170,22 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   floor.per_px2 = fall_per_px2(evaluation);
   Left all;
   std::map<std::string, Left> cameras;
+  std::map<std::string, MotionAtRest> moved;
   double cells = 0.0, cell_count = 0.0;
   Inflations inflations;
   for (const auto& example : evaluation.examples) {
     if (!is_rest(scene.capture.examples[example.example])) continue;
     std::map<int, std::vector<FlowField>> channels;  // by photo
+    const bool as_given = unmoved(scene, example);
     for (const auto& photo : example.photos) {
       const int degree = degree_for(photo.flow);
       if (degree < 0) continue;
       const auto& spec = scene.capture.examples[example.example].photos[photo.photo];
-      const Left left = without_motion(photo, spec.kind == PhotoSpec::Kind::silhouette, degree);
+      const bool silhouette = spec.kind == PhotoSpec::Kind::silhouette;
+      const Left left = without_motion(photo, silhouette, degree);
       all.add(left);
       cameras[spec.camera].add(left);
+      if (as_given && !silhouette) moved[spec.camera].add(photo, degree, left);
       // Cells are judged after the motion that the registration found, however rough, is out.
       const SmoothPart aligned = smooth_part(photo.aligned, degree);
       cells -= aligned.explained;
@@ -169,6 +201,9 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   floor.chi = all.chi();
   for (const auto& [camera, left] : cameras)
     if (left.count >= kLeastPixels) floor.by_camera[camera] = left.chi();
+  for (const auto& [camera, motion] : moved)
+    if (motion.count >= kLeastPixels && !motion.by_chance())
+      floor.moved_at_rest[camera] = motion.fall();
   floor.source = "rest photos";
   floor.cell_inflation = std::max(1.0, inflations.sum / inflations.count);
   if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);
@@ -179,6 +214,12 @@ double measured_weight(const Floor& floor) { return floor.cell_inflation; }
 
 double measured_weight(const Scene& scene, const Evaluation& evaluation) {
   return measured_weight(measure_floor(scene, evaluation));
+}
+
+double renderers_err_by(const Floor& floor) {
+  constexpr double kTrustedPx = 0.01;
+  return std::max(0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
+                  kTrustedPx * kTrustedPx * floor.per_px2);
 }
 
 bool at_floor(const Fitted& fitted, const Floor& floor, double times) {

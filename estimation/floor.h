@@ -24,6 +24,10 @@ struct Floor {
   std::string source = "noise model";  ///< or "rest photos"
   /// chi of each camera whose rest photos are enough to tell it.
   std::map<std::string, double> by_camera;
+  /// Fall of chi^2 that smooth motion of a camera's rest photos would bring, where the model leaves
+  /// the body as it was given: mesh, law and loads have no part in it. Cameras with no more of it
+  /// than chance gives in 0.1 % of cases are not here.
+  std::map<std::string, double> moved_at_rest;
 };
 
 /// From the rest photos, after motion and brightness that are smooth over a photo (up to cubic in
@@ -41,6 +45,14 @@ double measured_weight(const Scene& scene, const Evaluation& evaluation);
 constexpr double kAtFloor = 1.3;
 /// Times the floor: what meshes and renderers leave at least.
 constexpr double kLeftByRenderers = 1.1;
+
+/// Fall of chi^2 that renderers and lenses may err by: a tenth of what the rest photos keep over
+/// their noise after alignment (texture and shading that the renderer gets wrong, the same way in
+/// every photo, so no null of independent noise knows it), and at least what 0.01 px of motion all
+/// over the surface would bring. Below that two renderers of one scene disagree (bench/statistics
+/// --other-renderer), let alone a lens and its calibration; image correlation trusts its matches no
+/// further.
+double renderers_err_by(const Floor& floor);
 
 /// Within `times` the floor on the fitted photos and on the held-out ones.
 bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);

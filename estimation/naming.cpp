@@ -8,15 +8,12 @@
 namespace hookeye {
 
 double least_fall(const Diagnosis& diagnosis, const std::string& effect, bool held_out) {
-  constexpr double kTrustedPx = 0.01;
-  const Floor& floor = diagnosis.floor;
   const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
                                   [&](const auto& one) { return one.effect == effect; });
-  return std::max({0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
-                   kTrustedPx * kTrustedPx * floor.per_px2,
-                   held_out                           ? diagnosis.mesh_fall_held_out
-                   : score == diagnosis.effects.end() ? diagnosis.mesh_fall
-                                                      : score->mesh_fall});
+  return std::max(renderers_err_by(diagnosis.floor), held_out ? diagnosis.mesh_fall_held_out
+                                                     : score == diagnosis.effects.end()
+                                                         ? diagnosis.mesh_fall
+                                                         : score->mesh_fall);
 }
 
 bool sensors_alone(const Ingredient& ingredient) {

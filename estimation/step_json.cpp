@@ -25,7 +25,8 @@ json to_json(const Floor& floor) {
           {"cell_variance", floor.cell_variance},
           {"per_px2", floor.per_px2},
           {"source", floor.source},
-          {"by_camera", floor.by_camera}};
+          {"by_camera", floor.by_camera},
+          {"moved_at_rest", floor.moved_at_rest}};
 }
 
 json parameters_json(const std::vector<Parameter>& parameters, const VectorXd& value,

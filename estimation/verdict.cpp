@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "estimation/contest.h"
@@ -163,6 +164,25 @@ std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis,
   return fmt::format(
       "; that is more than what was named has taken, which may be part of what is not named{}",
       mesh ? ". A finer mesh would tell (mesh: {edge: ...}): run again on it" : "");
+}
+
+std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
+  const Floor& floor = diagnosis.floor;
+  if (at_floor(fitted, floor, kLeftByRenderers)) return "";
+  const auto most =
+      std::max_element(floor.moved_at_rest.begin(), floor.moved_at_rest.end(),
+                       [](auto& one, auto& other) { return one.second < other.second; });
+  // A renderer's error is rough: it moves a photo smoothly by a twentieth of what it leaves at most
+  // (Cycles, 0.03 px beside 1.9 times the noise).
+  const double rough = floor.chi * floor.chi - 1.0;
+  if (most == floor.moved_at_rest.end() || most->second <= std::max(renderers_err_by(floor), rough))
+    return "";
+  return fmt::format(
+      "; rest photos of camera '{}' still show the body moved, by {:.2g} px, where the model has "
+      "it "
+      "as it was given: no mesh and no material does that. What does it is not among what was "
+      "named (where the camera or the body stands, a lens, a weight)",
+      most->first, std::sqrt(most->second / floor.per_px2));
 }
 
 std::vector<std::string> effects_in_words(const Fitted& fitted) {

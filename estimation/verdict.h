@@ -39,6 +39,12 @@ struct TakenByNames {
 /// floor is of that kind, a gloss without a name is in it. Said in words; "": it is not so.
 std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis, const TakenByNames& taken);
 
+/// Rest photos in which the body is as it was given show it moved all the same, smoothly and by
+/// more than renderers err by (renderers_err_by, and all that they leave over the noise), where
+/// more than kLeftByRenderers times the floor is left: no mesh and no law has a part in that, so
+/// what stays there is not explained by them. Said in words; "": it is not so.
+std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis);
+
 /// The photos are explained but for what a finer mesh would change. That is told beside the
 /// parameters, whose intervals reach there (reach_for_mesh); a fit on that mesh would cost several
 /// times all that was fitted before, and name nothing.

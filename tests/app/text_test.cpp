@@ -70,15 +70,17 @@ TEST(Text, ADiagnosisFitsAHundredColumns) {
 
 /// Photos that are blurred from rest on are at "the floor" of such photos.
 TEST(Text, AFloorFarAboveTheToldNoiseIsTold) {
-  EXPECT_EQ(high_floor({.chi = 2.4, .source = "rest photos", .by_camera = {}}), "");
-  EXPECT_EQ(high_floor({.chi = 5.44, .source = "noise model", .by_camera = {}}), "");
-  EXPECT_THAT(high_floor({.chi = 5.44, .source = "rest photos", .by_camera = {}}),
-              HasSubstr("5.44 times the told noise"));
-  EXPECT_EQ(high_floor({.chi = 2.4, .source = "rest photos", .by_camera = {{"left", 2.9}}}), "");
-  EXPECT_THAT(
-      high_floor(
-          {.chi = 2.79, .source = "rest photos", .by_camera = {{"left", 1.04}, {"right", 4.49}}}),
-      HasSubstr("of camera 'right' itself is 4.49 times"));
+  const auto told = [](double chi, const char* source, std::map<std::string, double> by_camera) {
+    Floor floor;
+    floor.chi = chi, floor.source = source, floor.by_camera = std::move(by_camera);
+    return high_floor(floor);
+  };
+  EXPECT_EQ(told(2.4, "rest photos", {}), "");
+  EXPECT_EQ(told(5.44, "noise model", {}), "");
+  EXPECT_THAT(told(5.44, "rest photos", {}), HasSubstr("5.44 times the told noise"));
+  EXPECT_EQ(told(2.4, "rest photos", {{"left", 2.9}}), "");
+  EXPECT_THAT(told(2.79, "rest photos", {{"left", 1.04}, {"right", 4.49}}),
+              HasSubstr("of camera 'right' itself is 4.49 times"));
 }
 
 /// Effects that stood out are told whether they were tried or not.
