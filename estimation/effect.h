@@ -64,6 +64,9 @@ class Effect {
     /// Another form of the same parameters, fitted from `values` first: `form` starts where it
     /// ends. Null: `form` is fitted at once.
     std::shared_ptr<const Ingredient> by_way_of = nullptr;
+    /// It says the same in another shape (a place that ends at an edge, or fades): it need not take
+    /// most of what is left, which may be another effect's.
+    bool same_claim = false;
   };
   virtual std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
                                              const Eigen::VectorXd& values) const;

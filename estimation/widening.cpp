@@ -116,8 +116,8 @@ bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale&
 /// its values cost goes with any. Held-out photos speak against it with what they are missed by
 /// beyond what renderers leave: by likelihood they tell less than that, as a modulus that moves
 /// within its interval changes.
-bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
-  return over_floor(wide, floor) < 0.5 * over_floor(narrow, floor) &&
+bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor, bool same_claim) {
+  return (same_claim || over_floor(wide, floor) < 0.5 * over_floor(narrow, floor)) &&
          score_above(wide, narrow, floor) > kTie &&
          (wide.evaluation.chi(true) <= kLeftByRenderers * floor.chi ||
           held_out_allows(wide, narrow, floor));
@@ -167,7 +167,9 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       const auto& way = further.by_way_of;
       const Reformed first =
           reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
-      if (gets_nowhere(workspace, first, std::get<TrialScale>(scale), options)) continue;
+      if (!further.same_claim &&
+          gets_nowhere(workspace, first, std::get<TrialScale>(scale), options))
+        continue;
       FitOptions farther = options;
       farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
       auto result = announced(events, words, [&] {
@@ -178,7 +180,7 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
         continue;
       }
       Fitted& wide = std::get<Fitted>(result);
-      if (!pays(wide, best, floor)) continue;
+      if (!pays(wide, best, floor, further.same_claim)) continue;
       best = std::move(wide);
       better = true;
     }

@@ -219,7 +219,7 @@ Effect::Further ball_like(const Model& model, const VectorXd& blob) {
   values << blob[0] / std::sqrt(8.0), blob.segment<3>(1),
       std::cbrt(6.0 * std::sqrt(EIGEN_PI)) * blob[4], 0.0;
   values[5] = 0.1 * values[4];
-  return {ball(model), values};
+  return {.form = ball(model), .values = values, .same_claim = true};
 }
 
 std::string graded_sentence(const Model& model, const Ingredient& ingredient,

@@ -158,6 +158,31 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
   EXPECT_NEAR(place.p[4], 18.0, 0.2);
 }
 
+/// Most of what is over the floor is a misaligned load's, which an edge cannot take.
+TEST(Widening, APlaceGetsItsEdgeBesideWhatElseIsMissing) {
+  const test::SmallScene small(
+      {.hidden = "hidden:\n  - {effect: stiffness_field, variant: free ball, values: "
+                 "{stiffness_field.a: -2, stiffness_field.x: 3, stiffness_field.y: -2, "
+                 "stiffness_field.z: 18, stiffness_field.radius: 8, "
+                 "stiffness_field.thickness: 0.5}}\n"
+                 "  - {effect: load_direction, variant: in pull, values: "
+                 "{load_direction.pull.angle1: 0.02, load_direction.pull.angle2: -0.03}}\n",
+       .loads = kPressAndTwist});
+  Workspace workspace(small.scene);
+  ModelForm form = base_form(small.scene);
+  const size_t at = form.ingredients.size();
+  const Model model = form.realise(form.initial());
+  form.ingredients.push_back(find_effect("stiffness_field")->rebuild(model, "free blob"));
+  VectorXd p = form.initial();
+  p.tail(5) << -1.0, 2.0, -1.0, 18.0, 4.0;
+  const Fitted faded = std::get<Fitted>(fit(workspace, form, p));
+  const Floor floor = measure_floor(*small.scene, faded.evaluation);
+  const Fitted edged = std::get<Fitted>(widened(workspace, faded, at, floor, {}));
+  EXPECT_EQ(edged.form.ingredients[at]->variant(), "free ball");
+  EXPECT_NEAR(edged.p[5], 8.0, 0.5);
+  EXPECT_GT(over_floor(edged, floor, false), 0.5 * over_floor(faded, floor, false));
+}
+
 /// A body swells and touches a hard wall. Fitted as a cushion beside a field of stiffness, the wall
 /// is hard again where the field leaves.
 TEST(Widening, AFieldLeavesTogetherWithTheWallsCushion) {
