@@ -126,12 +126,12 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
   ASSERT_EQ(further.size(), 3u);
   EXPECT_EQ(further[0].form->variant(), cushion->variant());
   for (size_t i = 0; i < 2; ++i) {  // the second one tilts, the third starts elsewhere
-    const auto& [wider, start, way] = further[i];
-    EXPECT_FALSE(way) << "it starts where the other ended";
-    const ModelForm wide = extended(base(), wider);
-    EXPECT_EQ(signature(wide.realise(with_values(wide, start)), q),
+    const Effect::Further& wider = further[i];
+    EXPECT_FALSE(wider.by_way_of) << "it starts where the other ended";
+    const ModelForm wide = extended(base(), wider.form);
+    EXPECT_EQ(signature(wide.realise(with_values(wide, wider.values)), q),
               signature(form.realise(with_values(form, values)), q))
-        << wider->variant();
+        << wider.form->variant();
   }
 }
 
