@@ -63,8 +63,8 @@ struct CameraOverFloor {
   bool held_out = false;
 };
 CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor);
-/// At the floor, and no camera is over it by what is its own rather than all cameras' alike: what
-/// is wrong with one of them is thin in the mean of many.
+/// At the floor, and no camera is over it by what is its own rather than all cameras' alike (and
+/// more than renderers leave at rest): what is wrong with one of them is thin in the mean of many.
 bool explains_photos(const Fitted& fitted, const Floor& floor);
 /// What chi^2 has over the floor's.
 double over_floor(const Fitted& fitted, const Floor& floor, bool held_out);
