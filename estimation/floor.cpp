@@ -113,9 +113,9 @@ Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
 /// The example's equilibrium is the body as it was given.
 bool unmoved(const Scene& scene, const ExampleEvaluation& example) {
   const Matrix3Xd& X = scene.body->mesh.X;
+  if (!example.equilibrium || example.equilibrium->q.size() != X.size()) return false;
   const double size = (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm();
-  return example.equilibrium &&
-         (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() < 1e-6 * size;
+  return (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() < 1e-6 * size;
 }
 
 /// Smooth motion of photos at rest, and what noise would give of it.

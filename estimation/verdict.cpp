@@ -172,16 +172,19 @@ std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
   const auto most =
       std::max_element(floor.moved_at_rest.begin(), floor.moved_at_rest.end(),
                        [](auto& one, auto& other) { return one.second < other.second; });
+  if (most == floor.moved_at_rest.end()) return "";
   // A renderer's error is rough: it moves a photo smoothly by a twentieth of what it leaves at most
   // (Cycles, 0.03 px beside 1.9 times the noise).
   const double rough = floor.chi * floor.chi - 1.0;
-  if (most == floor.moved_at_rest.end() || most->second <= std::max(renderers_err_by(floor), rough))
-    return "";
+  // Less than a tenth of what stays says nothing of the rest of it.
+  const double stays = std::max(over_floor(fitted, floor, false), over_floor(fitted, floor, true));
+  if (most->second <= std::max({renderers_err_by(floor), rough, 0.1 * stays})) return "";
   return fmt::format(
       "; rest photos of camera '{}' still show the body moved, by {:.2g} px, where the model has "
       "it "
-      "as it was given: no mesh and no material does that. What does it is not among what was "
-      "named (where the camera or the body stands, a lens, a weight)",
+      "as it was given: no mesh and no material moves a body without a load. What does is not "
+      "named "
+      "(where the camera or the body stands, a lens, a weight)",
       most->first, std::sqrt(most->second / floor.per_px2));
 }
 

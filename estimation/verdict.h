@@ -39,10 +39,11 @@ struct TakenByNames {
 /// floor is of that kind, a gloss without a name is in it. Said in words; "": it is not so.
 std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis, const TakenByNames& taken);
 
-/// Rest photos in which the body is as it was given show it moved all the same, smoothly and by
-/// more than renderers err by (renderers_err_by, and all that they leave over the noise), where
-/// more than kLeftByRenderers times the floor is left: no mesh and no law has a part in that, so
-/// what stays there is not explained by them. Said in words; "": it is not so.
+/// Rest photos in which the body is as it was given show it moved all the same, smoothly, by more
+/// than renderers err by (renderers_err_by, and all that they leave over the noise) and by a tenth
+/// of what is over the floor, where more than kLeftByRenderers times the floor is left: no mesh and
+/// no law moves a body without a load, so what stays is not theirs alone. Said in words; "": it is
+/// not so.
 std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis);
 
 /// The photos are explained but for what a finer mesh would change. That is told beside the

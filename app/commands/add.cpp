@@ -68,7 +68,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   options.note = [&session](const std::string& sentence) { session.say("{}", wrapped(sentence)); };
   Step step = next_step(bench, current, arguments.request, options);
   const auto folder = record(run, step);
-  const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
+  const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
   say_outcome(current, step, floor, arguments.request.take_back, session);
   spdlog::info("diagnosing the new step");
   diagnose_newest(run, bench, step, options.diagnosis);

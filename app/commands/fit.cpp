@@ -79,7 +79,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
   step.fitted = additive ? fit_additive(bench, form, start, options, session)
                          : value_or_fail(fit(bench.workspace, form, start, options));
   const auto folder = record(run, step);
-  const Floor floor = measure_floor(*bench.scene, step.fitted.evaluation);
+  const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
   session.document = run.timeline();
   warn_of_lost_ellipticity(folder, session);

@@ -135,6 +135,7 @@ void tell_floor(nlohmann::json& timeline, const Floor& floor) {
   const nlohmann::json told = timeline.value("floor", nlohmann::json::object());
   if (told.value("source", "") == floor.source && told.value("chi", HUGE_VAL) <= floor.chi) return;
   timeline["floor"] = to_json(floor);
+  timeline["floor"].erase("moved_at_rest");  // of one model, not of the photos
 }
 
 namespace {

@@ -52,7 +52,7 @@ std::pair<Blob, double> likest_blob(const TetMesh& mesh, const std::vector<Vecto
   field -= Q * (Q.transpose() * field);
   std::vector<Vector3d> places = centres;
   const Matrix3Xd elements = element_centres(mesh);
-  const Eigen::Index stride = std::max<Eigen::Index>(1, elements.cols() / kPlaces);
+  const Eigen::Index stride = (elements.cols() + kPlaces - 1) / kPlaces;
   for (Eigen::Index e = 0; e < elements.cols(); e += stride) places.emplace_back(elements.col(e));
   std::pair<Blob, double> likest{{centres.front(), radius}, 0.0};
   double most = 0.0;

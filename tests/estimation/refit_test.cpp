@@ -73,6 +73,7 @@ TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   Diagnosis diagnosis;
   diagnosis.effects = {score_};
   diagnosis.floor.by_camera = {{"cam0", 1.25}};
+  diagnosis.floor.moved_at_rest = {{"cam0", 0.5}};
   const Diagnosis again =
       diagnosis_from_json(to_json(diagnosis), base_.form.realise(base_.p), "diagnosis.json");
   ASSERT_TRUE(again.effects.at(0).other_form);
@@ -80,6 +81,7 @@ TEST_F(TwoForms, BothAreWrittenAndReadBack) {
   EXPECT_EQ(again.effects[0].other_form->values, score_.other_form->values);
   EXPECT_EQ(again.effects[0].base_step, score_.base_step);
   EXPECT_EQ(again.floor.by_camera, diagnosis.floor.by_camera);
+  EXPECT_EQ(again.floor.moved_at_rest, diagnosis.floor.moved_at_rest);
 }
 
 /// The first explains nearly all: who promises little does not run.

@@ -219,6 +219,9 @@ TEST(Verdict, WhatMovesABodyThatNothingMovesIsNotExplained) {
   diagnosis.floor.moved_at_rest = {{"left", 0.005}, {"right", 0.1}};
   EXPECT_THAT(moved_at_rest(fitted, diagnosis),
               testing::HasSubstr("'right' still show the body moved, by 0.032 px"));
+  diagnosis.floor.moved_at_rest["right"] = 0.03;
+  EXPECT_EQ(moved_at_rest(fitted, diagnosis), "") << "of the 0.4 that stay little";
+  diagnosis.floor.moved_at_rest["right"] = 0.1;
   photo.r2 = 120.0;
   EXPECT_EQ(moved_at_rest(fitted, diagnosis), "") << "as little as renderers leave";
   photo.r2 = 160.0, diagnosis.floor.chi = 1.06;
