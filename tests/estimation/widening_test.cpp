@@ -166,7 +166,7 @@ TEST(Widening, APlaceGetsItsEdgeBesideWhatElseIsMissing) {
                  "stiffness_field.z: 18, stiffness_field.radius: 8, "
                  "stiffness_field.thickness: 0.5}}\n"
                  "  - {effect: load_direction, variant: in pull, values: "
-                 "{load_direction.pull.angle1: 0.02, load_direction.pull.angle2: -0.03}}\n",
+                 "{load_direction.pull.angle1: 0.004, load_direction.pull.angle2: -0.004}}\n",
        .loads = kPressAndTwist});
   Workspace workspace(small.scene);
   ModelForm form = base_form(small.scene);
