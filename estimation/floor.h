@@ -24,9 +24,9 @@ struct Floor {
   std::string source = "noise model";  ///< or "rest photos"
   /// chi of each camera whose rest photos are enough to tell it.
   std::map<std::string, double> by_camera;
-  /// Fall of chi^2 that smooth motion of a camera's rest photos would bring, where the model leaves
-  /// the body as it was given: mesh, law and loads have no part in it. Cameras with no more of it
-  /// than chance gives in 0.1 % of cases are not here.
+  /// Fall of chi^2 by smooth motion of a camera's rest photos, where the model leaves the body as
+  /// it was given: mesh, law and loads have no part in it but through a camera that is fitted to
+  /// all photos. Cameras with no more of it than chance gives in 0.1 % of cases are not here.
   std::map<std::string, double> moved_at_rest;
 };
 

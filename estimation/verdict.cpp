@@ -181,10 +181,8 @@ std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
   if (most->second <= std::max({renderers_err_by(floor), rough, 0.1 * stays})) return "";
   return fmt::format(
       "; rest photos of camera '{}' still show the body moved, by {:.2g} px, where the model has "
-      "it "
-      "as it was given: no mesh and no material moves a body without a load. What does is not "
-      "named "
-      "(where the camera or the body stands, a lens, a weight)",
+      "it as it was given: no mesh and no material moves a body without a load. What does is not "
+      "named (where the camera or the body stands, a lens, a weight)",
       most->first, std::sqrt(most->second / floor.per_px2));
 }
 

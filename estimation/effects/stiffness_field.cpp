@@ -30,7 +30,7 @@ struct ScaledForces {
 
 /// The one Gaussian place, and its amplitude, that least squares over the volume put nearest to the
 /// sum of all bumps: anywhere in the body, for a place between bumps is shared out among them, and
-/// as wide as half a bump to one and a half. The rest is a constant and the same amplitude in all
+/// from half to 1.4 times as wide as they. The rest is a constant and the same amplitude in all
 /// bumps, which is none: they overlap where the body is thick, and hardly at its edges.
 std::pair<Blob, double> likest_blob(const TetMesh& mesh, const std::vector<Vector3d>& centres,
                                     double radius, const VectorXd& values) {

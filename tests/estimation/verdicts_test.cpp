@@ -13,13 +13,19 @@ namespace {
 
 using test::SmallScene;
 
-/// What is smaller than the mesh's own error is not named, but the user hears what would show it.
-TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
+/// One fitted photo of 100 pixels.
+Fitted with_one_photo(double r2) {
   Fitted fitted;
   fitted.evaluation.examples.resize(1);
   fitted.evaluation.examples[0].photos.resize(1);
-  fitted.evaluation.examples[0].photos[0].count = 100.0;
-  fitted.evaluation.examples[0].photos[0].r2 = 200.0;
+  PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
+  photo.count = 100.0, photo.r2 = r2;
+  return fitted;
+}
+
+/// What is smaller than the mesh's own error is not named, but the user hears what would show it.
+TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
+  Fitted fitted = with_one_photo(200.0);
   Diagnosis diagnosis;
   diagnosis.effects.resize(1);
   EffectScore& weight = diagnosis.effects[0];
@@ -72,11 +78,8 @@ TEST(Verdict, ANameThatTakesLessThanWhatStaysIsNotEnough) {
 
 /// A gloss is in the rest photos' floor too: a lamp that is named in its place may be part of it.
 TEST(Verdict, BrightnessMustTakeMoreThanStaysOverTheToldNoise) {
-  Fitted fitted;
-  fitted.evaluation.examples.resize(1);
-  fitted.evaluation.examples[0].photos.resize(1);
+  Fitted fitted = with_one_photo(410.0);
   PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
-  photo.count = 100.0, photo.r2 = 410.0;
   Diagnosis diagnosis;
   diagnosis.floor.chi = 2.0;
   IngredientSpec lamp;
@@ -118,11 +121,8 @@ TEST(Verdict, WhatAFinerMeshTakesNoNameHasTaken) {
 
 /// Two that leave as much are a choice where that is little, and no answer where it is much.
 TEST(Verdict, ATieIsAmbiguousOnlyAtTheFloor) {
-  Fitted fitted;
-  fitted.evaluation.examples.resize(1);
-  fitted.evaluation.examples[0].photos.resize(1);
+  Fitted fitted = with_one_photo(110.0);
   PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
-  photo.count = 100.0, photo.r2 = 110.0;
   const Diagnosis nothing_stands_out;
   const std::vector<std::string> tie = {"creep", "softening"};
   EXPECT_EQ(judge(fitted, nothing_stands_out, tie, nullptr), Verdict::ambiguous);
@@ -208,11 +208,8 @@ TEST(Floor, RestPhotosTellWhatMovesABodyThatNothingMoves) {
 }
 
 TEST(Verdict, WhatMovesABodyThatNothingMovesIsNotExplained) {
-  Fitted fitted;
-  fitted.evaluation.examples.resize(1);
-  fitted.evaluation.examples[0].photos.resize(1);
+  Fitted fitted = with_one_photo(140.0);
   PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
-  photo.count = 100.0, photo.r2 = 140.0;
   Diagnosis diagnosis;
   diagnosis.floor.per_px2 = 100.0;
   EXPECT_EQ(moved_at_rest(fitted, diagnosis), "");
