@@ -102,11 +102,11 @@ void check_data(const Scene& scene, const Look& seen) {
 /// which one camera sees by its square alone, would hold up all others' steps with its own. Where
 /// that fails they stay where they are.
 VectorXd settle_examples(Workspace& workspace, const ModelForm& form, VectorXd p,
-                         const FitOptions& options, const Scope& all, Stage stage) {
+                         const FitOptions& options, const FitScope& all, Stage stage) {
   const auto parameters = form.parameters();
   const auto& examples = form.scene->capture.examples;
   for (size_t e = 0; e < examples.size(); ++e) {
-    Scope scope{all.held_out, std::vector<bool>(parameters.size(), false), static_cast<int>(e)};
+    FitScope scope{all.held_out, std::vector<bool>(parameters.size(), false), static_cast<int>(e)};
     bool any = false;
     for (size_t i = 0; i < parameters.size(); ++i)
       any |= scope.moving[i] = all.moving[i] && parameters[i].example == scope.only;
@@ -129,7 +129,7 @@ VectorXd settle_examples(Workspace& workspace, const ModelForm& form, VectorXd p
 std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& start,
                                                        const FitOptions& options,
-                                                       const Scope& scope) {
+                                                       const FitScope& scope) {
   StageResult out{start, true};
   std::optional<Look> full_size;  // of p
   for (const Stage& stage : stages(workspace.scene(), options.coarse_to_fine)) {
@@ -160,7 +160,7 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
 std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
                                                          const ModelForm& form, const VectorXd& p,
                                                          const FitOptions& options) {
-  const Scope scope{true, of_held_out(form.scene->capture, form.parameters())};
+  const FitScope scope{true, of_held_out(form.scene->capture, form.parameters())};
   if (std::none_of(scope.moving.begin(), scope.moving.end(), [](bool own) { return own; }))
     return p;
   auto settled = run_stages(workspace, form, p, options, scope);
@@ -233,7 +233,7 @@ std::variant<Fitted, NumericalFailure> fit_from(Workspace& workspace, const Mode
                                                 const VectorXd& start, const FitOptions& options) {
   StageResult result{start, true};
   if (form.size() > 0) {
-    const Scope scope{false, std::vector<bool>(form.size(), true)};
+    const FitScope scope{false, std::vector<bool>(form.size(), true)};
     auto ran = run_stages(workspace, form, start, options, scope);
     if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
     result = std::get<StageResult>(std::move(ran));

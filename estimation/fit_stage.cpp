@@ -18,7 +18,7 @@ constexpr double kCoarse = 0.02;
 
 class ReducedCost final : public ceres::CostFunction {
  public:
-  ReducedCost(Workspace& workspace, const ModelForm& form, const Scope& scope,
+  ReducedCost(Workspace& workspace, const ModelForm& form, const FitScope& scope,
               const Scaling& scaling, EvaluationOptions options)
       : workspace_(workspace),
         form_(form),
@@ -71,7 +71,7 @@ class ReducedCost final : public ceres::CostFunction {
  private:
   Workspace& workspace_;
   const ModelForm& form_;
-  const Scope& scope_;
+  const FitScope& scope_;
   const Scaling& scaling_;
   EvaluationOptions options_;
   bool named_addends_ = false;  ///< values of an additive law: steps must stay convex
@@ -178,7 +178,7 @@ std::variant<double, NumericalFailure> weight_of_measured(Workspace& workspace,
 
 std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
                                           const VectorXd& p, const FitOptions& options,
-                                          const Scope& scope, int level) {
+                                          const FitScope& scope, int level) {
   EvaluationOptions pictures_alone = only_pictures(level, options);
   scope.choose(pictures_alone);
   auto seen = workspace.evaluate(form, p, pictures_alone);
@@ -192,8 +192,9 @@ std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm&
 
 std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
                                                       const VectorXd& start,
-                                                      const FitOptions& options, const Scope& scope,
-                                                      Stage stage, const Look& seen) {
+                                                      const FitOptions& options,
+                                                      const FitScope& scope, Stage stage,
+                                                      const Look& seen) {
   const int level = stage.level;
   EvaluationOptions evaluation;
   scope.choose(evaluation);

@@ -15,7 +15,7 @@
 namespace hookeye {
 
 /// Which examples move which parameters.
-struct Scope {
+struct FitScope {
   bool held_out = false;     ///< the held-out examples, not the fitted ones
   std::vector<bool> moving;  ///< by parameter
   int only = -1;             ///< this example alone, -1: all
@@ -60,7 +60,7 @@ struct Look {
 
 std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
                                           const VectorXd& p, const FitOptions& options,
-                                          const Scope& scope, int level);
+                                          const FitScope& scope, int level);
 
 struct StageResult {
   VectorXd p;
@@ -72,7 +72,8 @@ struct StageResult {
 
 std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
                                                       const VectorXd& start,
-                                                      const FitOptions& options, const Scope& scope,
-                                                      Stage stage, const Look& seen);
+                                                      const FitOptions& options,
+                                                      const FitScope& scope, Stage stage,
+                                                      const Look& seen);
 
 }  // namespace hookeye

@@ -1,0 +1,7 @@
+namespace hookeye {
+class Planted;
+class Planted final {};
+namespace detail {
+struct Kind {};
+}  // namespace detail
+}  // namespace hookeye

@@ -1,0 +1,7 @@
+namespace hookeye {
+class Planted;
+struct Kind {};
+namespace {
+struct Planted {};
+}  // namespace
+}  // namespace hookeye

@@ -1,0 +1,5 @@
+namespace hookeye {
+class Planted;
+enum class Kind { one };
+class Planted final {};
+}  // namespace hookeye

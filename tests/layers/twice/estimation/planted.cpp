@@ -1,0 +1,3 @@
+namespace hookeye {
+struct Planted {};
+}  // namespace hookeye
