@@ -28,15 +28,16 @@ std::vector<int> shells(const SurfaceMesh& surface) {
 }
 
 /// Distance along a ray to a triangle (Moeller and Trumbore 1997); infinite where it passes by.
+/// Near misses count: a ray through an edge must not slip between its triangles.
 double hit(const Vector3d& from, const Vector3d& along, const Vector3d& a, const Vector3d& b,
            const Vector3d& c) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kNone = std::numeric_limits<double>::infinity(), kNear = 1e-9;
   const Vector3d e1 = b - a, e2 = c - a, p = along.cross(e2);
   const double det = e1.dot(p);
   if (det == 0.0) return kNone;
   const Vector3d s = from - a, q = s.cross(e1);
   const double u = s.dot(p) / det, v = along.dot(q) / det, t = e2.dot(q) / det;
-  return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 ? t : kNone;
+  return u >= -kNear && v >= -kNear && u + v <= 1.0 + kNear && t > 0.0 ? t : kNone;
 }
 
 }  // namespace
@@ -54,7 +55,8 @@ std::vector<Vector3d> cavities(const SurfaceMesh& surface) {
   for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t) {
     const Vector3d a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     Shell& own = all[shell[surface.triangles[t][0]]];
-    own.six_volume += a.dot(b.cross(c));
+    const Vector3d origin = surface.X.col(shell[surface.triangles[t][0]]);
+    own.six_volume += (a - origin).dot((b - origin).cross(c - origin));
     const double area = (b - a).cross(c - a).norm();
     if (area > own.area) own.area = area, own.largest = t;
   }

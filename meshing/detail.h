@@ -48,6 +48,9 @@ RawVolume read_text_mesh(const std::filesystem::path& file);
 /// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): fill.cpp.
 int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
 
+/// Six times the enclosed volume, negative inside out; as exact far from the origin (inspect.cpp).
+double six_volume(const SurfaceMesh& surface);
+
 /// A point in every cavity: shells of the surface whose triangles are turned inwards, away from the
 /// material around them (cavities.cpp).
 std::vector<Vector3d> cavities(const SurfaceMesh& surface);

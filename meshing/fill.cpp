@@ -4,10 +4,12 @@
 #define TETLIBRARY  // as the library was built: faults are thrown, not exits
 #include <tetgen.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 
 #include "meshing/detail.h"
@@ -18,8 +20,10 @@ namespace hookeye {
 namespace detail {
 
 int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d) {
+  // Without the static filter, whose bound counts on a largest coordinate: beyond it the sign would
+  // be taken from rounding.
   static const bool ready = [] {
-    exactinit(0, 0, 0, 1.0, 1.0, 1.0);
+    exactinit(0, 0, 1, 1.0, 1.0, 1.0);
     return true;
   }();
   (void)ready;
@@ -32,12 +36,35 @@ int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const V
 
 namespace {
 
-void hand_over(const detail::Subdivided& skin, tetgenio& in) {
+/// Where TetGen sees the body: near the origin and of size one, so that neither its place nor its
+/// unit of length matters. Unturned, both ways are exact for vertices: the scale is a power of two,
+/// and a coordinate is moved only where it lies so far out that the difference needs no rounding.
+class UnitFrame {
+ public:
+  UnitFrame(const Matrix3Xd& X, const Eigen::Matrix3d& turn) : turn_(turn) {
+    const Vector3d low = X.rowwise().minCoeff(), high = X.rowwise().maxCoeff();
+    const Vector3d middle = 0.5 * (low + high), size = high - low;
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(middle[k]) >= size[k]) shift_[k] = middle[k];  // x / middle is in [1/2, 2]
+    scale_ = std::exp2(-std::ilogb(std::max(size.maxCoeff(), std::numeric_limits<double>::min())));
+  }
+  Vector3d in(const Vector3d& x) const { return turn_ * (scale_ * (x - shift_)); }
+  Vector3d out(const Vector3d& x) const { return turn_.transpose() * x / scale_ + shift_; }
+  double length_in(double length) const { return scale_ * length; }
+
+ private:
+  Eigen::Matrix3d turn_;
+  Vector3d shift_ = Vector3d::Zero();
+  double scale_ = 1.0;
+};
+
+void hand_over(const detail::Subdivided& skin, const UnitFrame& frame, tetgenio& in) {
   const SurfaceMesh& surface = skin.mesh;
   in.firstnumber = 0;
   in.numberofpoints = static_cast<int>(surface.X.cols());
   in.pointlist = new REAL[3 * surface.X.cols()];
-  std::copy(surface.X.data(), surface.X.data() + surface.X.size(), in.pointlist);
+  for (Eigen::Index i = 0; i < surface.X.cols(); ++i)
+    Eigen::Map<Vector3d>(in.pointlist + 3 * i) = frame.in(surface.X.col(i));
   in.numberoffacets = static_cast<int>(surface.triangles.size());
   in.facetlist = new tetgenio::facet[in.numberoffacets];
   in.facetmarkerlist = new int[in.numberoffacets];
@@ -141,11 +168,14 @@ bool run_tetgen(const std::string& switches, tetgenio& in, Filled& out) {
   return detail::ended_well(process) && whole;
 }
 
-TetMesh taken_back(const Filled& out) {
+/// TetGen's points begin with those of the skin, which keep their places to the last bit.
+TetMesh taken_back(const Filled& out, const UnitFrame& frame, const SurfaceMesh& skin) {
   TetMesh mesh;
   mesh.order = 1;
-  mesh.X = Eigen::Map<const Matrix3Xd>(out.points.data(), 3,
-                                       static_cast<Eigen::Index>(out.points.size() / 3));
+  mesh.X.resize(3, static_cast<Eigen::Index>(out.points.size() / 3));
+  for (Eigen::Index i = 0; i < mesh.X.cols(); ++i)
+    mesh.X.col(i) = i < skin.X.cols() ? Vector3d(skin.X.col(i))
+                                      : frame.out(Vector3d::Map(out.points.data() + 3 * i));
   mesh.elements = Eigen::Map<const Eigen::MatrixXi>(
       out.corners.data(), 4, static_cast<Eigen::Index>(out.corners.size() / 4));
   for (int e = 0; e < mesh.size(); ++e) {
@@ -186,14 +216,49 @@ std::map<std::array<int, 3>, int> markers(const Filled& out) {
   return marker_of;
 }
 
+struct Attempt {
+  Filled out;  ///< empty: TetGen gave up
+  UnitFrame frame;
+};
+
+/// TetGen gives up on about one body in a hundred because of the way in which points happen to be
+/// rounded; turned a little it takes the same one.
+Attempt filled(const detail::Subdivided& skin, const std::vector<Vector3d>& holes,
+               const FillOptions& options, double edge) {
+  const Eigen::Matrix3d unturned = Eigen::Matrix3d::Identity();
+  const auto turned = [](double angle, const Vector3d& about) -> Eigen::Matrix3d {
+    return Eigen::AngleAxisd(angle, about.normalized()).toRotationMatrix();
+  };
+  const std::array<std::pair<Eigen::Matrix3d, const char*>, 4> ways{{
+      {unturned, "pY"},
+      {turned(0.7, {1, 2, 3}), "pY"},
+      {turned(1.1, {-3, 1, 2}), "pY"},
+      {unturned, "p"},  // then with points on the boundary
+  }};
+  for (const auto& [turn, how] : ways) {
+    Attempt attempt{{}, UnitFrame(skin.mesh.X, turn)};
+    // Bounded by -a, volumes come out at about two thirds of the bound: hence 1.5 times the volume
+    // of the regular tetrahedron.
+    const double volume = 1.5 * std::pow(attempt.frame.length_in(edge), 3) / (6.0 * std::sqrt(2.0));
+    tetgenio in;
+    hand_over(skin, attempt.frame, in);
+    in.numberofholes = static_cast<int>(holes.size());
+    in.holelist = new REAL[3 * holes.size()];
+    for (size_t i = 0; i < holes.size(); ++i)
+      Eigen::Map<Vector3d>(in.holelist + 3 * i) = attempt.frame.in(holes[i]);
+    const std::string switches =
+        fmt::format("{}q{:.3f}/{:.3f}a{:.17g}Q", how, options.radius_edge_ratio,
+                    options.min_dihedral_deg, volume);
+    if (run_tetgen(switches, in, attempt.out)) return attempt;
+  }
+  return {{}, UnitFrame(skin.mesh.X, unturned)};
+}
+
 /// Beyond that a factorization takes tens of GB.
 constexpr double kMostTetrahedra = 1e6;
 
 void refuse_too_fine(const SurfaceMesh& surface, double edge, const Place& place) {
-  double enclosed = 0;
-  for (const auto& t : surface.triangles)
-    enclosed += surface.X.col(t[0]).dot(surface.X.col(t[1]).cross(surface.X.col(t[2]))) / 6.0;
-  const double count = enclosed / (edge * edge * edge / (6.0 * std::sqrt(2.0)));
+  const double count = detail::six_volume(surface) / (edge * edge * edge / std::sqrt(2.0));
   if (count <= kMostTetrahedra) return;
   throw InputError(
       place,
@@ -220,24 +285,10 @@ TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place
   // five to ten times more elements than asked for. So the surface is cut to the target edge here
   // and kept (-Y). Edges come out at 0.7 to 1.4 of the target, their mean near it.
   const detail::Subdivided skin = detail::subdivide(surface, 1.4 * edge);
-  // Bounded by -a, volumes come out at about two thirds of the bound: hence 1.5 times the volume of
-  // the regular tetrahedron.
-  const double volume = 1.5 * edge * edge * edge / (6.0 * std::sqrt(2.0));
-  const std::string quality_bounds = fmt::format(
-      "q{:.3f}/{:.3f}a{:.17g}Q", options.radius_edge_ratio, options.min_dihedral_deg, volume);
-  tetgenio in;
-  hand_over(skin, in);
-  const std::vector<Vector3d> holes = detail::cavities(surface);
-  in.numberofholes = static_cast<int>(holes.size());
-  in.holelist = new REAL[3 * holes.size()];
-  for (size_t i = 0; i < holes.size(); ++i) Eigen::Map<Vector3d>(in.holelist + 3 * i) = holes[i];
-  Filled out;
-  if (!run_tetgen("pY" + quality_bounds, in, out)) {
-    out = Filled();  // then with points on the boundary
-    if (!run_tetgen("p" + quality_bounds, in, out)) refuse(surface, "TetGen gave up", place);
-  }
+  const auto [out, frame] = filled(skin, detail::cavities(surface), options, edge);
+  if (out.corners.empty()) refuse(surface, "TetGen gave up", place);
 
-  TetMesh mesh = taken_back(out);
+  TetMesh mesh = taken_back(out, frame, skin.mesh);
   find_boundary(mesh);
   const auto marker_of = markers(out);
   mesh.boundary_parent.resize(static_cast<size_t>(mesh.boundary.cols()));

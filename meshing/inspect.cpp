@@ -10,6 +10,19 @@
 #include "meshing/triangle_tree.h"
 
 namespace hookeye {
+
+double detail::six_volume(const SurfaceMesh& s) {
+  if (s.X.cols() == 0) return 0.0;
+  const Vector3d origin = s.X.rowwise().mean();
+  double sum = 0.0;
+  for (const auto& t : s.triangles) {
+    const Vector3d a = s.X.col(t[0]) - origin, b = s.X.col(t[1]) - origin,
+                   c = s.X.col(t[2]) - origin;
+    sum += a.dot(b.cross(c));
+  }
+  return sum;
+}
+
 namespace {
 
 using detail::orientation;
@@ -21,17 +34,6 @@ bool has_no_area(const SurfaceMesh& s, const Triangle& t) {
                  v = Vector3d(s.X.col(t[2])) - a;
   const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
   return u.cross(v).norm() <= 1e-12 * longest;
-}
-
-double six_volume(const SurfaceMesh& s) {
-  const Vector3d origin = s.X.rowwise().mean();
-  double sum = 0.0;
-  for (const Triangle& t : s.triangles) {
-    const Vector3d a = s.X.col(t[0]) - origin, b = s.X.col(t[1]) - origin,
-                   c = s.X.col(t[2]) - origin;
-    sum += a.dot(b.cross(c));
-  }
-  return sum;
 }
 
 struct EdgeUse {
@@ -93,8 +95,10 @@ bool pierces(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vect
   return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
+/// Sign of the area of abc, exact.
+int turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+  const auto lifted = [](const Vector2d& x, double z) { return Vector3d(x.x(), x.y(), z); };
+  return orientation(lifted(a, 0.0), lifted(b, 0.0), lifted(c, 0.0), lifted(a, 1.0));
 }
 
 /// Two coplanar triangles share interior points: no edge of either separates them.
@@ -105,14 +109,13 @@ bool overlap_in_plane(const std::array<Vector3d, 3>& s, const std::array<Vector3
   const auto flat = [&](const Vector3d& x) {
     return Vector2d(x[(drop + 1) % 3], x[(drop + 2) % 3]);
   };
-  const double tiny = 1e-12 * normal.norm();
   const auto separated = [&](const std::array<Vector3d, 3>& one,
                              const std::array<Vector3d, 3>& two) {
+    const int inside = turn(flat(one[0]), flat(one[1]), flat(one[2]));
     for (int k = 0; k < 3; ++k) {
-      const Vector2d a = flat(one[k]), b = flat(one[(k + 1) % 3]), c = flat(one[(k + 2) % 3]);
-      const double inside = turn(a, b, c) > 0 ? 1.0 : -1.0;
+      const Vector2d a = flat(one[k]), b = flat(one[(k + 1) % 3]);
       bool all_out = true;
-      for (const Vector3d& x : two) all_out = all_out && inside * turn(a, b, flat(x)) <= tiny;
+      for (const Vector3d& x : two) all_out = all_out && inside * turn(a, b, flat(x)) <= 0;
       if (all_out) return true;
     }
     return false;
@@ -226,7 +229,7 @@ SurfaceFaults inspect(const SurfaceMesh& surface) {
   faults.inverted = find_inverted(surface, edges);
   faults.self_intersections = find_self_intersections(surface, left_out);
   faults.inside_out =
-      faults.open_edges.empty() && faults.inverted.empty() && six_volume(surface) < 0.0;
+      faults.open_edges.empty() && faults.inverted.empty() && detail::six_volume(surface) < 0.0;
   return faults;
 }
 

@@ -123,12 +123,13 @@ void check_orientation(const TetMesh& mesh, const RawVolume& raw, const Place& p
       points.push_back(Eigen::Vector4d::Unit(k));
     }
   }
-  const double tiny = 1e-14 * std::pow(detail::diagonal(mesh.X), 3);
   for (int e = 0; e < mesh.size(); ++e) {
     const Vector3d x0 = mesh.X.col(mesh.elements(0, e));
     Eigen::Matrix3d edges;
     for (int k = 0; k < 3; ++k) edges.col(k) = Vector3d(mesh.X.col(mesh.elements(k + 1, e))) - x0;
     const double corners = edges.determinant();
+    // Of its own size: a small element beside large ones has a volume, too.
+    const double tiny = 1e-12 * std::pow(edges.colwise().norm().maxCoeff(), 3);
     if (corners <= tiny) {
       throw InputError(place,
                        fmt::format("element {} at {} {}", name_of(raw, e), detail::where(x0),

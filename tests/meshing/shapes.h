@@ -58,6 +58,33 @@ inline SurfaceMesh box_surface(const Vector3d& size, int cuts) {
   return s;
 }
 
+/// Triangles from the first corner of a convex polygon to all others.
+inline std::vector<std::array<int, 3>> fan(int corners) {
+  std::vector<std::array<int, 3>> t;
+  for (int i = 1; i + 1 < corners; ++i) t.push_back({0, i, i + 1});
+  return t;
+}
+
+/// Prism over a polygon (counter-clockwise) whose inside is given as triangles; from z = 0 up.
+inline SurfaceMesh extruded(const std::vector<Vector2d>& polygon,
+                            const std::vector<std::array<int, 3>>& inside, double height) {
+  const int n = static_cast<int>(polygon.size());
+  SurfaceMesh s;
+  s.X.resize(3, 2 * n);
+  for (int i = 0; i < n; ++i) {
+    s.X.col(i) << polygon[static_cast<size_t>(i)], 0.0;
+    s.X.col(n + i) << polygon[static_cast<size_t>(i)], height;
+    const int next = (i + 1) % n;
+    s.triangles.push_back({i, next, n + next});
+    s.triangles.push_back({i, n + next, n + i});
+  }
+  for (const auto& [a, b, c] : inside) {
+    s.triangles.push_back({a, c, b});
+    s.triangles.push_back({n + a, n + b, n + c});
+  }
+  return s;
+}
+
 inline double area_of(const SurfaceMesh& s) {
   double sum = 0;
   for (const auto& t : s.triangles) {
