@@ -2,9 +2,12 @@
 
 #include <embree3/rtcore.h>
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
+
+#include "render/instruction_set.h"
 
 namespace hookeye {
 
@@ -20,7 +23,7 @@ namespace {
 /// whole process.
 RTCDevice device() {
   struct Holder {
-    RTCDevice handle = rtcNewDevice("set_affinity=0");
+    RTCDevice handle = rtcNewDevice(("set_affinity=0," + limited_instruction_set()).c_str());
     ~Holder() {
       if (handle) rtcReleaseDevice(handle);
     }
@@ -29,6 +32,47 @@ RTCDevice device() {
   if (!holder.handle) throw std::runtime_error("Embree gives no device on this processor");
   return holder.handle;
 }
+
+/// Beyond that Embree takes a number for a mistake.
+constexpr float kLargest = 1.8e18f;
+
+/// Where the processor's vectors are narrower than a packet, Embree takes it for a stream of rays:
+/// it does not look at `active`, and its assertions (Debian has them on) end the process at a lane
+/// that nobody has set. What leaves such lanes out everywhere is a range that is empty. They, and
+/// lanes that hold no ray, get one while this lives.
+class IdleLanes {
+ public:
+  IdleLanes(RayPacket& rays, const int* wanted) : rays_(rays) {
+    const auto within = [](float value) { return int{std::abs(value) < kLargest}; };  // not NaN
+    for (int i = 0; i < 16; ++i) {  // no branches: vectors
+      const int sound = within(rays.org_x[i]) & within(rays.org_y[i]) & within(rays.org_z[i]) &
+                        within(rays.dir_x[i]) & within(rays.dir_y[i]) & within(rays.dir_z[i]) &
+                        within(rays.tnear[i]) & int{rays.tnear[i] >= 0} & int{rays.tfar[i] >= 0};
+      active_[i] = -(int{wanted[i] != 0} & sound);
+      far_[i] = rays.tfar[i];
+    }
+    for (int i = 0; i < 16; ++i) {
+      if (active_[i]) continue;
+      rays.org_x[i] = rays.org_y[i] = rays.org_z[i] = 0;
+      rays.dir_x[i] = rays.dir_y[i] = 0;
+      rays.dir_z[i] = 1;
+      rays.tnear[i] = 1;
+      rays.tfar[i] = 0;
+    }
+  }
+  ~IdleLanes() {
+    for (int i = 0; i < 16; ++i)
+      if (!active_[i]) rays_.tfar[i] = far_[i];
+  }
+  IdleLanes(const IdleLanes&) = delete;
+  IdleLanes& operator=(const IdleLanes&) = delete;
+  const int* active() const { return active_; }
+
+ private:
+  RayPacket& rays_;
+  alignas(64) int active_[16];
+  float far_[16];
+};
 
 RTCIntersectContext context(bool coherent) {
   RTCIntersectContext c;
@@ -105,14 +149,16 @@ void RayScene::set_positions(const Eigen::Matrix3Xd& x) {
   rtcCommitScene(m.scene);
 }
 
-void RayScene::intersect(RayPacket& rays, const int* active, bool coherent) const {
+void RayScene::intersect(RayPacket& rays, const int* wanted, bool coherent) const {
   RTCIntersectContext c = context(coherent);
-  rtcIntersect16(active, impl_->scene, &c, reinterpret_cast<RTCRayHit16*>(&rays));
+  const IdleLanes idle(rays, wanted);
+  rtcIntersect16(idle.active(), impl_->scene, &c, reinterpret_cast<RTCRayHit16*>(&rays));
 }
 
-void RayScene::occluded(RayPacket& rays, const int* active, bool coherent) const {
+void RayScene::occluded(RayPacket& rays, const int* wanted, bool coherent) const {
   RTCIntersectContext c = context(coherent);
-  rtcOccluded16(active, impl_->scene, &c, reinterpret_cast<RTCRay16*>(&rays));
+  const IdleLanes idle(rays, wanted);
+  rtcOccluded16(idle.active(), impl_->scene, &c, reinterpret_cast<RTCRay16*>(&rays));
 }
 
 }  // namespace hookeye

@@ -21,7 +21,8 @@ struct alignas(64) RayPacket {
   unsigned geometry[16], instance[16];
 
   static constexpr unsigned kNoTriangle = ~0u;
-  /// All lanes empty with the given range; positions and directions are to be set by lane.
+  /// All lanes empty with the given range; positions and directions are to be set by lane. Lanes
+  /// that are not wanted afterwards need not be.
   void reset(float near, float far);
   void set(int lane, const Eigen::Vector3d& from, const Eigen::Vector3d& direction);
 };
@@ -35,10 +36,12 @@ class RayScene {
   RayScene& operator=(const RayScene&) = delete;
 
   void set_positions(const Eigen::Matrix3Xd& x);
-  /// First hits. Lanes with active[i] == 0 are left alone. `coherent`: rays of one eye or light.
-  void intersect(RayPacket& rays, const int* active, bool coherent = true) const;
+  /// First hits. Lanes with wanted[i] == 0, unset ones among them, and lanes that hold no finite
+  /// ray with 0 <= tnear and 0 <= tfar hit nothing; their origin, direction and tnear are
+  /// overwritten. `coherent`: rays of one eye or light.
+  void intersect(RayPacket& rays, const int* wanted, bool coherent = true) const;
   /// Any hit: tfar < 0 where blocked.
-  void occluded(RayPacket& rays, const int* active, bool coherent = true) const;
+  void occluded(RayPacket& rays, const int* wanted, bool coherent = true) const;
   /// Subtracted (in double) from positions before they become float; ray origins need the same.
   const Eigen::Vector3d& centre() const { return centre_; }
   /// Length below which two points of the surface are taken for one [length].
