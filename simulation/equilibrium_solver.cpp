@@ -3,21 +3,56 @@
 
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "simulation/newton.h"
 #include "simulation/rigid_modes.h"
 
 namespace hookeye {
 
+namespace {
+
+/// What all solvers of one mesh share: a capture has one solver a load case.
+struct OfMesh {
+  Assembly assembly;
+  std::shared_ptr<SymbolicFactors> symbolic = std::make_shared<SymbolicFactors>();
+  /// With its pattern built, so that nothing changes it any more.
+  explicit OfMesh(const TetMesh& mesh) : assembly(mesh) { assembly.pattern(); }
+};
+
+/// The one that another solver of this mesh has, else a new one. A mesh that its pointer does not
+/// own may be gone, and another at its place.
+std::shared_ptr<OfMesh> of_mesh(const std::shared_ptr<const TetMesh>& mesh) {
+  if (mesh.use_count() == 0) return std::make_shared<OfMesh>(*mesh);
+  static std::mutex mutex;
+  static std::vector<std::pair<std::weak_ptr<const TetMesh>, std::weak_ptr<OfMesh>>> known;
+  const std::lock_guard lock(mutex);
+  std::erase_if(known, [](const auto& one) { return one.first.expired() || one.second.expired(); });
+  for (const auto& [other, parts] : known)
+    if (other.lock() == mesh)
+      if (auto alive = parts.lock()) return alive;
+  auto fresh = std::make_shared<OfMesh>(*mesh);
+  known.emplace_back(mesh, fresh);
+  return fresh;
+}
+
+}  // namespace
+
 struct EquilibriumSolver::Impl {
   std::shared_ptr<const TetMesh> mesh;
-  Assembly assembly;
+  std::shared_ptr<OfMesh> shared;
+  Assembly& assembly;
   NewtonState state;
   VectorXd q;  ///< last solution; empty: none
   VectorXd rest;
 
   explicit Impl(std::shared_ptr<const TetMesh> m)
-      : mesh(std::move(m)), assembly(*mesh), rest(mesh->X.reshaped()) {}
+      : mesh(std::move(m)),
+        shared(of_mesh(mesh)),
+        assembly(shared->assembly),
+        rest(mesh->X.reshaped()) {
+    state.shared = shared->symbolic;
+  }
 
   VectorXd moved_along(const Problem& problem, const VectorXd& x) const;
   double out_of_balance(const Problem& problem, const VectorXd& x) const;

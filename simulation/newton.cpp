@@ -85,6 +85,17 @@ bool direction_by_factor(const Problem& problem, const NewtonGoal& goal, NewtonS
 
 }  // namespace
 
+std::shared_ptr<const SymbolicFactor> SymbolicFactors::of(const SparseMatrix& K,
+                                                          const std::vector<int>& free) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(known_, [](const auto& factor) { return factor.expired(); });
+  for (const auto& factor : known_)
+    if (const auto alive = factor.lock(); alive && alive->fits(K, free)) return alive;
+  auto fresh = std::make_shared<const SymbolicFactor>(K, free);
+  known_.push_back(fresh);
+  return fresh;
+}
+
 void NewtonState::set_tangent(const Problem& problem, const VectorXd& q, double s) {
   problem.tangent(q, s, false, K);
   W = problem.skew_tangent(q, s);
@@ -93,7 +104,7 @@ void NewtonState::set_tangent(const Problem& problem, const VectorXd& q, double 
 
 bool NewtonState::factorize(double shift) {
   if (!symbolic || !symbolic->fits(K, free)) {
-    symbolic = std::make_shared<SymbolicFactor>(K, free);
+    symbolic = shared ? shared->of(K, free) : std::make_shared<const SymbolicFactor>(K, free);
     factor.reset();
   }
   if (!factor || factor.use_count() > 1 || factor->symbolic() != symbolic)

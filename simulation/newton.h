@@ -1,6 +1,7 @@
 // Newton's method on the free unknowns at a fixed load fraction.
 #pragma once
 
+#include <mutex>
 #include <string>
 
 #include "simulation/problem.h"
@@ -8,9 +9,21 @@
 
 namespace hookeye {
 
+/// The symbolic factors that solvers of one mesh have: examples held alike share theirs.
+class SymbolicFactors {
+ public:
+  /// One that fits, else a new one. Any thread; a second one waits for the first.
+  std::shared_ptr<const SymbolicFactor> of(const SparseMatrix& K, const std::vector<int>& free);
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::weak_ptr<const SymbolicFactor>> known_;
+};
+
 /// Factors and counters that live across load steps and solves.
 struct NewtonState {
   std::vector<int> free;
+  std::shared_ptr<SymbolicFactors> shared;  ///< null: of this state alone
   std::shared_ptr<const SymbolicFactor> symbolic;
   std::shared_ptr<TangentFactor> factor;  ///< of some earlier tangent; null: none
   SparseMatrix K;                         ///< last tangent assembled, its symmetric part
