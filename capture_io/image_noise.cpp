@@ -12,13 +12,13 @@
 #include <cmath>
 
 #include "capture_io/calm_noise.h"
+#include "capture_io/distributions.h"
 
 namespace hookeye {
 namespace {
 
-constexpr int block = 8;                 ///< side of a block [px]
-constexpr double calm_share = 0.2;       ///< of the blocks of a band
-constexpr double calm_normal = -0.8416;  ///< normal quantile at calm_share
+constexpr int block = 8;            ///< side of a block [px]
+constexpr double calm_share = 0.2;  ///< of the blocks of a band
 /// Independent residuals in a block of 64: n^2 / sum rho_ij^2 over the filter's autocorrelation
 /// (70, -56, 28, -8, 1) / 70 along each axis gives 3.37^2.
 constexpr double independent = 11.3;
@@ -77,9 +77,7 @@ std::vector<Band> bands_of(std::vector<Block> blocks) {
   std::sort(blocks.begin(), blocks.end(),
             [](const Block& a, const Block& b) { return a.intensity < b.intensity; });
   const size_t count = std::clamp<size_t>(blocks.size() / 40, 1, 24);
-  // Wilson and Hilferty: quantile of chi^2/m.
-  const double spread = 2 / (9 * independent);
-  const double below = std::pow(1 - spread + calm_normal * std::sqrt(spread), 3);
+  const double below = chi2_quantile(calm_share, independent) / independent;
   std::vector<Band> bands;
   for (size_t i = 0; i < count; ++i) {
     const auto first = blocks.begin() + blocks.size() * i / count;

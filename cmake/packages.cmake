@@ -9,6 +9,7 @@ find_package(spdlog REQUIRED)
 find_package(TBB REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
+find_package(Boost REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOGeometry IOPLY)
 

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "capture_io/distributions.h"
 #include "estimation/gram.h"
 
 namespace hookeye {
@@ -187,10 +188,7 @@ double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd
   return best;
 }
 
-double chi2_point(double n) {
-  constexpr double kNormal999 = 3.0902;
-  return n * std::pow(1.0 - 2.0 / (9.0 * n) + kNormal999 * std::sqrt(2.0 / (9.0 * n)), 3);
-}
+double chi2_point(double n) { return chi2_quantile(0.999, n); }
 
 double log_mean_exp(const Eigen::VectorXd& values) {
   const double largest = values.maxCoeff();

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture_io/distributions.h"
+#include "estimation/fit.h"
+
 namespace hookeye {
 
 NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
@@ -179,10 +182,10 @@ struct Excess {
   bool of_photos = false;  ///< most of what is known of the parameter
   bool known() const { return clusters >= 2.0; }
   /// On the standard deviation. Few clusters know their scatter badly: Student's quantile for as
-  /// many as there are in effect.
+  /// many as there are in effect, over the normal one that intervals are made with.
   double factor() const {
     if (!known()) return 1.0;
-    const double student = 1.0 + 1.5 / (clusters - 1.0);  // of 1.96, to 2 % from five degrees on
+    const double student = student_quantile(0.975, clusters - 1.0) / kNormal95;
     return std::max(1.0, student * std::sqrt(variance));
   }
 };

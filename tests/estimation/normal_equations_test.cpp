@@ -235,9 +235,33 @@ TEST(ParameterCovariance, ScatterFromPhotoToPhotoWidensIt) {
     least = std::min(least, wide), most = std::max(most, wide), mean += wide / 50.0;
     EXPECT_GE(interval(0.1), white);
   }
-  EXPECT_NEAR(mean, 5.0 * (1.0 + 1.5 / 9.0), 0.8);
+  EXPECT_NEAR(mean, 5.0 * 2.262 / 1.960, 0.8);  // Student's quantile for nine degrees
   EXPECT_GT(least, 2.0);
   EXPECT_LT(most, 12.0);
+}
+
+/// By the table of Student's quantiles: two photos that count alike leave one degree of freedom.
+TEST(ParameterCovariance, FewPhotosWidenItByStudentsQuantile) {
+  const std::vector<std::pair<int, double>> table{{2, 12.706}, {3, 4.303}, {4, 3.182}, {10, 2.262}};
+  for (const auto& [count, student] : table) {
+    ExampleEvaluation example;
+    double scatter = 0.0;
+    for (int k = 0; k < count; ++k) {
+      PhotoEvaluation photo;
+      photo.photo = k;
+      photo.sums.JtJ = Eigen::MatrixXd::Constant(1, 1, 1e4);
+      photo.sums.Jtr = VectorXd::Constant(1, 500.0 * (k - 0.5 * (count - 1)));  // at the optimum
+      scatter += photo.sums.Jtr.squaredNorm() / 1e4 / (count - 1);
+      example.photos.push_back(photo);
+    }
+    Evaluation seen;
+    seen.columns = 1;
+    seen.examples.push_back(example);
+    const VectorXd p = VectorXd::Constant(1, 0.2);
+    const double deviation =
+        std::sqrt(parameter_covariance(seen, {level("a")}, p).determined(0, 0));
+    EXPECT_NEAR(1.959964 * deviation / std::sqrt(scatter / (count * 1e4)), student, 1e-3) << count;
+  }
 }
 
 /// A camera that was knocked before the last photo has taken on what moves together there: it is as
@@ -277,7 +301,7 @@ TEST(ParameterCovariance, WhatOnePhotoKnowsTakesTheScatterOfTheOthers) {
     wide += 100.0 * std::sqrt(known.determined(1, 1)) / kRepeats;
     EXPECT_NEAR(std::sqrt(known.determined(2, 2)), 0.01, 1e-6);
   }
-  EXPECT_NEAR(wide, kCommon * (1.0 + 1.5 / 9.0), 0.8);
+  EXPECT_NEAR(wide, kCommon * 2.262 / 1.960, 0.8);
   EXPECT_LT(missed, 0.05 * kRepeats + 3.0 * std::sqrt(0.05 * kRepeats));
 }
 
