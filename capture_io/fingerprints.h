@@ -8,11 +8,12 @@
 namespace hookeye {
 
 /// Fingerprints of a capture's yaml and of the files of its folder that its values name, by their
-/// names there. Of files above a MiB their size and samples from end to end. A yaml that cannot be
-/// read has none, and nor has what it would name.
+/// names there: XXH3 of all bytes. A yaml that cannot be read has none, and nor has what it would
+/// name.
 std::map<std::string, std::string> fingerprints(const std::filesystem::path& yaml);
 
-/// The first name whose fingerprints differ, or that one of them lacks; empty: none.
+/// The first name whose fingerprints differ, or that one of them lacks; empty: none. Fingerprints
+/// of another kind, those of older programs, are not compared.
 std::string changed_since(const std::map<std::string, std::string>& then,
                           const std::map<std::string, std::string>& now);
 

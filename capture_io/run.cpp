@@ -100,16 +100,19 @@ fs::path yaml_of(const fs::path& capture) {
   return fs::weakly_canonical(fs::is_directory(capture) ? capture / "capture.yaml" : capture);
 }
 
-/// Steps made from another text or other photos cannot stand beside those made from these.
-void check_unchanged(const json& timeline, const fs::path& folder) {
+/// Steps made from another text or other photos cannot stand beside those made from these. The
+/// timeline takes the fingerprints of what its next step is made from.
+void check_unchanged(json& timeline, const fs::path& folder) {
   using Marks = std::map<std::string, std::string>;
   const fs::path yaml = timeline["capture"].get<std::string>();
   const Marks now = fingerprints(yaml);
   const std::string changed = changed_since(timeline.value("fingerprints", now), now);
-  if (now.empty() || changed.empty() || timeline["steps"].empty()) return;
-  throw InputError({(yaml.parent_path() / changed).string()},
-                   fmt::format("this has changed since the run {} was made", folder.string()),
-                   "name a new folder for the changed capture's run, or undo the change");
+  if (now.empty()) return;
+  if (!changed.empty() && !timeline["steps"].empty())
+    throw InputError({(yaml.parent_path() / changed).string()},
+                     fmt::format("this has changed since the run {} was made", folder.string()),
+                     "name a new folder for the changed capture's run, or undo the change");
+  timeline["fingerprints"] = now;
 }
 
 void check_name(const std::string& name) {

@@ -15,6 +15,7 @@ find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOGeometry
 
 find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_library(XXHASH_LIBRARY xxhash REQUIRED)
 find_library(HWY_LIBRARY hwy REQUIRED)
 find_library(METIS_LIBRARY metis REQUIRED)
 find_library(TETGEN_LIBRARY NAMES tet tetgen REQUIRED)

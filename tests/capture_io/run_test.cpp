@@ -58,7 +58,7 @@ TEST(RunTest, AChangedCaptureNeedsANewRun) {
   EXPECT_EQ(complaint(again), "");
 }
 
-/// A photo that was swapped, one that is gone, and one so large that only samples of it are read.
+/// A photo that was swapped, one that is gone, and a bit in the middle of a large one.
 TEST(RunTest, AChangedPhotoNeedsANewRun) {
   const TemporaryFolder folder;
   std::string large(5 << 20, 'a');
@@ -74,14 +74,48 @@ TEST(RunTest, AChangedPhotoNeedsANewRun) {
   EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run"));
   write_text(folder / "a.png", "one");
   EXPECT_EQ(complaint(again), "");
-  for (const size_t at : {size_t{0}, large.size() - 1}) {
+  for (const size_t at : {size_t{0}, large.size() / 3, large.size() - 1}) {
     std::string other = large;
-    other[at] = 'b';
+    other[at] ^= 1;
     write_text(folder / "big.tif", other);
     EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run")) << at;
   }
   write_text(folder / "big.tif", large + "a");
   EXPECT_THAT(complaint(again), testing::HasSubstr("this has changed since the run"));
+}
+
+/// A run of an older program, which sampled files and had no prefix: it is gone on with, and from
+/// then on knows all bytes.
+TEST(RunTest, OlderFingerprintsAreNotComparedAndAreReplaced) {
+  const TemporaryFolder folder;
+  write_text(folder / "capture.yaml", "photos: [a.png]\n");
+  write_text(folder / "a.png", "one");
+  const auto open = [&] { return RunFolder::create(folder / "run", folder / "capture.yaml"); };
+  {
+    RunFolder run = open();
+    run.add_step("base", {}, write_model);
+    run.update([](nlohmann::json& timeline) {
+      for (auto& mark : timeline["fingerprints"]) mark = "cbf29ce484222325";
+    });
+  }
+  open().add_step("gravity", {}, write_model);
+  write_text(folder / "a.png", "two");
+  EXPECT_THAT(complaint(open), testing::HasSubstr("this has changed since the run"));
+}
+
+/// Killed before its first step, then the capture was mended.
+TEST(RunTest, AStepIsMarkedWithTheCaptureThatItIsMadeFrom) {
+  const TemporaryFolder folder;
+  write_text(folder / "capture.yaml", "mu: 1\n");
+  const auto open = [&] { return RunFolder::create(folder / "run", folder / "capture.yaml"); };
+  open().add_step("base", {}, write_model);
+  fs::remove_all(folder / "run/steps/00-base");
+  auto timeline = nlohmann::json::parse(read_text(folder / "run/run.json"));
+  timeline["steps"].clear();
+  write_text(folder / "run/run.json", timeline.dump());
+  write_text(folder / "capture.yaml", "mu: 2\n");
+  open().add_step("base", {}, write_model);
+  EXPECT_EQ(complaint(open), "");
 }
 
 TEST(RunTest, AFailedStepLeavesNothing) {
