@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
+#include "estimation/declaration.h"
 #include "estimation/effects_scene.h"
 
 namespace hookeye::test {
@@ -21,26 +23,12 @@ checked against it by the tests; parameters are those of a block of 20 x 16 x 40
 twisted, bent and pressed, in millimetres and newtons. At its null an effect leaves the model as it
 is. `null` is that value, `matters` the change that counts as large, in the same unit.
 
+`hookeye effects` lists the same on a terminal. `hookeye effects NAME` adds the forms that a refit may
+go on to, with their parameters. `--capture CAPTURE` tells what can be tested in your capture, in its units.
+
 Names stand in every command, file and test; `estimation/effects/README.md` tells how to add one.
 
 )";
-
-std::string group_title(EffectGroup group) {
-  switch (group) {
-    case EffectGroup::material:
-      return "Material";
-    case EffectGroup::loads:
-      return "Loads";
-    case EffectGroup::supports:
-      return "Supports";
-    case EffectGroup::history:
-      return "History";
-    case EffectGroup::measurement:
-      return "Measurement";
-    default:
-      return "Numerical";
-  }
-}
 
 std::string number(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "none"; }
 
@@ -53,16 +41,6 @@ std::string wrapped(const std::string& text, const std::string& indent = "") {
     line += (line.size() > indent.size() ? " " : "") + word;
   }
   return out + line + "\n";
-}
-
-VectorXd typical_values(const Ingredient& ingredient) {
-  const auto parameters = ingredient.parameters();
-  VectorXd values(parameters.size());
-  for (size_t i = 0; i < parameters.size(); ++i) {
-    values[i] = parameters[i].value + parameters[i].typical;
-    if (values[i] > parameters[i].high) values[i] = parameters[i].value - parameters[i].typical;
-  }
-  return values;
 }
 
 std::string ways(const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
@@ -103,9 +81,10 @@ std::string page() {
   std::string text = kHead;
   std::string group;
   for (const Effect* effect : catalogue()) {
-    if (group_title(effect->group()) != group) {
-      group = group_title(effect->group());
-      text += "## " + group + "\n\n";
+    if (group_name(effect->group()) != group) {
+      group = group_name(effect->group());
+      text +=
+          fmt::format("## {}{}\n\n", static_cast<char>(std::toupper(group[0])), group.substr(1));
     }
     text += section(*effect, model);
   }
