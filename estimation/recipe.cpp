@@ -1,11 +1,12 @@
 #include "estimation/recipe.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "capture_io/capture_reader.h"
 #include "capture_io/run.h"
-#include "capture_io/yaml_section.h"
 #include "estimation/effect.h"
 #include "simulation/energy_term.h"
 
@@ -41,31 +42,39 @@ void maybe(const YamlSection& section, const std::string& key, double& value, do
                      fmt::format("a number between {} and {}", low, high));
 }
 
-void read_texture(const YamlNode* node, Recipe& recipe) {
+/// A picture in the surface's texture coordinates, or the numbers of speckles.
+void read_texture(const YamlNode* node, const CaptureFolder& folder, Recipe& recipe) {
   TextureRecipe& texture = recipe.texture;
   const Vector3d& size = recipe.shape.size;
   texture.texel = size.maxCoeff() / 500.0;
   texture.speckle = size.maxCoeff() / 35.0;
   if (!node) return;
-  const YamlSection section(*node, "texture",
-                            {"texel", "speckle", "cover", "soft", "dark", "bright"});
+  const YamlSection section(
+      *node, "texture",
+      {"texel", "speckle", "cover", "soft", "dark", "bright", "image", "encoding"});
+  texture.place = node->place;
   maybe(section, "texel", texture.texel);
   maybe(section, "speckle", texture.speckle);
   maybe(section, "cover", texture.cover, 0.01, 0.95);
   maybe(section, "soft", texture.soft, 0.01, 1.0);
   maybe(section, "dark", texture.dark, 0.0, 1.0);
   maybe(section, "bright", texture.bright, 0.0, 1.0);
+  if (const YamlNode* image = section.find("image")) {
+    texture.image = {read_file_path(*image, "image of the texture", folder), image->place};
+    if (!recipe.shape.own() || recipe.shape.surface->uv.empty())
+      throw InputError(image->place, "the surface has no texture coordinates for a picture",
+                       "a `surface:` (obj) that has them, or leave `image` out: it is speckled");
+  }
+  if (const YamlNode* encoding = section.find("encoding"))
+    texture.encoding = read_encoding(*encoding, "encoding of the texture");
   if (texture.texel < size.maxCoeff() / 6000.0)
     throw InputError(node->place, "the texture would have more than 6000 texels along the body",
                      "a texel of about half the length that one pixel covers");
 }
 
-void read_body(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(
-      node, "body", {"shape", "size", "taper", "bumps", "facet", "mesh", "density", "texture"});
-  ShapeRecipe& shape = recipe.shape;
+void read_shape(const YamlSection& section, ShapeRecipe& shape) {
   const std::vector<std::string> kinds = {"block", "cylinder", "blob"};
-  const YamlNode& kind = section.need("shape", "shape: block, cylinder or blob");
+  const YamlNode& kind = section.need("shape", "shape: block, cylinder or blob; or surface: FILE");
   const std::string chosen = read_choice(kind, "shape of the body", kinds);
   shape.kind =
       static_cast<ShapeRecipe::Kind>(std::find(kinds.begin(), kinds.end(), chosen) - kinds.begin());
@@ -73,20 +82,66 @@ void read_body(const YamlNode& node, Recipe& recipe) {
   shape.size = read_vector3(size, "size of the body");
   if (!(shape.size.minCoeff() > 0.0))
     throw InputError(size.place, "a side of the body is not positive", "size: [30, 24, 60]");
+  maybe(section, "taper", shape.taper, 0.3, 3.0);
+  maybe(section, "bumps", shape.bumps, 0.0, 0.3);
+  maybe(section, "facet", shape.facet);
+  if (shape.facet < shape.size.maxCoeff() / 200.0)
+    throw InputError(section.place(), fmt::format("facet = {} is too small", shape.facet),
+                     "about the edge of the mesh");
+}
+
+void read_own_surface(const YamlSection& section, const CaptureFolder& folder, ShapeRecipe& shape) {
+  for (const char* key : {"shape", "size", "taper", "bumps", "facet"})
+    if (const YamlNode* node = section.find(key))
+      throw InputError(node->place,
+                       fmt::format("`{}` is of a drawn shape, and the body is a file's", key),
+                       fmt::format("leave `surface` or `{}` out", key));
+  const YamlNode& node = *section.find("surface");
+  shape.kind = ShapeRecipe::Kind::surface;
+  shape.file = {read_file_path(node, "surface of the body", folder, {".obj", ".ply", ".stl"}),
+                node.place};
+  try {
+    shape.surface = std::make_shared<const SurfaceMesh>(read_surface(shape.file.path));
+  } catch (const InputError& error) {
+    throw told_at(node.place, error);
+  }
+  const Matrix3Xd& X = shape.surface->X;
+  shape.size = X.rowwise().maxCoeff() - X.rowwise().minCoeff();
+}
+
+void read_body(const YamlNode& node, const CaptureFolder& folder, Recipe& recipe) {
+  const YamlSection section(
+      node, "body",
+      {"shape", "surface", "size", "taper", "bumps", "facet", "mesh", "density", "texture"});
   const YamlSection mesh(section.need("mesh", "mesh: {edge: 6} is what the capture tells"), "mesh",
                          {"edge", "order"});
   recipe.edge = read_positive(mesh.need("edge", "mesh: {edge: 6}"), "edge of mesh");
   maybe(mesh, "order", recipe.order, 1, 2);
   // coarser than the tetrahedra, so that both the truth and the fit divide it
-  shape.facet = 1.5 * recipe.edge;
-  maybe(section, "taper", shape.taper, 0.3, 3.0);
-  maybe(section, "bumps", shape.bumps, 0.0, 0.3);
-  maybe(section, "facet", shape.facet);
+  recipe.shape.facet = 1.5 * recipe.edge;
+  if (section.has("surface"))
+    read_own_surface(section, folder, recipe.shape);
+  else
+    read_shape(section, recipe.shape);
   maybe(section, "density", recipe.density);
-  if (shape.facet < shape.size.maxCoeff() / 200.0)
-    throw InputError(section.place(), fmt::format("facet = {} is too small", shape.facet),
-                     "about the edge of the mesh");
-  read_texture(section.find("texture"), recipe);
+  read_texture(section.find("texture"), folder, recipe);
+}
+
+/// Of a surface; a shape has its own.
+void read_patches(const YamlSection& top, const CaptureFolder& folder, Recipe& recipe) {
+  const YamlNode* node = top.find("regions");
+  if (!recipe.shape.own()) {
+    if (node)
+      throw InputError(node->place, "a drawn shape has regions of its own: base, grip, side",
+                       "leave `regions` out, or give the body as `surface: FILE`");
+    return;
+  }
+  const char* right = "regions: {base: {halfspace: {point: [0, 0, 0.1], normal: [0, 0, -1]}}, ...}";
+  recipe.regions = read_regions(top.need("regions", right), folder);
+  const auto names = names_of(recipe.regions);
+  if (std::find(names.begin(), names.end(), "base") == names.end())
+    throw InputError(top.find("regions")->place, "no region `base`: it is held in all examples",
+                     right);
 }
 
 std::map<std::string, MaterialSpec::Value> read_law_numbers(const YamlNode& node,
@@ -151,7 +206,10 @@ void read_cameras(const YamlNode& node, Recipe& recipe) {
   maybe(section, "azimuth", cameras.azimuth, read_number);
   maybe(section, "spread", cameras.spread, read_number);
   maybe(section, "elevation", cameras.elevation, -80.0, 80.0);
-  maybe(section, "look_at", cameras.look_at, -1.0, 2.0);
+  if (const YamlNode* at = section.find("look_at"); at && recipe.shape.own())
+    cameras.look_at_point = read_vector3(*at, "look_at of cameras");
+  else
+    maybe(section, "look_at", cameras.look_at, -1.0, 2.0);
 }
 
 void read_light(const YamlNode& node, Recipe& recipe) {
@@ -170,7 +228,7 @@ void read_light(const YamlNode& node, Recipe& recipe) {
                      "keep their sum at 1 or below, or pictures saturate");
 }
 
-ExampleRecipe read_example(const YamlNode::Entry& entry) {
+ExampleRecipe read_example(const YamlNode::Entry& entry, const std::vector<std::string>& regions) {
   const std::string what = fmt::format("example {}", entry.key);
   const YamlSection section(entry.value, what,
                             {"use", "region", "force", "move", "rotate", "axis"});
@@ -179,8 +237,8 @@ ExampleRecipe read_example(const YamlNode::Entry& entry) {
   example.place = entry.place;
   if (const YamlNode* use = section.find("use"))
     example.validate = read_choice(*use, "use", {"fit", "validate"}) == "validate";
-  if (const YamlNode* region = section.find("region"))
-    example.region = read_choice(*region, "region", {"grip", "side"});
+  const YamlNode* region = section.find("region");
+  if (region) example.region = read_choice(*region, "region", regions);
   if (const YamlNode* force = section.find("force")) example.force = read_vector3(*force, "force");
   if (const YamlNode* move = section.find("move")) example.move = read_vector3(*move, "move");
   if (const YamlNode* rotate = section.find("rotate"))
@@ -189,6 +247,10 @@ ExampleRecipe read_example(const YamlNode::Entry& entry) {
   if (example.force && example.moves())
     throw InputError(entry.place, fmt::format("{} has a force and a motion", what),
                      "a grip is either loaded (force) or moved (move, rotate)");
+  const bool named = std::find(regions.begin(), regions.end(), example.region) != regions.end();
+  if ((example.force || example.moves()) && !named)
+    throw InputError(entry.place, fmt::format("{} does not say on which region it acts", what),
+                     fmt::format("region: {}", fmt::join(regions, " or ")));
   return example;
 }
 
@@ -242,8 +304,13 @@ void read_truth(const YamlNode& node, Recipe& recipe) {
 }
 
 void read_examples(const YamlNode& node, Recipe& recipe) {
+  std::vector<std::string> regions = {"grip", "side"};
+  if (recipe.shape.own()) {
+    regions = names_of(recipe.regions);
+    std::erase(regions, "base");
+  }
   for (const YamlNode::Entry& entry : read_named(node, "examples"))
-    recipe.examples.push_back(read_example(entry));
+    recipe.examples.push_back(read_example(entry, regions));
   const bool fitted = std::any_of(recipe.examples.begin(), recipe.examples.end(),
                                   [](const ExampleRecipe& e) { return !e.validate; });
   if (!fitted)
@@ -256,7 +323,7 @@ Recipe parse_recipe(const std::string& text, const std::string& name) {
   const YamlNode root = parse_yaml(text, name);
   const YamlSection top(root, "a recipe",
                         {"hookeye_recipe", "title", "seed", "units", "body", "material", "cameras",
-                         "light", "examples", "hidden", "noise", "truth"});
+                         "light", "regions", "examples", "hidden", "noise", "truth"});
   const YamlNode& version = top.need("hookeye_recipe", "begin with `hookeye_recipe: 1`");
   if (read_integer(version, "hookeye_recipe") != 1)
     throw InputError(version.place, "a recipe of another version", "hookeye_recipe: 1");
@@ -277,7 +344,11 @@ Recipe parse_recipe(const std::string& text, const std::string& name) {
         read_choice(section.need("length", right), "the unit of length", {"mm", "cm", "m", "um"}),
         read_choice(section.need("force", right), "the unit of force", {"N", "mN", "kN", "uN"})};
   }
-  read_body(top.need("body", "body: {shape: block, size: [30, 24, 60], mesh: {edge: 6}}"), recipe);
+  const std::filesystem::path given = std::filesystem::path(name).parent_path();
+  const CaptureFolder folder{given, std::filesystem::weakly_canonical(given.empty() ? "." : given)};
+  read_body(top.need("body", "body: {shape: block, size: [30, 24, 60], mesh: {edge: 6}}"), folder,
+            recipe);
+  read_patches(top, folder, recipe);
   read_material(top.need("material", "material: {law: neo-hookean, true: {...}, fit: [mu]}"),
                 recipe);
   read_cameras(top.need("cameras", "cameras: {count: 2, focal: 1500}"), recipe);

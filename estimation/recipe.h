@@ -6,21 +6,29 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "capture_io/capture.h"
+#include "meshing/surface_mesh.h"
 
 namespace hookeye {
 
-/// A body that stands on z = 0: flat bottom and top, walls between them.
+/// A body that stands on z = 0: flat bottom and top, walls between them. Or a surface of a file,
+/// wherever it lies.
 struct ShapeRecipe {
-  enum class Kind { block, cylinder, blob } kind = Kind::block;
-  Vector3d size{30.0, 24.0, 60.0};  ///< [length]
-  double taper = 1.0;               ///< width at the top over width at the bottom
-  double bumps = 0.0;               ///< largest bump of the wall over the smaller width
-  double facet = 0.0;               ///< edge of the surface's triangles [length]
+  enum class Kind { block, cylinder, blob, surface } kind = Kind::block;
+  Vector3d size{30.0, 24.0, 60.0};  ///< [length]; of a surface its bounding box
+  NamedFile file;                   ///< the surface's
+  std::shared_ptr<const SurfaceMesh> surface;
+  bool own() const { return kind == Kind::surface; }
+  /// What the rig's distances and heights count in: the height, of a surface its longest side.
+  double height() const { return own() ? size.maxCoeff() : size.z(); }
+  double taper = 1.0;  ///< width at the top over width at the bottom
+  double bumps = 0.0;  ///< largest bump of the wall over the smaller width
+  double facet = 0.0;  ///< edge of the surface's triangles [length]
 };
 
 struct TextureRecipe {
@@ -29,6 +37,10 @@ struct TextureRecipe {
   double cover = 0.5;    ///< share of the surface that speckles cover
   double soft = 0.35;    ///< width of a speckle's edge over its mean diameter
   double dark = 0.2, bright = 0.8;
+  /// A picture in the surface's own texture coordinates instead of speckles; empty: none.
+  NamedFile image;
+  std::optional<Encoding> encoding;
+  Place place;
 };
 
 struct CameraRecipe {
@@ -37,7 +49,8 @@ struct CameraRecipe {
   double distance = 5.0;          ///< from the point looked at, in body heights
   double focal = 0.0;             ///< [px]
   double azimuth = 20.0, spread = 70.0, elevation = 15.0;  ///< [degrees]
-  double look_at = 0.5;  ///< height of the point looked at, in body heights
+  double look_at = 0.5;                   ///< height of the point looked at, in body heights
+  std::optional<Vector3d> look_at_point;  ///< of a surface; empty: the middle of its bounding box
   Place place;
 };
 
@@ -51,8 +64,8 @@ struct ExampleRecipe {
   Place place;
   bool validate = false;
   std::string region = "grip";
-  std::optional<Vector3d> force;  ///< in shear modulus times area of the grip
-  std::optional<Vector3d> move;   ///< rigid, in body heights
+  std::optional<Vector3d> force;  ///< in shear modulus times area of the grip; of a surface [force]
+  std::optional<Vector3d> move;   ///< rigid, in body heights; of a surface [length]
   double rotate_degrees = 0.0;    ///< rigid, about `axis` through the region's centroid
   Vector3d axis = Vector3d::UnitZ();
   bool moves() const { return move.has_value() || rotate_degrees != 0.0; }
@@ -79,7 +92,7 @@ struct NoiseRecipe {
   double full_well = 20000.0;  ///< electrons at full scale
   double read = 0.001;         ///< [full scale]
   int bits = 8;
-  double force = 0.003;   ///< sigma in shear modulus times area of the grip
+  double force = 0.003;  ///< sigma in shear modulus times area of the grip, of a surface the region
   double moment = 0.003;  ///< the same, times the body's height
 };
 
@@ -98,8 +111,9 @@ struct Recipe {
   unsigned seed = 1;
   Units units{"mm", "N"};
   ShapeRecipe shape;
-  double density = 0.0;  ///< told; 0: not
-  double edge = 0.0;     ///< told `mesh:` [length]
+  std::vector<RegionSpec> regions;  ///< of a surface, `base` among them; a shape has its own
+  double density = 0.0;             ///< told; 0: not
+  double edge = 0.0;                ///< told `mesh:` [length]
   int order = 2;
   TextureRecipe texture;
   MaterialRecipe material;

@@ -162,14 +162,16 @@ void write_photos(const Recipe& recipe, const detail::Truth& truth, detail::Pict
 
 std::vector<GripForce> measure(const Recipe& recipe, const SynthBody& body,
                                const detail::Truth& truth) {
-  const detail::SynthScale scale = detail::scale_of(recipe, body);
   std::vector<GripForce> measured;
   for (size_t e = 0; e < truth.states.size(); ++e) {
     Normal normal(detail::random_of(recipe.seed, "forces " + recipe.examples[e].name));
     GripForce grip = truth.states[e].grip;
-    for (int i = 0; i < 3; ++i) grip.force[i] += recipe.noise.force * scale.force * normal();
-    for (int i = 0; i < 3; ++i)
-      grip.moment[i] += recipe.noise.moment * scale.force * scale.height * normal();
+    if (recipe.examples[e].moves()) {
+      const double unit = detail::force_unit(recipe, body, recipe.examples[e]);
+      for (int i = 0; i < 3; ++i) grip.force[i] += recipe.noise.force * unit * normal();
+      for (int i = 0; i < 3; ++i)
+        grip.moment[i] += recipe.noise.moment * unit * recipe.shape.height() * normal();
+    }
     measured.push_back(grip);
   }
   return measured;
@@ -213,16 +215,12 @@ Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
 
 /// What a capture needs before any example is solved.
 SynthBody write_body(const Recipe& recipe, const fs::path& folder) {
-  SynthBody body = detail::make_shape(recipe);
-  if (body.side.empty())
-    for (const ExampleRecipe& example : recipe.examples)
-      if (example.region == "side")
-        throw InputError(example.place, "the surface is too coarse for the region `side`",
-                         "a smaller `facet` of the body");
+  SynthBody body = detail::make_synth_body(recipe);
   write_surface_obj(folder / "surface.obj", body.surface);
-  write_image(folder / "albedo.png", detail::make_texture(recipe, body));
-  write_triangles(folder / "grip_faces.txt", body.grip);
-  write_triangles(folder / "side_faces.txt", body.side);
+  write_image(folder / "albedo.png", body.albedo);
+  for (const RegionSpec& region : body.regions)
+    if (const auto* faces = std::get_if<RegionSpec::Faces>(&region.shape))
+      write_triangles(folder / detail::faces_file(region), faces->triangles);
   return body;
 }
 

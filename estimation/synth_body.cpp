@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/synth_atlas.h"
+#include "meshing/body.h"
+
 namespace hookeye::detail {
 
 using Eigen::Vector2d;
@@ -105,9 +108,58 @@ class Grid {
   std::vector<std::array<int, 2>> rim_;
 };
 
+/// Discs of random place and size with soft edges on a bright ground. 1 channel, linear.
+Image speckles(const Recipe& recipe, const Vector2d& atlas) {
+  const TextureRecipe& texture = recipe.texture;
+  auto random = random_of(recipe.seed, "texture");
+  const int width = std::max(8, static_cast<int>(std::lround(atlas.x() / texture.texel)));
+  const int height = std::max(8, static_cast<int>(std::lround(atlas.y() / texture.texel)));
+  Image image{width, height, 1, {}};
+  image.values.assign(image.pixels(), static_cast<float>(texture.bright));
+  const double mean_area = 0.25 * EIGEN_PI * texture.speckle * texture.speckle;
+  // discs overlap: a share 1 - exp(-n a/A) is covered by n of them
+  const int count = static_cast<int>(-std::log(1.0 - texture.cover) * atlas.prod() / mean_area);
+  const double soft = std::max(1.5, texture.soft * texture.speckle / texture.texel);  // [texels]
+  for (int s = 0; s < count; ++s) {
+    const double x = uniform(random, 0.0, width), y = uniform(random, 0.0, height);
+    const double radius = 0.5 * texture.speckle * uniform(random, 0.6, 1.35) / texture.texel;
+    const double grey = texture.dark + 0.35 * uniform(random, 0.0, 1.0) *
+                                           uniform(random, 0.0, 1.0) *
+                                           (texture.bright - texture.dark);
+    const int reach = static_cast<int>(std::ceil(radius + soft));
+    for (int v = std::max(0, static_cast<int>(y) - reach);
+         v <= std::min(height - 1, static_cast<int>(y) + reach); ++v)
+      for (int u = std::max(0, static_cast<int>(x) - reach);
+           u <= std::min(width - 1, static_cast<int>(x) + reach); ++u) {
+        const double inside = radius - std::hypot(u + 0.5 - x, v + 0.5 - y);
+        const double edge = std::clamp(0.5 + inside / soft, 0.0, 1.0);
+        const double share = edge * edge * (3.0 - 2.0 * edge);  // no kinks
+        float& value = image.at(u, v);
+        value = static_cast<float>((1.0 - share) * value + share * std::min<double>(value, grey));
+      }
+  }
+  return image;
+}
+
+/// Area and centroid of some triangles.
+SynthBody::Patch patch(const SurfaceMesh& surface, const std::vector<int>& triangles) {
+  double area = 0.0;
+  Vector3d moment = Vector3d::Zero();
+  for (const int t : triangles) {
+    const Vector3d a = surface.X.col(surface.triangles[t][0]);
+    const Vector3d b = surface.X.col(surface.triangles[t][1]);
+    const Vector3d c = surface.X.col(surface.triangles[t][2]);
+    const double part = 0.5 * (b - a).cross(c - a).norm();
+    area += part;
+    moment += part * (a + b + c) / 3.0;
+  }
+  return {area, area > 0.0 ? Vector3d(moment / area) : moment};
+}
+
 class Builder {
  public:
-  explicit Builder(const Recipe& recipe) : grid_(recipe), size_(recipe.shape.size) {
+  explicit Builder(const Recipe& recipe)
+      : recipe_(recipe), grid_(recipe), size_(recipe.shape.size) {
     for (int k = 0; k < grid_.rim(); ++k) {
       const auto [i, j] = grid_.rim_node(k);
       const auto [i2, j2] = grid_.rim_node(k + 1);
@@ -122,10 +174,12 @@ class Builder {
     cap(1.0);
     body_.surface.X.resize(3, static_cast<Eigen::Index>(points_.size()));
     for (size_t v = 0; v < points_.size(); ++v) body_.surface.X.col(v) = points_[v];
-    body_.atlas = {along_.back() + 2.0 * gap_ + size_.x(),
-                   std::max(size_.z(), 2.0 * size_.y() + gap_) + gap_};
+    atlas_ = {along_.back() + 2.0 * gap_ + size_.x(),
+              std::max(size_.z(), 2.0 * size_.y() + gap_) + gap_};
     for (auto& corners : body_.surface.uv)
-      for (Vector2d& uv : corners) uv = uv.cwiseQuotient(body_.atlas);
+      for (Vector2d& uv : corners) uv = uv.cwiseQuotient(atlas_);
+    body_.albedo = speckles(recipe_, atlas_);
+    regions();
     return std::move(body_);
   }
 
@@ -169,7 +223,7 @@ class Builder {
         const double height = centre.z() / size_.z();
         if (height > 0.45 && height < 0.7 && centre.x() > 0.35 * size_.x() &&
             std::abs(centre.y()) < 0.3 * size_.y())
-          for (int t = first; t < first + 2; ++t) body_.side.push_back(t);
+          for (int t = first; t < first + 2; ++t) side_.push_back(t);
       }
   }
 
@@ -196,54 +250,73 @@ class Builder {
           triangle(b, c, d);
         }
         if (height > 0.0)
-          for (int t = first; t < first + 2; ++t) body_.grip.push_back(t);
+          for (int t = first; t < first + 2; ++t) grip_.push_back(t);
       }
   }
 
+  void regions() {
+    const Matrix3Xd& X = body_.surface.X;
+    const double margin = 0.1 * size_.z(), thin = 0.0005 * size_.z();
+    const Vector3d low = X.rowwise().minCoeff(), high = X.rowwise().maxCoeff();
+    const auto add = [&](const char* name, auto shape) {
+      RegionSpec region;
+      region.name = name;
+      region.shape = std::move(shape);
+      body_.regions.push_back(std::move(region));
+    };
+    add("base", RegionSpec::Box{{low.x() - margin, low.y() - margin, -thin},
+                                {high.x() + margin, high.y() + margin, thin}});
+    for (const auto& [name, triangles] : {std::pair("grip", grip_), std::pair("side", side_)}) {
+      if (triangles.empty()) continue;
+      add(name, RegionSpec::Faces{.file = {}, .triangles = triangles, .told = {}, .told_at = {}});
+      body_.patches[name] = patch(body_.surface, triangles);
+    }
+    if (!side_.empty()) return;
+    for (const ExampleRecipe& example : recipe_.examples)
+      if (example.region == "side")
+        throw InputError(example.place, "the surface is too coarse for the region `side`",
+                         "a smaller `facet` of the body");
+  }
+
+  const Recipe& recipe_;
   Grid grid_;
   Vector3d size_;
   double gap_;
+  Vector2d atlas_;                     ///< its width and height [length]
+  std::vector<int> grip_, side_;       ///< triangles
   std::vector<double> along_ = {0.0};  ///< length of the rim up to each of its nodes
   std::map<std::array<double, 3>, int> index_;
   std::vector<Vector3d> points_;
   SynthBody body_;
 };
 
+/// The surface as it is told, with the regions on the mesh that the capture will make of it.
+SynthBody own_body(const Recipe& recipe) {
+  SynthBody out;
+  out.surface = *recipe.shape.surface;
+  Capture capture;
+  capture.body.surface = recipe.shape.file.path;
+  capture.body.surface_place = recipe.shape.file.place;
+  capture.body.edge = recipe.edge;
+  capture.body.order = 1;
+  capture.body.mesh_given = true;
+  capture.regions = out.regions = recipe.regions;
+  const Body body = make_body(capture);
+  for (const RegionSpec& region : recipe.regions) {
+    const Region& on_mesh = body.regions.at(region.name);
+    out.patches[region.name] = {on_mesh.area, on_mesh.centroid};
+  }
+  if (recipe.texture.image.path.empty())
+    out.albedo = speckled_atlas(recipe, out.surface);
+  else
+    out.albedo = luminance(read_image(recipe.texture.image, recipe.texture.encoding));
+  return out;
+}
+
 }  // namespace
 
-SynthBody make_shape(const Recipe& recipe) { return Builder(recipe).build(); }
-
-Image make_texture(const Recipe& recipe, const SynthBody& body) {
-  const TextureRecipe& texture = recipe.texture;
-  auto random = random_of(recipe.seed, "texture");
-  const int width = std::max(8, static_cast<int>(std::lround(body.atlas.x() / texture.texel)));
-  const int height = std::max(8, static_cast<int>(std::lround(body.atlas.y() / texture.texel)));
-  Image image{width, height, 1, {}};
-  image.values.assign(image.pixels(), static_cast<float>(texture.bright));
-  const double mean_area = 0.25 * EIGEN_PI * texture.speckle * texture.speckle;
-  // discs overlap: a share 1 - exp(-n a/A) is covered by n of them
-  const int count =
-      static_cast<int>(-std::log(1.0 - texture.cover) * body.atlas.prod() / mean_area);
-  const double soft = std::max(1.5, texture.soft * texture.speckle / texture.texel);  // [texels]
-  for (int s = 0; s < count; ++s) {
-    const double x = uniform(random, 0.0, width), y = uniform(random, 0.0, height);
-    const double radius = 0.5 * texture.speckle * uniform(random, 0.6, 1.35) / texture.texel;
-    const double grey = texture.dark + 0.35 * uniform(random, 0.0, 1.0) *
-                                           uniform(random, 0.0, 1.0) *
-                                           (texture.bright - texture.dark);
-    const int reach = static_cast<int>(std::ceil(radius + soft));
-    for (int v = std::max(0, static_cast<int>(y) - reach);
-         v <= std::min(height - 1, static_cast<int>(y) + reach); ++v)
-      for (int u = std::max(0, static_cast<int>(x) - reach);
-           u <= std::min(width - 1, static_cast<int>(x) + reach); ++u) {
-        const double inside = radius - std::hypot(u + 0.5 - x, v + 0.5 - y);
-        const double edge = std::clamp(0.5 + inside / soft, 0.0, 1.0);
-        const double share = edge * edge * (3.0 - 2.0 * edge);  // no kinks
-        float& value = image.at(u, v);
-        value = static_cast<float>((1.0 - share) * value + share * std::min<double>(value, grey));
-      }
-  }
-  return image;
+SynthBody make_synth_body(const Recipe& recipe) {
+  return recipe.shape.own() ? own_body(recipe) : Builder(recipe).build();
 }
 
 }  // namespace hookeye::detail

@@ -11,16 +11,21 @@
 
 namespace hookeye::detail {
 
-/// A closed surface with an atlas: the wall unrolled, the two caps beside it.
+/// A closed surface with texture coordinates and their picture, and its regions.
 struct SynthBody {
   SurfaceMesh surface;
-  std::vector<int> grip, side;  ///< triangles of the top and of a patch of the wall at +x
-  Eigen::Vector2d atlas;        ///< width and height of the atlas [length]
+  Image albedo;  ///< linear
+  std::vector<RegionSpec> regions;
+  struct Patch {
+    double area = 0.0;
+    Vector3d centre = Vector3d::Zero();
+  };
+  std::map<std::string, Patch> patches;  ///< of all regions but `base`
 };
-SynthBody make_shape(const Recipe& recipe);
-
-/// Speckles: discs of random place and size with soft edges on a bright ground. 1 channel, linear.
-Image make_texture(const Recipe& recipe, const SynthBody& body);
+/// A drawn shape: the wall unrolled, the two caps beside it, speckled; `base` its bottom, `grip`
+/// its top, `side` a patch of the wall at +x. Or the recipe's own surface, with its own regions.
+/// Throws InputError (place in the recipe) for what the surface cannot give.
+SynthBody make_synth_body(const Recipe& recipe);
 
 /// Random numbers of one purpose: the same for the same seed whatever else is drawn.
 std::mt19937_64 random_of(unsigned seed, const std::string& purpose);

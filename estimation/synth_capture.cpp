@@ -52,21 +52,6 @@ double shear_modulus(const MaterialSpec& material) {
   return make_law(material)->dP_dF(Eigen::Matrix3d::Identity())(3, 3);
 }
 
-/// Area and centroid of some triangles.
-std::pair<double, Vector3d> patch(const SurfaceMesh& surface, const std::vector<int>& triangles) {
-  double area = 0.0;
-  Vector3d moment = Vector3d::Zero();
-  for (const int t : triangles) {
-    const Vector3d a = surface.X.col(surface.triangles[t][0]);
-    const Vector3d b = surface.X.col(surface.triangles[t][1]);
-    const Vector3d c = surface.X.col(surface.triangles[t][2]);
-    const double part = 0.5 * (b - a).cross(c - a).norm();
-    area += part;
-    moment += part * (a + b + c) / 3.0;
-  }
-  return {area, area > 0.0 ? Vector3d(moment / area) : moment};
-}
-
 std::string camera_text(const Camera& camera) {
   std::string rows;
   for (int i = 0; i < 3; ++i) rows += (i ? ", " : "") + list(camera.R.row(i).transpose());
@@ -78,40 +63,51 @@ std::string camera_text(const Camera& camera) {
       list(camera.t));
 }
 
-std::string regions_text(const SynthBody& body, const SynthScale& scale) {
-  const Vector3d low = body.surface.X.rowwise().minCoeff(),
-                 high = body.surface.X.rowwise().maxCoeff();
-  const double margin = 0.1 * scale.height, thin = 0.0005 * scale.height;
-  return fmt::format(
-      "regions:\n  base:\n    box: [[{}, {}, {}], [{}, {}, {}]]\n"
-      "  grip: {{faces: grip_faces.txt}}\n  side: {{faces: side_faces.txt}}\n",
-      rounded(low.x() - margin), rounded(low.y() - margin), rounded(-thin),
-      rounded(high.x() + margin), rounded(high.y() + margin), rounded(thin));
+std::string region_text(const RegionSpec& region, bool own) {
+  const auto told = [own](const Vector3d& v) {
+    return list(own ? v : Vector3d(rounded(v.x()), rounded(v.y()), rounded(v.z())));
+  };
+  if (const auto* box = std::get_if<RegionSpec::Box>(&region.shape))
+    return fmt::format("box: [{}, {}]", told(box->low), told(box->high));
+  if (const auto* ball = std::get_if<RegionSpec::Sphere>(&region.shape))
+    return fmt::format("sphere: {{center: {}, radius: {}}}", told(ball->center), ball->radius);
+  if (const auto* half = std::get_if<RegionSpec::Halfspace>(&region.shape))
+    return fmt::format("halfspace: {{point: {}, normal: {}}}", told(half->point),
+                       told(half->normal));
+  return "faces: " + quoted(faces_file(region));
 }
 
-void write_supports(const ExampleRecipe& example, const SynthScale& scale, std::string& out) {
+std::string regions_text(const Recipe& recipe, const SynthBody& body) {
+  std::string out = "regions:\n";
+  for (const RegionSpec& region : body.regions)
+    fmt::format_to(std::back_inserter(out), "  {}: {{{}}}\n", quoted(region.name),
+                   region_text(region, recipe.shape.own()));
+  return out;
+}
+
+void write_supports(const ExampleRecipe& example, const SynthScale& scale, const Vector3d& centre,
+                    std::string& out) {
   auto to = std::back_inserter(out);
   fmt::format_to(to, "    supports:\n    - {{region: base, fix: [x, y, z]}}\n");
   if (!example.moves()) return;
-  const Vector3d move = rounded(scale.height * example.move.value_or(Vector3d::Zero()));
-  fmt::format_to(to, "    - region: {}\n      rigid: {{move: {}", example.region, list(move));
+  const Vector3d move = rounded(scale.length * example.move.value_or(Vector3d::Zero()));
+  fmt::format_to(to, "    - region: {}\n      rigid: {{move: {}", quoted(example.region),
+                 list(move));
   if (example.rotate_degrees != 0.0)
     fmt::format_to(to, ", rotate: {{axis: {}, degrees: {}, center: {}}}",
-                   list(rounded(example.axis)), example.rotate_degrees,
-                   list(rounded(scale.centre(example.region))));
+                   list(rounded(example.axis)), example.rotate_degrees, list(rounded(centre)));
   out += "}\n";
 }
 
-void write_measured(const Recipe& recipe, const ExampleRecipe& example, const SynthScale& scale,
-                    const GripForce& measured, std::string& out) {
+void write_measured(const ExampleRecipe& example, const Vector3d& centre, const GripForce& measured,
+                    double sigma, double moment_sigma, std::string& out) {
   if (!example.moves()) return;
+  const std::string region = quoted(example.region);
   fmt::format_to(std::back_inserter(out),
                  "    measured:\n    - {{force_on: {}, value: {}, sigma: {}}}\n"
                  "    - {{moment_on: {}, about: {}, value: {}, sigma: {}}}\n",
-                 example.region, list(rounded(measured.force)),
-                 rounded(recipe.noise.force * scale.force), example.region,
-                 list(rounded(scale.centre(example.region))), list(rounded(measured.moment)),
-                 rounded(recipe.noise.moment * scale.force * scale.height));
+                 region, list(rounded(measured.force)), rounded(sigma), region,
+                 list(rounded(centre)), list(rounded(measured.moment)), rounded(moment_sigma));
 }
 
 std::string examples_text(const Recipe& recipe, const SynthBody& body, const CaptureText& options) {
@@ -121,14 +117,20 @@ std::string examples_text(const Recipe& recipe, const SynthBody& body, const Cap
   auto to = std::back_inserter(out);
   for (size_t e = 0; e < recipe.examples.size(); ++e) {
     const ExampleRecipe& example = recipe.examples[e];
+    const auto patch = body.patches.find(example.region);
+    const Vector3d centre =
+        patch == body.patches.end() ? Vector3d(Vector3d::Zero()) : patch->second.centre;
     fmt::format_to(to, "  {}:\n", quoted(example.name));
     if (example.validate) out += "    use: validate\n";
-    write_supports(example, scale, out);
+    write_supports(example, scale, centre, out);
     if (example.force)
-      fmt::format_to(to, "    loads:\n    - {{region: {}, force: {}}}\n", example.region,
+      fmt::format_to(to, "    loads:\n    - {{region: {}, force: {}}}\n", quoted(example.region),
                      list(rounded(scale.force * *example.force)));
-    write_measured(recipe, example, scale,
-                   options.measured.empty() ? GripForce{} : options.measured[e], out);
+    if (example.moves())
+      write_measured(
+          example, centre, options.measured.empty() ? GripForce{} : options.measured[e],
+          recipe.noise.force * force_unit(recipe, body, example),
+          recipe.noise.moment * force_unit(recipe, body, example) * recipe.shape.height(), out);
     if (!options.photos) continue;
     out += "    photos:\n";
     for (const Camera& camera : cameras)
@@ -140,20 +142,27 @@ std::string examples_text(const Recipe& recipe, const SynthBody& body, const Cap
 
 }  // namespace
 
+std::string faces_file(const RegionSpec& region) { return region.name + "_faces.txt"; }
+
+double force_unit(const Recipe& recipe, const SynthBody& body, const ExampleRecipe& example) {
+  const std::string region = recipe.shape.own() ? example.region : "grip";
+  return shear_modulus(recipe.material.truth) * body.patches.at(region).area;
+}
+
 SynthScale scale_of(const Recipe& recipe, const SynthBody& body) {
-  SynthScale scale;
-  const auto [area, centre] = patch(body.surface, body.grip);
-  scale.force = shear_modulus(recipe.material.truth) * area;
-  scale.height = recipe.shape.size.z();
-  scale.grip = centre;
-  scale.side = patch(body.surface, body.side).second;
-  return scale;
+  if (recipe.shape.own()) return {};
+  return {shear_modulus(recipe.material.truth) * body.patches.at("grip").area,
+          recipe.shape.height()};
 }
 
 std::vector<Camera> make_cameras(const Recipe& recipe) {
   const CameraRecipe& rig = recipe.cameras;
-  const double height = recipe.shape.size.z(), radian = EIGEN_PI / 180.0;
-  const Vector3d at(0.0, 0.0, rig.look_at * height);
+  const double height = recipe.shape.height(), radian = EIGEN_PI / 180.0;
+  Vector3d at(0.0, 0.0, rig.look_at * height);
+  if (recipe.shape.own()) {
+    const Matrix3Xd& X = recipe.shape.surface->X;
+    at = rig.look_at_point.value_or(0.5 * (X.rowwise().minCoeff() + X.rowwise().maxCoeff()));
+  }
   std::vector<Camera> cameras;
   for (int i = 0; i < rig.count; ++i) {
     const double azimuth = (rig.azimuth + i * rig.spread) * radian;
@@ -217,7 +226,7 @@ std::string capture_text(const Recipe& recipe, const SynthBody& body, const Capt
                  "photos:\n  encoding: linear\n  background: black\n"
                  "  noise: {{full_well: {}, read: {}}}\n",
                  noise.full_well, noise.read);
-  out += regions_text(body, scale_of(recipe, body));
+  out += regions_text(recipe, body);
   return out + examples_text(recipe, body, options);
 }
 

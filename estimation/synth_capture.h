@@ -14,16 +14,20 @@ struct GripForce {
   Vector3d force = Vector3d::Zero(), moment = Vector3d::Zero();
 };
 
-/// What turns a recipe's units into the capture's.
+/// What turns a recipe's units into the capture's. Of a drawn shape its units are those of the
+/// body, of a surface already the capture's.
 struct SynthScale {
-  double force = 0.0;   ///< shear modulus times area of the grip [force]
-  double height = 0.0;  ///< of the body [length]
-  Vector3d grip = Vector3d::Zero(), side = Vector3d::Zero();  ///< centroids [length]
-  const Vector3d& centre(const std::string& region) const { return region == "side" ? side : grip; }
+  double force = 1.0;   ///< of `force`: shear modulus times area of the grip [force]
+  double length = 1.0;  ///< of `move`: height of the body [length]
 };
 SynthScale scale_of(const Recipe& recipe, const SynthBody& body);
+/// What the noise of measured forces counts in [force]: shear modulus times area of the grip, of a
+/// surface that of the example's region. That of moments: times the body's height.
+double force_unit(const Recipe& recipe, const SynthBody& body, const ExampleRecipe& example);
+/// "grip_faces.txt": the list of triangles of a region that is told by them.
+std::string faces_file(const RegionSpec& region);
 
-/// Cameras of the rig, looking at the axis of the body.
+/// Cameras of the rig, looking at the axis of the body; at a surface's middle.
 std::vector<Camera> make_cameras(const Recipe& recipe);
 
 /// Standard deviation of a pixel that the noise and the rounding to levels make together.

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "capture_io/yaml_section.h"
+#include "estimation/declaration.h"
 #include "estimation/lost_ellipticity.h"
 
 namespace hookeye::detail {
@@ -73,11 +74,15 @@ std::vector<std::shared_ptr<const Ingredient>> choices(const HiddenRecipe& hidde
     return all;
   }
   std::vector<std::string> known;
-  for (const auto& one : all)
-    if (known.size() < 8) known.push_back(fmt::format("\"{}\"", one->variant()));
+  int ways = 0;
+  for (const DeclaredForm& form : declare(effect, model).forms) {
+    ways += form.ways;
+    if (known.size() < 8) known.push_back(fmt::format("\"{}\"", form.variant));
+  }
   const std::string right =
-      fmt::format("write `variant:` with one of the {} here: {}{}", all.size(),
-                  fmt::join(known, ", "), known.size() < all.size() ? " ..." : "");
+      fmt::format("write `variant:` with one of the {} here: {}{}; see `hookeye effects {}`", ways,
+                  fmt::join(known, ", "), known.size() < static_cast<size_t>(ways) ? " ..." : "",
+                  hidden.effect);
   if (hidden.variant.empty())
     throw InputError(hidden.place,
                      fmt::format("`{}` can be present in several ways", hidden.effect), right);
@@ -195,6 +200,36 @@ std::variant<Addition, NumericalFailure> add_to(const Truth& truth, TruthSolver&
   return out;
 }
 
+/// Nothing moves below this.
+constexpr double kStill = 1e-9;  // px
+
+/// Whether an addition leaves the equilibria of all examples as they were, but for rounding.
+bool leaves_all_still(const Truth& truth, const Addition& addition) {
+  const Matrix3Xd& X = truth.model.scene->body->mesh.X;
+  const double rounding = 1e-9 * (X.colwise() - X.rowwise().mean()).cwiseAbs().maxCoeff();
+  for (size_t e = 0; e < truth.states.size(); ++e)
+    if ((addition.states[e].q - truth.states[e].q).cwiseAbs().maxCoeff() > rounding) return false;
+  return true;
+}
+
+/// Told values that grow with the size of the pictures' motion: those whose null alone undoes the
+/// effect say how strong it is, and the others where. Where there are none, all grow together.
+std::vector<char> strengths(const Truth& truth, TruthSolver& solver,
+                            const std::shared_ptr<const Ingredient>& ingredient,
+                            const VectorXd& null, const VectorXd& told) {
+  std::vector<char> grows(static_cast<size_t>(told.size()), 0);
+  for (Eigen::Index i = 0; i < told.size(); ++i) {
+    if (told[i] == null[i]) continue;
+    VectorXd without = told;
+    without[i] = null[i];
+    const auto added = add_to(truth, solver, ingredient, without);
+    const auto* addition = std::get_if<Addition>(&added);
+    grows[i] = addition && !(addition->rms_px > kStill);
+  }
+  if (std::find(grows.begin(), grows.end(), 1) == grows.end()) grows.assign(grows.size(), 1);
+  return grows;
+}
+
 /// Finds the factor on an effect's values that moves the pictures by as much as wanted.
 class Scaling {
  public:
@@ -224,9 +259,6 @@ class Scaling {
   Tried below_, above_;
 };
 
-/// Nothing moves below this.
-constexpr double kStill = 1e-9;  // px
-
 /// Scales the drawn or told values until the pictures move by what the recipe asks for, and adds
 /// them to the truth. False: drawn values of an effect on forces or material that move nothing, or
 /// less than `least` of what was asked for (a plane that no fitted example reaches, or with a
@@ -245,8 +277,13 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
   Scaling scaling;
   const Touches touches = ingredient->touches();
   const int most = hidden.rms_px ? 8 : 1;
+  std::vector<char> grows(parameters.size(), 1);
+  if (hidden.rms_px && !hidden.drawn && parameters.size() > 1)
+    grows = strengths(truth, solver, ingredient, null, told);
   for (int i = 0; i < most; ++i) {
-    const VectorXd values = null + factor * (told - null);
+    VectorXd values = told;
+    for (size_t k = 0; k < parameters.size(); ++k)
+      if (grows[k]) values[k] = null[k] + factor * (told[k] - null[k]);
     for (size_t k = 0; k < parameters.size(); ++k)
       check_range(parameters[k], values[k], hidden.values_place,
                   fmt::format("{} px cannot be reached", hidden.rms_px.value_or(0.0)));
@@ -262,6 +299,10 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
     const double wanted = hidden.rms_px.value_or(0.0);
     const bool still = !(addition.rms_px > kStill);  // light, exposure: there is nothing to scale
     if (still && hidden.drawn && (touches.loading || touches.energy)) return false;
+    if (still && (touches.loading || touches.energy) && leaves_all_still(truth, addition))
+      throw InputError(hidden.values_place,
+                       fmt::format("`{}` changes nothing with these values", hidden.effect),
+                       "values off their nulls, and a place within the body");
     const bool reached = hidden.rms_px && std::abs(addition.rms_px / wanted - 1.0) < 0.03;
     const bool at_bound = factor == largest && addition.rms_px < wanted;
     if (hidden.drawn && at_bound && addition.rms_px < least * wanted) return false;
