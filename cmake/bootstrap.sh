@@ -5,10 +5,11 @@ say() { printf '== %s\n' "$*"; }
 die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 
 # Package names of packages.txt: one a line, comments after '#'. Lines whose comment begins with
-# "ci:" are wanted by .ci/run alone (HOOKEYE_CI=1).
+# "check:" are wanted where tests are (HOOKEYE_TESTS=1), with "ci:" by .ci/run alone (HOOKEYE_CI=1).
 wanted_packages() {
-  local keep='{ if ($0 ~ /#[ ]*ci:/ && !ci) next; sub(/#.*/, ""); if (NF) print $1 }'
-  awk -v ci="${HOOKEYE_CI:-}" "$keep" packages.txt
+  local keep='{ if ($0 ~ /#[ ]*check:/ && !tests) next; if ($0 ~ /#[ ]*ci:/ && !ci) next
+    sub(/#.*/, ""); if (NF) print $1 }'
+  awk -v tests="${HOOKEYE_TESTS:-}" -v ci="${HOOKEYE_CI:-}" "$keep" packages.txt
 }
 
 missing_packages() {
@@ -53,7 +54,8 @@ build_jobs() {
   echo $((jobs < fit ? jobs : fit))
 }
 
-# build_hookeye [TARGET...]: sets `build_folder`. HOOKEYE_WERROR=1 makes warnings errors.
+# build_hookeye [TARGET...]: sets `build_folder`. HOOKEYE_WERROR=1 makes warnings errors, HOOKEYE_TESTS=1
+# configures the tests; without it those that are configured stay so.
 build_hookeye() {
   local werror=OFF wanted
   [ "${HOOKEYE_WERROR:-0}" = 0 ] || werror=ON
@@ -61,6 +63,11 @@ build_hookeye() {
   # Benchmarks are built where nobody waits for them, so that they do not rot.
   [ -z "${HOOKEYE_CI:-}" ] || wanted+=("HOOKEYE_BENCH:BOOL=ON")
   build_folder=build/release
+  if [ -n "${HOOKEYE_TESTS:-}" ]; then
+    wanted+=("HOOKEYE_TESTS:BOOL=ON")
+  elif ! grep -q '^HOOKEYE_TESTS:BOOL=ON$' "$build_folder/CMakeCache.txt" 2>/dev/null; then
+    wanted+=("HOOKEYE_TESTS:BOOL=OFF")
+  fi
   if [ ! -f "$build_folder/build.ninja" ] ||
     [ "$(grep -cxF -f <(printf '%s\n' "${wanted[@]}") "$build_folder/CMakeCache.txt")" -lt ${#wanted[@]} ]; then
     say "Configuring ($build_folder)"

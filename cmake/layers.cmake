@@ -24,17 +24,34 @@ function(hookeye_layer name)
   endif()
 endfunction()
 
-# Tests of a folder: one binary from tests/FOLDER/*_test.cpp.
+# hookeye_test_entries(TARGET PREFIX FILE...): ctest's PREFIX.NAME runs the tests of NAME_test.cpp in
+# one process. Those that tests/costs.txt tells begin first, the longest ahead.
+function(hookeye_test_entries target prefix)
+  target_link_libraries(${target} PRIVATE test_main)
+  foreach(source IN LISTS ARGN)
+    get_filename_component(file ${source} NAME)
+    if(NOT file MATCHES "^(.*)_test\\.cpp$")
+      continue()
+    endif()
+    set(entry ${prefix}.${CMAKE_MATCH_1})
+    add_test(NAME ${entry} COMMAND ${target} --file=${file})
+    set_tests_properties(${entry} PROPERTIES TIMEOUT 1800)
+    if(DEFINED cost_of_${entry})
+      set_tests_properties(${entry} PROPERTIES COST ${cost_of_${entry}})
+    endif()
+  endforeach()
+endfunction()
+
+# Tests of a folder: one binary from tests/FOLDER/*.cpp.
 function(hookeye_tests name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(NOT sources)
     return()
   endif()
   add_executable(test_${name} ${sources})
-  target_link_libraries(test_${name} PRIVATE ${name} ${ARGN} GTest::gmock GTest::gtest_main)
+  target_link_libraries(test_${name} PRIVATE ${name} ${ARGN})
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE HOOKEYE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   hookeye_flags(test_${name})
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. NO_PRETTY_VALUES DISCOVERY_TIMEOUT 120
-                       PROPERTIES TIMEOUT 900)
+  hookeye_test_entries(test_${name} ${name} ${sources})
 endfunction()

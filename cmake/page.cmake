@@ -13,17 +13,27 @@ function(hookeye_page target)
   set(source ${CMAKE_SOURCE_DIR}/studio)
   set(out ${CMAKE_BINARY_DIR}/page)
   file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${source}/src/*)
+  # Types are checked, and a browser is driven, where there are tests.
+  set(omit --omit=dev)
+  set(check_types "")
+  if(HOOKEYE_TESTS)
+    set(omit "")
+    set(check_types COMMAND ${NPM} run --silent types)
+  endif()
+  set(fetched ${CMAKE_BINARY_DIR}/page-packages${omit})
   add_custom_command(
-    OUTPUT ${source}/node_modules/.package-lock.json
-    COMMAND ${NPM} install --no-save --no-audit --no-fund --loglevel=error
+    OUTPUT ${fetched}
+    COMMAND ${NPM} install --no-save --no-audit --no-fund --loglevel=error ${omit}
+    COMMAND ${CMAKE_COMMAND} -E touch ${fetched}
     DEPENDS ${source}/package.json ${source}/package-lock.json
     WORKING_DIRECTORY ${source}
     COMMENT "Fetching what the page is built with")
   add_custom_command(
     OUTPUT ${out}/page.html
+    ${check_types}
     COMMAND ${NPM} run --silent build -- --outDir ${out} --logLevel warn
     DEPENDS ${inputs} ${source}/page.html ${source}/vite.config.ts ${source}/tsconfig.json
-            ${source}/node_modules/.package-lock.json
+            ${fetched}
     WORKING_DIRECTORY ${source}
     COMMENT "Building the page")
   # The object's symbols are named after the file as it is given: _binary_page_html_start.
