@@ -1,6 +1,8 @@
-// hookeye check: reads everything a capture names and says what it was understood to mean.
+// hookeye check: reads everything a capture names, says what it was understood to mean, and looks
+// whether the photos show it.
 #include <CLI/CLI.hpp>
 
+#include "app/commands/check_look.h"
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/commands/run_support.h"
@@ -293,8 +295,27 @@ Json describe_materials(const Capture& capture) {
   return materials;
 }
 
-void run_check(const std::string& path, Session& session) {
-  const Capture capture = read_capture(path);
+struct CheckOptions {
+  std::string capture, out;
+  bool quick = false;
+};
+
+/// Looks at the photos; draws where a folder is told.
+void look(const Scene& scene, const CheckOptions& options, Session& session) {
+  InspectionOptions how;
+  how.first_guess = !options.quick;
+  const Inspection seen = inspect(scene, how, options.out);
+  describe_inspection(scene, seen, session);
+  say_inspection(scene, seen, session);
+  if (!options.out.empty() && !seen.sheet.empty())
+    session.say("\n{}\n{}\n", seen.sheet.string(),
+                write_inspection_page(scene, seen, options.out).string());
+  if (!session.json) std::fflush(stdout);
+  for (const CaptureWarning& warning : seen.warnings) session.warn(warning.text());
+}
+
+void run_check(const CheckOptions& options, Session& session) {
+  const Capture capture = read_capture(options.capture);
   const Scope scope(capture.file.string());
   auto& d = session.document;
   d["hookeye"] = 1;
@@ -323,7 +344,7 @@ void run_check(const std::string& path, Session& session) {
     d["examples"].push_back(describe_example(*scene, model, e));
   say_capture(session, d, *scene);
   say_examples(session, d["examples"]);
-  if (!session.json) std::fflush(stdout);
+  look(*scene, options, session);
   warn_of_gaps(capture, d["examples"], session);
 }
 
@@ -332,10 +353,13 @@ void run_check(const std::string& path, Session& session) {
 void add_check(CLI::App& app, CommandBody& chosen) {
   CLI::App* command =
       app.add_subcommand("check", "Read everything and say what is wrong or cannot be identified");
-  const auto capture = std::make_shared<std::string>();
-  command->add_option("CAPTURE", *capture, "capture.yaml or its folder")->required();
-  command->callback([&chosen, capture] {
-    chosen = [capture](Session& session) { run_check(*capture, session); };
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("CAPTURE", options->capture, "capture.yaml or its folder")->required();
+  command->add_option("-o,--out", options->out,
+                      "Folder: the model drawn over every photo, contact_sheet.png, index.html");
+  command->add_flag("--quick", options->quick, "Without the coarse solve of every load case");
+  command->callback([&chosen, options] {
+    chosen = [options](Session& session) { run_check(*options, session); };
   });
 }
 

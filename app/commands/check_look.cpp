@@ -1,0 +1,159 @@
+#include "app/commands/check_look.h"
+
+#include <cmath>
+
+#include "capture_io/run.h"
+#include "estimation/page_data.h"
+
+namespace hookeye {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isnan(value) ? Json() : Json(value); }
+
+std::string text(double value, const char* format) {
+  return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
+}
+
+Json describe_look(const Scene& scene, const PhotoLook& look) {
+  const ExampleSpec& example = scene.capture.examples[static_cast<size_t>(look.example)];
+  return {{"example", example.name},
+          {"camera", example.photos[static_cast<size_t>(look.photo)].camera},
+          {"at_rest", look.at_rest},
+          {"overlap", number(look.overlap)},
+          {"correlation", number(look.correlation)},
+          {"texture_found", number(look.share)},
+          {"off_px", number(look.shift_px)},
+          {"no_overlap", look.no_overlap},
+          {"no_correlation", look.no_correlation},
+          {"picture", look.picture.string()}};
+}
+
+Json describe_guess(const Scene& scene, const GuessLook& guess) {
+  return {{"example", scene.capture.examples[static_cast<size_t>(guess.example)].name},
+          {"displacement", number(guess.displacement)},
+          {"to_first_order", number(guess.first_order)},
+          {"seen_px", number(guess.seen_px)},
+          {"expected_px", number(guess.expected_px)},
+          {"cosine", number(guess.cosine)},
+          {"failure", guess.failure}};
+}
+
+Json describe_warning(const CaptureWarning& warning) {
+  return {{"question", warning.question}, {"file", warning.place.file},
+          {"line", warning.place.line},   {"column", warning.place.column},
+          {"seen", warning.seen},         {"right", warning.right}};
+}
+
+std::string html(const std::string& raw) {
+  std::string out;
+  for (const char c : raw) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string figure(const std::filesystem::path& picture, const std::string& caption) {
+  const std::string bytes = read_text(picture);
+  return fmt::format(
+      "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption>"
+      "</figure>\n",
+      html(caption), base64(bytes.data(), bytes.size()));
+}
+
+std::string caption(const Scene& scene, const PhotoLook& look) {
+  const ExampleSpec& example = scene.capture.examples[static_cast<size_t>(look.example)];
+  return fmt::format("{}, {}: overlap {}, texture found {}, off by {} px", example.name,
+                     example.photos[static_cast<size_t>(look.photo)].camera,
+                     text(look.overlap, "{:.2f}"), text(100.0 * look.share, "{:.0f} %"),
+                     text(look.shift_px, "{:.1f}"));
+}
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>hookeye check</title><style>
+body { font: 16px/1.45 system-ui, sans-serif; margin: 1.5rem auto; max-width: 80rem; padding: 0 1rem;
+  color: #1c1c1c; background: #fafafa }
+h1 { font-size: 1.3rem } li { margin: .3rem 0 } code { font-size: .9em }
+.photos { display: grid; grid-template-columns: repeat(auto-fill, minmax(18rem, 1fr)); gap: 1rem }
+figure { margin: 0 } img { width: 100%; display: block } figcaption { font-size: .85rem }
+@media (prefers-color-scheme: dark) { body { color: #e8e8e8; background: #16181a } }
+</style></head><body>
+)";
+
+}  // namespace
+
+void describe_inspection(const Scene& scene, const Inspection& inspection, Session& session) {
+  Json& d = session.document["inspection"];
+  for (const char* key : {"cameras", "photos", "first_guess", "warnings"}) d[key] = Json::array();
+  for (const auto& look : inspection.cameras) d["cameras"].push_back(describe_look(scene, look));
+  for (const auto& look : inspection.photos) d["photos"].push_back(describe_look(scene, look));
+  for (const auto& guess : inspection.guesses)
+    d["first_guess"].push_back(describe_guess(scene, guess));
+  for (const auto& one : inspection.warnings) d["warnings"].push_back(describe_warning(one));
+  d["contact_sheet"] = inspection.sheet.string();
+}
+
+void say_inspection(const Scene& scene, const Inspection& inspection, const Session& session) {
+  std::vector<std::vector<std::string>> rows{
+      {"camera", "example", "overlap", "correlation", "texture found", "off by", "cannot be told"}};
+  for (const auto& look : inspection.cameras) {
+    const ExampleSpec& example = scene.capture.examples[static_cast<size_t>(look.example)];
+    std::string why = look.no_overlap;
+    if (!look.no_correlation.empty()) why += (why.empty() ? "" : "; ") + look.no_correlation;
+    rows.push_back({example.photos[static_cast<size_t>(look.photo)].camera, example.name,
+                    text(look.overlap, "{:.3f}"), text(look.correlation, "{:.3f}"),
+                    text(100.0 * look.share, "{:.0f} %"), text(look.shift_px, "{:.2f} px"),
+                    why.empty() ? "" : why});
+  }
+  if (rows.size() > 1) session.say("\nthe model over the photos\n{}", table(rows));
+  rows = {{"first guess", "moves [" + scene.capture.units.length + "]", "in photos", "expected",
+           "cosine", ""}};
+  for (const auto& guess : inspection.guesses)
+    rows.push_back(
+        {scene.capture.examples[static_cast<size_t>(guess.example)].name,
+         text(std::isnan(guess.displacement) ? guess.first_order : guess.displacement, "{:.3g}"),
+         text(guess.seen_px, "{:.3g} px"), text(guess.expected_px, "{:.3g} px"),
+         text(guess.cosine, "{:.3f}"),
+         guess.failure.empty() ? "" : "to first order: " + guess.failure});
+  if (rows.size() > 1) session.say("\n{}", table(rows));
+  if (!inspection.no_guess.empty())
+    session.say("{}", wrapped("no first guess: " + inspection.no_guess));
+}
+
+std::filesystem::path write_inspection_page(const Scene& scene, const Inspection& inspection,
+                                            const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::string page = kHead;
+  page += fmt::format("<h1>{}</h1>\n<p><code>{}</code></p>\n",
+                      html(scene.capture.title.empty() ? "check" : scene.capture.title),
+                      html(scene.capture.file.string()));
+  page +=
+      inspection.warnings.empty() ? "<p>Nothing of what is looked for was found.</p>\n" : "<ul>\n";
+  for (const auto& warning : inspection.warnings)
+    page += fmt::format("<li><code>{}</code>: {}. <em>{}</em></li>\n", html(warning.place.str()),
+                        html(warning.seen), html(warning.right));
+  if (!inspection.warnings.empty()) page += "</ul>\n";
+  page +=
+      "<p>Orange: the model's outline; blue: at rest; green: held; magenta: loaded or moved. "
+      "Loaded "
+      "states are a first guess at the values that the capture tells.</p>\n<div "
+      "class=\"photos\">\n";
+  for (const auto& look : inspection.photos) page += figure(look.picture, caption(scene, look));
+  page += "</div></body></html>\n";
+  const auto file = folder / "index.html";
+  write_text(file, page);
+  return file;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,52 @@
+#include "estimation/inspection/codes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace hookeye::inspection {
+
+namespace {
+
+void add(const Image& image, Codes* codes) {
+  const double most = std::exp2(codes->bits) - 1.0;
+  for (const float value : image.values) {
+    const int code = static_cast<int>(std::lround(std::clamp(double(value), 0.0, 1.0) * most));
+    codes->used[static_cast<size_t>(code)] = 1;
+  }
+}
+
+}  // namespace
+
+int Codes::used_between(int low, int high) const {
+  return static_cast<int>(std::count(used.begin() + low, used.begin() + high, 1));
+}
+
+std::vector<Codes> stored_codes(const Sight& sight) {
+  std::map<std::string, Codes> by_camera;
+  for (const PhotoIndex& photo : sight.photos()) {
+    const PhotoSpec& spec = sight.spec(photo);
+    const ImageHeader header = read_image_header(spec.file);
+    if (header.floating || spec.kind != PhotoSpec::Kind::image) continue;
+    Codes& codes = by_camera[spec.camera];
+    if (codes.photos == 0) {
+      codes.bits = header.bits <= 8 ? 8 : 16;
+      codes.first = photo;
+      codes.used.assign(size_t{1} << codes.bits, 0);
+    }
+    if (codes.bits != (header.bits <= 8 ? 8 : 16)) continue;
+    add(read_image(NamedFile{spec.file, spec.place}, Encoding{}), &codes);
+    ++codes.photos;
+  }
+  std::vector<Codes> out;
+  for (auto& [camera, codes] : by_camera) {
+    for (size_t code = 0; code < codes.used.size(); ++code)
+      if (codes.used[code])
+        codes.largest = int(code), codes.divisor = std::gcd(codes.divisor, int(code));
+    out.push_back(std::move(codes));
+  }
+  return out;
+}
+
+}  // namespace hookeye::inspection

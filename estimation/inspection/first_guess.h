@@ -1,0 +1,49 @@
+// What each load case would do to the body at the told values: one coarse solve each.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimation/inspection/options.h"
+#include "estimation/model.h"
+
+namespace hookeye::inspection {
+
+struct FirstGuess {
+  /// To first order from rest: displacement of the render surface's vertices, 3 x nv [length]. Zero
+  /// where nothing moves the body; empty where nothing holds it.
+  Matrix3Xd linear;
+  double strain = 0.0;  ///< largest of an element, to first order: |sym grad u|
+  /// In equilibrium: positions of the vertices; empty: none was found, or sought.
+  Matrix3Xd x;
+  std::string failure;  ///< why x is empty
+};
+
+/// The told model on a coarse mesh. Linear tetrahedra on the told mesh's corners, or on a coarser
+/// one where those are too many: they are too stiff by up to a half, which neither directions nor
+/// orders of magnitude mind.
+class CoarseModel {
+ public:
+  CoarseModel(const Scene& scene, const InspectionOptions& options);
+  ~CoarseModel();
+  const std::string& refused() const { return refused_; }  ///< why there is none; "": there is
+  const Scene& scene() const { return *scene_; }
+  const Model& model() const { return model_; }
+
+  /// First guesses of all examples; `in_equilibrium`: not to first order alone.
+  std::vector<FirstGuess> solve(bool in_equilibrium) const;
+  /// The first-order answer of example `e` to another loading than the told one.
+  FirstGuess answer(int e, const Loading& loading) const;
+
+ private:
+  FirstGuess to_first_order(int e, const Loading& loading) const;
+  void find_equilibrium(int e, FirstGuess* guess) const;
+
+  InspectionOptions options_;
+  std::string refused_;
+  std::shared_ptr<const Scene> scene_;
+  Model model_;
+};
+
+}  // namespace hookeye::inspection

@@ -1,0 +1,53 @@
+#include "estimation/inspection/load_case.h"
+
+namespace hookeye::inspection {
+
+namespace {
+
+/// Whether the camera sees the body where its reference photo shows it, as far as that can be told.
+bool trusted(Sight& sight, PhotoIndex reference) {
+  if (sight.doubted(sight.spec(reference).camera)) return false;
+  const Agreement& agreement = sight.agreement(reference);
+  return std::isnan(agreement.share) || agreement.share >= sight.options().found_share;
+}
+
+bool is_image(const Sight& sight, PhotoIndex photo) {
+  return sight.spec(photo).kind == PhotoSpec::Kind::image;
+}
+
+}  // namespace
+
+LoadCase load_case(Sight& sight, int e) {
+  LoadCase out;
+  out.example = e;
+  const FirstGuess* guess = sight.guess(e);
+  if (!guess || guess->linear.size() == 0) return out;
+  for (int k = 0; k < static_cast<int>(sight.example(e).photos.size()); ++k) {
+    const PhotoIndex photo{e, k};
+    const auto reference = sight.reference(sight.spec(photo).camera);
+    if (!reference || reference->first == e || !is_image(sight, photo) ||
+        !is_image(sight, *reference) || !trusted(sight, *reference))
+      continue;
+    Motion motion = seen_motion(sight, photo, *reference);
+    if (motion.seen.empty()) continue;
+    const FirstGuess& before = *sight.guess(reference->first);
+    if (before.linear.size() == 0) continue;
+    out.first_order.add(motion.seen,
+                        first_order_motion(sight, motion, guess->linear - before.linear));
+    if (guess->x.size() > 0 && before.x.size() > 0)
+      out.guessed.add(motion.seen, motion_between(sight, motion, before.x, guess->x));
+    out.motions.push_back(std::move(motion));
+  }
+  return out;
+}
+
+MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer) {
+  MotionSums sums;
+  for (const Motion& motion : seen.motions) {
+    const FirstGuess& before = *sight.guess(motion.reference.first);
+    sums.add(motion.seen, first_order_motion(sight, motion, answer - before.linear));
+  }
+  return sums;
+}
+
+}  // namespace hookeye::inspection

@@ -1,0 +1,68 @@
+// Every threshold of the inspection, with its unit and where it comes from. "Measured": over the
+// right captures of docs/check.md, whose figures stand there.
+#pragma once
+
+namespace hookeye {
+
+struct InspectionOptions {
+  /// One coarse solve a load case, for the drawn first guess and for what is said about loads.
+  /// Without it only what stands still is looked at.
+  bool first_guess = true;
+
+  // How photos are looked at.
+  int look_px = 640;          ///< longest side [px]: a speckle of 3 px in 2500 px still shows
+  int patch_px = 33;          ///< side of a patch [px of the small photo]: ten speckles of 10 px
+  int most_patches = 90;      ///< of one photo: their share is known to 5 %
+  double still_reach = 0.05;  ///< of the photo's diagonal: how far a patch of the body at rest is
+                              ///< sought. A knocked camera moves pictures by 1 %
+  double moved_reach = 0.13;  ///< the same for a loaded body: soft bodies move by a tenth
+  double alike = 0.6;         ///< least correlation of a found patch (right: 0.8 and more)
+  int least_patches = 8;      ///< fewer say nothing of the whole photo
+  double least_contrast = 0.08;  ///< deviation over mean within a patch: shading has less
+
+  // Whether a camera sees the body where its photo shows it.
+  double lost_share = 0.3;   ///< of patches found: below it camera and photo do not belong together
+  double found_share = 0.6;  ///< from it on they do
+  double lost_overlap = 0.7;  ///< of silhouettes, where there is no texture
+  double found_overlap = 0.85;
+
+  // Distortion told of straight photos.
+  double least_bent_px = 0.06;  ///< shift of the patches at rest [px]: right cameras have half
+  double straighter = 0.4;      ///< of that shift is left without the distortion
+
+  // Stored values.
+  int most_bits_of_16 = 12;        ///< a photo of 16 bits that uses no more is one of 12 or less
+  double times_better_read = 3.0;  ///< fall of the squares left by the other reading (measured: 31
+                                   ///< and more where the told one is wrong)
+
+  // Weight.
+  double least_density = 1.0;     ///< [kg/m^3]: aerogel
+  double most_density = 25000.0;  ///< [kg/m^3]: above all metals
+  double least_gravity = 0.5;     ///< [m/s^2]: a third of the moon's
+  double most_gravity = 100.0;    ///< [m/s^2]: ten times the earth's, as on a turntable
+
+  // Where a loaded body moves. Cosines are those of all found points together, seen against
+  // expected.
+  double least_motion_px = 1.0;  ///< rms: below it a camera's tremble has a direction, too
+  double sure_motion_px = 4.0;   ///< rms from which a direction that nothing explains is told
+  double astray_cosine = 0.5;    ///< below it the motion is another one (measured: 0.86 and more)
+  double lost_cosine = 0.2;      ///< the same where no slip explains it
+  double sure_cosine = 0.85;     ///< from it on a slip explains it
+  double flat_cosine = 0.94;     ///< facets within 20 degrees of a region's normal are its face
+  double most_of_face = 0.85;    ///< a region that covers more of its face was meant so
+  double left_of_motion = 0.06;  ///< of the squares of motions are astray (measured: 0.14 and 0.41
+                                 ///< with half of a region)
+  double left_by_grown = 0.25;   ///< of those are left if the region covers its face
+
+  // How far it moves, against the first guess to first order.
+  double most_times_by_force = 30.0;  ///< a modulus that is told ten times wrong is found by a fit;
+                                      ///< measured: 0.73 to 2.0
+  double most_times_moved = 3.0;  ///< a prescribed motion is known better; measured: 0.87 to 1.08
+
+  // The coarse solve.
+  int coarse_nodes = 4000;     ///< of linear tetrahedra: half a CPU-second a load case
+  int coarse_iterations = 60;  ///< Newton's, of all load steps: twice what a strain of 1 takes
+  double most_strain = 3.0;    ///< to first order: beyond it nobody photographs a soft body
+};
+
+}  // namespace hookeye

@@ -1,0 +1,148 @@
+#include "estimation/inspection/patches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace hookeye::inspection {
+
+namespace {
+
+using Eigen::Vector2d;
+
+cv::Mat wrap(const Image& image) {
+  return {image.height, image.width, CV_32F, const_cast<float*>(image.values.data())};
+}
+
+/// Centres of a grid, all with a patch that is covered nearly whole.
+std::vector<cv::Point> centres(const cv::Mat& body, const InspectionOptions& options) {
+  constexpr double kCovered = 0.9;
+  const int half = options.patch_px / 2;
+  cv::Mat sums;
+  cv::integral(body, sums, CV_32S);
+  const double area = cv::countNonZero(body);
+  const double step = std::max(8.0, std::sqrt(area / options.most_patches));
+  std::vector<cv::Point> out;
+  for (double y = half + step / 4; y < body.rows - half; y += step)
+    for (double x = half + step / 4; x < body.cols - half; x += step) {
+      const int x0 = int(x) - half, y0 = int(y) - half, side = 2 * half + 1;
+      const int covered = sums.at<int>(y0 + side, x0 + side) - sums.at<int>(y0, x0 + side) -
+                          sums.at<int>(y0 + side, x0) + sums.at<int>(y0, x0);
+      if (covered >= kCovered * side * side) out.emplace_back(int(x), int(y));
+    }
+  return out;
+}
+
+/// Top of the parabola through three neighbours, within half a step.
+double top(double left, double middle, double right) {
+  const double bend = left - 2.0 * middle + right;
+  return bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
+}
+
+/// False: nothing to see in the patch, or no room to seek it.
+bool seek(const cv::Mat& from, const cv::Mat& to, const cv::Point& at, int reach,
+          const InspectionOptions& options, Patch* patch) {
+  const int half = options.patch_px / 2;
+  const cv::Mat piece = from(cv::Rect(at.x - half, at.y - half, 2 * half + 1, 2 * half + 1));
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(piece, mean, deviation);
+  if (deviation[0] < options.least_contrast * std::abs(mean[0]) || deviation[0] < 1e-4)
+    return false;
+  const cv::Rect window = cv::Rect(at.x - half - reach, at.y - half - reach, 2 * (half + reach) + 1,
+                                   2 * (half + reach) + 1) &
+                          cv::Rect(0, 0, to.cols, to.rows);
+  if (window.width < piece.cols || window.height < piece.rows) return false;
+  cv::Mat likeness;
+  cv::matchTemplate(to(window), piece, likeness, cv::TM_CCOEFF_NORMED);
+  cv::patchNaNs(likeness, -1.0);
+  double best = 0.0;
+  cv::Point where;
+  cv::minMaxLoc(likeness, nullptr, &best, nullptr, &where);
+  patch->at = {double(at.x), double(at.y)};
+  patch->likeness = std::min(best, 1.0);
+  Vector2d place(where.x, where.y);
+  if (where.x > 0 && where.x + 1 < likeness.cols)
+    place.x() += top(likeness.at<float>(where.y, where.x - 1), best,
+                     likeness.at<float>(where.y, where.x + 1));
+  if (where.y > 0 && where.y + 1 < likeness.rows)
+    place.y() += top(likeness.at<float>(where.y - 1, where.x), best,
+                     likeness.at<float>(where.y + 1, where.x));
+  patch->shift = place + Vector2d(window.x + half, window.y + half) - patch->at;
+  return true;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Whether patch `i` moves as its alike neighbours do.
+bool moves_along(const std::vector<Patch>& patches, size_t i, double alike) {
+  constexpr size_t kNeighbours = 6, kLeast = 3;
+  constexpr double kRoom = 2.0, kStrain = 0.25;  // px, and px a px of distance
+  std::vector<std::pair<double, size_t>> near;
+  for (size_t j = 0; j < patches.size(); ++j)
+    if (j != i && patches[j].likeness >= alike)
+      near.emplace_back((patches[j].at - patches[i].at).norm(), j);
+  if (near.size() < kLeast) return false;
+  const size_t count = std::min(near.size(), kNeighbours);
+  std::partial_sort(near.begin(), near.begin() + long(count), near.end());
+  std::vector<double> x, y;
+  double distance = 0.0;
+  for (size_t k = 0; k < count; ++k) {
+    x.push_back(patches[near[k].second].shift.x()), y.push_back(patches[near[k].second].shift.y());
+    distance += near[k].first / double(count);
+  }
+  const Vector2d off = patches[i].shift - Vector2d(median(x), median(y));
+  return off.norm() <= kRoom + kStrain * distance;
+}
+
+}  // namespace
+
+int PatchField::found() const {
+  return static_cast<int>(
+      std::count_if(patches.begin(), patches.end(), [](const Patch& p) { return p.found; }));
+}
+
+double PatchField::share() const {
+  return patches.empty() ? 0.0 : double(found()) / double(patches.size());
+}
+
+double PatchField::shift_px() const {
+  double sum = 0.0;
+  for (const Patch& patch : patches)
+    if (patch.found) sum += patch.shift.squaredNorm();
+  return found() > 0 ? std::sqrt(sum / found()) : 0.0;
+}
+
+PatchField find_patches(const Image& from, const std::vector<unsigned char>& body, const Image& to,
+                        double reach, const InspectionOptions& options) {
+  PatchField field;
+  const cv::Mat mask(from.height, from.width, CV_8U, const_cast<unsigned char*>(body.data()));
+  for (const cv::Point& at : centres(mask, options)) {
+    Patch patch;
+    if (seek(wrap(from), wrap(to), at, static_cast<int>(std::ceil(reach)), options, &patch))
+      field.patches.push_back(patch);
+  }
+  for (size_t i = 0; i < field.patches.size(); ++i)
+    field.patches[i].found =
+        field.patches[i].likeness >= options.alike && moves_along(field.patches, i, options.alike);
+  return field;
+}
+
+double correlation(const Image& one, const Image& other,
+                   const std::vector<unsigned char>& counted) {
+  constexpr double kLeast = 200.0;  // pixels
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (size_t i = 0; i < counted.size(); ++i) {
+    if (!counted[i]) continue;
+    const double p = one.values[i], q = other.values[i];
+    n += 1, a += p, b += q, aa += p * p, bb += q * q, ab += p * q;
+  }
+  if (n < kLeast) return NAN;
+  const double of_a = aa - a * a / n, of_b = bb - b * b / n;
+  return of_a > 0 && of_b > 0 ? (ab - a * b / n) / std::sqrt(of_a * of_b) : NAN;
+}
+
+}  // namespace hookeye::inspection

@@ -1,0 +1,144 @@
+// Do forces and moduli go together: does the body move as far as the first guess says, to an order
+// of magnitude; and do prescribed motions?
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/inspection/load_case.h"
+#include "estimation/inspection/question.h"
+
+namespace hookeye::inspection {
+
+namespace {
+
+/// How many times the first guess is seen; 0: cannot be told.
+struct Times {
+  int example;
+  double times;
+  double seen_px, expected_px;
+};
+
+bool by_forces(const Sight& sight, int e) {
+  const auto& supports = sight.example(e).supports;
+  return std::all_of(supports.begin(), supports.end(), [](const SupportSpec& support) {
+    if (support.kind == SupportSpec::Kind::rigid)
+      return support.rigid.degrees == 0.0 && support.rigid.move.isZero(0.0);
+    return support.kind == SupportSpec::Kind::components &&
+           std::all_of(support.displacement.begin(), support.displacement.end(),
+                       [](const auto& u) { return u.value_or(0.0) == 0.0; });
+  });
+}
+
+Times times_of(Sight& sight, int e) {
+  const InspectionOptions& options = sight.options();
+  const MotionSums& sums = sight.load_case(e).first_order;
+  Times out{e, 0.0, sums.seen_px(), sums.expected_px()};
+  if (sight.load_doubted(e) || sums.count == 0.0 || out.expected_px == 0.0) return out;
+  if (out.seen_px >= options.least_motion_px && sums.cosine() >= options.astray_cosine)
+    out.times = out.seen_px / out.expected_px;
+  // What does not move has no direction, but is told where much was expected.
+  if (out.seen_px < options.least_motion_px && out.expected_px > options.sure_motion_px)
+    out.times = std::max(out.seen_px, 0.1) / out.expected_px;
+  return out;
+}
+
+/// A unit that is this many times another, "" where none is near.
+std::string unit_slip(double times) {
+  const std::pair<double, const char*> slips[] = {{1000.0, "kN for N"},
+                                                  {0.001, "mN for N"},
+                                                  {9.81, "kilograms for N"},
+                                                  {0.0102, "grams for N"}};
+  for (const auto& [of, name] : slips)
+    if (std::abs(std::log(times / of)) < std::log(3.2)) return fmt::format(" ({}?)", name);
+  return {};
+}
+
+std::string more_or_less(double times) {
+  return times > 1.0 ? fmt::format("{:.3g} times as far as", times)
+                     : fmt::format("1/{:.3g} as far as", 1.0 / times);
+}
+
+/// Where the loads of an example are told.
+Place loads_of(const Sight& sight, int e) {
+  const ExampleSpec& example = sight.example(e);
+  if (!example.loads.empty()) return example.loads.front().place;
+  for (const SupportSpec& support : example.supports)
+    if (support.kind == SupportSpec::Kind::rigid) return support.place;
+  return example.place;
+}
+
+void say_of_forces(const Sight& sight, const std::vector<Times>& off, size_t asked,
+                   Warnings& warnings) {
+  double low = 1e300, high = 0.0;
+  for (const Times& one : off) low = std::min(low, one.times), high = std::max(high, one.times);
+  const bool alike = off.size() == asked && high < 10.0 * low && off.size() > 1;
+  for (const Times& one : off) {
+    const std::string seen = fmt::format(
+        "the photos of example `{}` show the body move by {:.3g} px, {} the first guess ({:.2g} "
+        "px)",
+        sight.example(one.example).name, one.seen_px, more_or_less(one.times), one.expected_px);
+    if (alike) {
+      warnings.say(sight.scene().capture.materials.front().place,
+                   fmt::format("{}, and it is much the same with all forces", seen),
+                   fmt::format("moduli {} by about that factor, or all forces in another unit{}: "
+                               "stresses are in {}",
+                               one.times > 1.0 ? "lower" : "higher", unit_slip(one.times),
+                               sight.scene().capture.units.stress()));
+      return;
+    }
+    warnings.say(loads_of(sight, one.example), seen,
+                 fmt::format("another unit of the force{}; forces are in {}", unit_slip(one.times),
+                             sight.scene().capture.units.force));
+  }
+}
+
+/// Where no photo tells, the strain to first order does.
+void ask_of_strains(Sight& sight, Warnings& warnings) {
+  const InspectionOptions& options = sight.options();
+  for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
+    const int e = static_cast<int>(i);
+    const FirstGuess& guess = *sight.guess(e);
+    if (sight.load_case(e).first_order.count > 0.0 || guess.strain <= options.most_strain) continue;
+    warnings.say(
+        loads_of(sight, e),
+        fmt::format("example `{}` would strain the body by {:.3g} to first order",
+                    sight.example(e).name, guess.strain),
+        fmt::format("loads, moduli and weight in one system of units: forces in {}, stresses "
+                    "in {}",
+                    sight.scene().capture.units.force, sight.scene().capture.units.stress()));
+  }
+}
+
+}  // namespace
+
+void ask_magnitudes(Sight& sight, Warnings& warnings) {
+  if (!sight.coarse()) return;
+  const InspectionOptions& options = sight.options();
+  std::vector<Times> off;
+  size_t asked = 0;
+  for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
+    const Times one = times_of(sight, static_cast<int>(i));
+    if (one.times == 0.0) continue;
+    const bool forces = by_forces(sight, one.example);
+    const double most = forces ? options.most_times_by_force : options.most_times_moved;
+    asked += forces;
+    if (std::abs(std::log(one.times)) <= std::log(most)) continue;
+    sight.doubt_load(one.example);
+    if (forces)
+      off.push_back(one);
+    else
+      warnings.say(
+          loads_of(sight, one.example),
+          fmt::format("the photos of example `{}` show the body move by {:.3g} px, {} the told "
+                      "motion would ({:.3g} px)",
+                      sight.example(one.example).name, one.seen_px, more_or_less(one.times),
+                      one.expected_px),
+          fmt::format("motions are in {}, rotations in degrees",
+                      sight.scene().capture.units.length));
+  }
+  say_of_forces(sight, off, asked, warnings);
+  ask_of_strains(sight, warnings);
+}
+
+}  // namespace hookeye::inspection
