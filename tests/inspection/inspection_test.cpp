@@ -1,0 +1,193 @@
+// What `check` sees: every ordinary mistake is told of by its name, and a right capture is not.
+#include "estimation/inspection/inspection.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimation/inspection/flip.h"
+#include "inspection/inspected_capture.h"
+
+namespace hookeye::test {
+namespace {
+
+using inspection::Turn;
+using inspection::turned;
+using testing::HasSubstr;
+
+/// The same of every capture that is right.
+void expect_quiet(const Inspection& seen) {
+  EXPECT_EQ(said(seen), "");
+  ASSERT_EQ(seen.cameras.size(), 2U);
+  for (const PhotoLook& look : seen.cameras) {
+    EXPECT_GT(look.overlap, 0.95);
+    EXPECT_GT(look.share, 0.9);
+    EXPECT_LT(look.shift_px, 0.5);
+  }
+}
+
+TEST(Inspection, ARightCaptureIsLeftInPeace) {
+  const InspectedCapture capture;
+  const Inspection seen = capture.inspect();
+  expect_quiet(seen);
+  for (const PhotoLook& look : seen.cameras) EXPECT_GT(look.correlation, 0.9);
+  ASSERT_EQ(seen.guesses.size(), 6U);
+  for (const GuessLook& guess : seen.guesses) EXPECT_FALSE(std::isnan(guess.displacement));
+}
+
+TEST(Inspection, SilhouettesAreToldWithoutATexture) {
+  InspectedCapture capture;
+  capture.change("texture: \\{image[^}]*\\}", "texture: {uniform: 0.5}");
+  const Inspection seen = capture.inspect({.first_guess = false});
+  EXPECT_EQ(said(seen), "");
+  for (const PhotoLook& look : seen.cameras) {
+    EXPECT_GT(look.overlap, 0.95);
+    EXPECT_TRUE(std::isnan(look.share));
+    EXPECT_NE(look.no_correlation, "");
+  }
+}
+
+TEST(Inspection, DrawsTheBodyOverEveryPhoto) {
+  const InspectedCapture capture;
+  const auto scene = load_scene(read_capture(capture.folder()));
+  const TemporaryFolder out;
+  const Inspection seen = inspect(*scene, {}, out / "look");
+  EXPECT_TRUE(std::filesystem::exists(seen.sheet));
+  ASSERT_EQ(seen.photos.size(), 12U);
+  for (const PhotoLook& look : seen.photos) {
+    const Image picture = read_image(look.picture, Encoding{});
+    EXPECT_EQ(picture.width, 400);
+    EXPECT_EQ(picture.channels, 3);
+    // The model's outline is orange: there is as much of it as the body has circumference.
+    int orange = 0;
+    for (size_t i = 0; i < picture.pixels(); ++i)
+      orange += picture.values[3 * i] > 0.95f && picture.values[3 * i + 2] < 0.1f;
+    EXPECT_GT(orange, 500) << look.picture;
+  }
+}
+
+struct Slip {
+  const char* name;
+  void (*make)(InspectedCapture& capture);
+  const char* question;
+  const char* seen;  ///< part of the warning
+};
+
+void PrintTo(const Slip& slip, std::ostream* out) { *out << slip.name; }
+
+class Slips : public testing::TestWithParam<Slip> {};
+
+TEST_P(Slips, IsToldByItsName) {
+  InspectedCapture capture;
+  GetParam().make(capture);
+  const Inspection seen = capture.inspect();
+  ASSERT_FALSE(seen.warnings.empty());
+  const auto told = std::find_if(
+      seen.warnings.begin(), seen.warnings.end(),
+      [](const CaptureWarning& warning) { return warning.question == GetParam().question; });
+  ASSERT_NE(told, seen.warnings.end()) << said(seen);
+  EXPECT_THAT(told->text(), HasSubstr(GetParam().seen));
+  EXPECT_GT(told->place.line, 0);
+  EXPECT_THAT(told->place.file, HasSubstr("capture.yaml"));
+}
+
+template <Turn turn>
+void turn_photos(InspectedCapture& capture) {
+  capture.change_photos([](const Image& image) { return turned(image, turn); });
+}
+
+/// A regular expression of what stands in example `name` up to `until`.
+std::string in(const std::string& name, const std::string& until) {
+  return "(\n  " + name + ":\n[^#]*?" + until + ")";
+}
+
+double to_srgb(double l) {
+  return l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055;
+}
+
+const Slip kSlips[] = {
+    {"PosesInMetres",
+     [](InspectedCapture& c) {
+       c.change_numbers("translation", [](double t) { return t / 1000; });
+     },
+     "flips", "the translation is 1000 times as long"},
+    {"PhotosUpsideDown", turn_photos<Turn::half>, "flips", "the photo is turned by 180 degrees"},
+    {"PhotosMirrored", turn_photos<Turn::mirrored>, "flips", "the photo is mirrored left to right"},
+    {"CamerasSwapped",
+     [](InspectedCapture& c) {
+       c.change("_cam0\\.png", "_other.png");
+       c.change("_cam1\\.png", "_cam0.png");
+       c.change("_other\\.png", "_cam1.png");
+     },
+     "flips", "stands here"},
+    {"IntrinsicsOfTwiceTheSize",
+     [](InspectedCapture& c) {
+       c.change("fx: 2100, fy: 2100, cx: 199.5, cy: 239.5",
+                "fx: 4200, fy: 4200, cx: 399.5, cy: 479.5");
+     },
+     "flips", "fx, fy, cx and cy are halved"},
+    {"PhotoOfAnotherLoadCase",
+     [](InspectedCapture& c) {
+       c.change("photos/pull_cam0", "photos/other");
+       c.change("photos/twist_cam0", "photos/pull_cam0");
+       c.change("photos/other", "photos/twist_cam0");
+     },
+     "directions", "shows the motion of example `twist`"},
+    {"TheSamePhotoTwice",
+     [](InspectedCapture& c) { c.change("photos/pull_cam1", "photos/pull_cam0"); }, "equal_photos",
+     "has the very pixels of photo `cam0` of example `pull`"},
+    {"NoRestPhoto", [](InspectedCapture& c) { c.change("\n  rest:\n(    .*\n)+", "\n"); },
+     "rest_photos", "no photo shows the body at rest"},
+    {"DistortionOfUndistortedPhotos",
+     [](InspectedCapture& c) {
+       c.change("cy: 239.5\\}", "cy: 239.5, distortion: [-0.4, 0, 0, 0, 0]}");
+     },
+     "distortion", "px without"},
+    {"SrgbToldAsLinear",
+     [](InspectedCapture& c) {
+       c.change_photos([](Image image) {
+         for (float& v : image.values) v = static_cast<float>(to_srgb(v));
+         return image;
+       });
+     },
+     "encoding", "read as linear"},
+    {"LinearLeftOut", [](InspectedCapture& c) { c.change("\n  encoding: linear", ""); }, "encoding",
+     "read as linear their bright and dark speckles fit"},
+    {"TwelveBitsInSixteen",
+     [](InspectedCapture& c) {
+       c.change_photos(
+           [](Image image) {
+             for (float& v : image.values) v *= 4095.0f / 65535.0f;
+             return image;
+           },
+           16);
+     },
+     "photo_range", "12 bits stored in 16"},
+    {"HalfOfARegion",
+     [](InspectedCapture& c) { c.change("(box: \\[\\[[^\\]]*\\], )\\[[^,]*,", "$1[0,"); },
+     "directions", "`base` reaches over the whole of its flat face"},
+    {"LoadReversed", [](InspectedCapture& c) { c.change(in("pull", "force: \\[0, 0, "), "$1-"); },
+     "directions", "the force on `grip` has the other sign"},
+    {"KilonewtonsForNewtons",
+     [](InspectedCapture& c) { c.change_numbers("force", [](double f) { return f / 1000; }); },
+     "magnitudes", "kN for N"},
+    {"GramsForNewtons",
+     [](InspectedCapture& c) { c.change_numbers("force", [](double f) { return f * 102; }); },
+     "magnitudes", "grams for N"},
+    {"SignOfATwist", [](InspectedCapture& c) { c.change("degrees: ", "degrees: -"); }, "directions",
+     "the rotation of `grip` has the other sign"},
+    {"SignOfAPress", [](InspectedCapture& c) { c.change("move: \\[0, 0, -", "move: [0, 0, "); },
+     "directions", "the motion of `grip` has the other sign"},
+    {"DensityInSiWithMillimetres",
+     [](InspectedCapture& c) { c.change("density: .*", "density: 1070"); }, "weights",
+     "1.07e+15 kg/m^3"},
+    {"ModulusInAnotherUnit", [](InspectedCapture& c) { c.change(", mu: [0-9.]+", ", mu: 40000"); },
+     "magnitudes", "moduli lower"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Inspection, Slips, testing::ValuesIn(kSlips),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace hookeye::test
