@@ -46,7 +46,9 @@ TEST_P(RayPackets, lanes_that_nobody_set_are_left_alone) {
         const bool meets = i < count && i < 10;
         EXPECT_EQ(rays.triangle[i] != RayPacket::kNoTriangle, meets) << count << ", lane " << i;
         EXPECT_EQ(shadow.tfar[i] < 0, meets) << count << ", lane " << i;
-        if (meets) EXPECT_NEAR(rays.tfar[i], 2, 1e-5);
+        if (meets) {
+          EXPECT_NEAR(rays.tfar[i], 2, 1e-5);
+        }
       }
     }
 }

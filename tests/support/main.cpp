@@ -1,5 +1,6 @@
 // Every test binary's main: GoogleTest's, and --file=NAME_test.cpp, which runs the tests of one
-// source file. ctest has an entry a file: a process a test would spend most of its time on starting.
+// source file. ctest has an entry a file: a process a test would spend most of its time on
+// starting.
 #include <gmock/gmock.h>
 
 #include <cstdio>
@@ -20,7 +21,8 @@ std::string filter_of(const std::string& file) {
     for (int k = 0; k < all.GetTestSuite(i)->total_test_count(); ++k) {
       const testing::TestInfo& test = *all.GetTestSuite(i)->GetTestInfo(k);
       if (file_of(test) == file)
-        filter += std::string(filter.empty() ? "" : ":") + test.test_suite_name() + "." + test.name();
+        filter +=
+            std::string(filter.empty() ? "" : ":") + test.test_suite_name() + "." + test.name();
     }
   return filter;
 }
