@@ -273,6 +273,7 @@ void drop_tangent(ExampleEvaluation& example) {
   const Equilibrium& whole = *example.equilibrium;
   kept->q = whole.q;
   kept->R = whole.R;
+  kept->W_ff = whole.W_ff;  // few values
   kept->newton_iterations = whole.newton_iterations;
   kept->factorizations = whole.factorizations;
   kept->stable = whole.stable;
