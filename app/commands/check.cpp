@@ -356,7 +356,7 @@ void add_check(CLI::App& app, CommandBody& chosen) {
   const auto options = std::make_shared<CheckOptions>();
   command->add_option("CAPTURE", options->capture, "capture.yaml or its folder")->required();
   command->add_option("-o,--out", options->out,
-                      "Folder: the model drawn over every photo, contact_sheet.png, index.html");
+                      "Folder for pictures of the model over every photo");
   command->add_flag("--quick", options->quick, "Without the coarse solve of every load case");
   command->callback([&chosen, options] {
     chosen = [options](Session& session) { run_check(*options, session); };
