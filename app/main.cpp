@@ -107,6 +107,12 @@ int run(const CommandBody& body, Session& session) {
     const InputError told({error.path1().string()}, error.code().message(),
                           "a place that is there and open to you, on a disk with room");
     return report_input(session, told);
+  } catch (const std::bad_alloc&) {
+    const std::string context = Scope::take_context();
+    return report(session, kNumericalFailure, "out of memory",
+                  fmt::format("out of memory{}{}\n  a coarser mesh (`edge`), fewer or smaller "
+                              "photos, or a machine with more memory",
+                              context.empty() ? "" : " while working on: ", context));
   } catch (const std::exception& error) {
     const std::string context = Scope::take_context();
     return report(session, kInternal, "internal error",

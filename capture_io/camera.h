@@ -52,7 +52,7 @@ struct Camera {
 
 /// Reads fx.. distortion, size and, where present, pose from an OpenCV FileStorage file (yml, xml,
 /// json; keys camera_matrix / K, distortion_coefficients / D, image_width, R, T ...).
-/// The only file that touches OpenCV's reader is camera_calibration.cpp. Throws InputError.
+/// OpenCV's reader runs in a helper (helpers/calibration.cpp). Throws InputError.
 /// `has_pose` receives whether the file holds R and T.
 Camera read_opencv_calibration(const std::filesystem::path& file, bool* has_pose = nullptr);
 

@@ -1,123 +1,41 @@
 #include "capture_io/image.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
-#include "capture_io/png_chunks.h"
+#include "capture_io/encode_png.h"
+#include "capture_io/helper.h"
+#include "capture_io/parcels.h"
 
 namespace hookeye {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double max_pixels = 1e9;
-constexpr double max_bytes = 2147483648.0;  ///< of the decoded picture, four bytes a value
-/// A forged header of some hundred bytes would cost all that memory before the pixels turn out to
-/// be missing, so that what it claims is held against the size of the file. Deflate makes at most
-/// 1032 bytes out of one (258 out of two bits); of the other formats JPEG 2000 packs a picture of
-/// one grey most densely, 40,000 to one; without compression a palette of single bits grows to 24.
-constexpr double deflate_ratio = 1032, any_ratio = 1e5, palette_ratio = 24;
 
-std::string one_line(std::string text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
+HelperRequest request(const std::string& task, const fs::path& file) {
+  return {.name = "pictures",
+          .content = Packer().put(task).put(file.string()).take(),
+          .limits = limits_for(file),
+          .place = {file.string()},
+          .right = "hand over a complete PNG, TIFF, JPEG or EXR picture"};
 }
 
-/// The library's explanations name the path again and differ between versions, so that only the
-/// fact is reported.
-[[noreturn]] void unreadable(const fs::path& file, const std::string& why) {
-  throw InputError({file.string()}, why, "hand over a complete PNG, TIFF, JPEG or EXR picture");
-}
-
-/// JPEG readers fill the missing rest of a truncated file with grey and only warn. A complete file
-/// has its end marker (FF D9) after the last scan marker (FF DA); cameras may append data after it.
-bool jpeg_is_complete(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
-  const size_t scan = bytes.rfind("\xFF\xDA");
-  const size_t end = bytes.rfind("\xFF\xD9");
-  return scan != std::string::npos && end != std::string::npos && end > scan;
-}
-
-std::string claim_of(const OIIO::ImageSpec& spec) {
-  return fmt::format("the header claims {} x {} pixels with {} channels", spec.width, spec.height,
-                     spec.nchannels);
-}
-
-/// Whether a file of this size can hold what its header claims.
-void check_claim(const fs::path& file, const OIIO::ImageSpec& spec) {
-  std::error_code error;
-  const auto size = static_cast<double>(fs::file_size(file, error));
-  double claimed = static_cast<double>(spec.image_bytes()), ratio = any_ratio;
-  if (is_png(file))
-    claimed = png_claimed_bytes(file), ratio = deflate_ratio;
-  else if (spec.get_string_attribute("compression") == "none")
-    ratio = palette_ratio;
-  if (error || claimed > ratio * size)
-    unreadable(file, fmt::format("{}, which {:.0f} bytes cannot hold", claim_of(spec), size));
-}
-
-void check_size(const fs::path& file, const OIIO::ImageSpec& spec) {
-  const double pixels = double(spec.width) * spec.height;
-  if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.depth > 1)
-    unreadable(file, claim_of(spec));
-  if (pixels > max_pixels || pixels * spec.nchannels * 4.0 > max_bytes)
-    throw InputError({file.string()}, claim_of(spec),
-                     "at most 2 GiB of decoded pixels are read: use a smaller picture");
-  check_claim(file, spec);
-  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
-      spec.height != spec.full_height)
-    throw InputError({file.string()}, "the stored window differs from the displayed one",
-                     "write the picture uncropped, so that pixel (0, 0) is its first pixel");
-  if (spec.get_int_attribute("Orientation", 1) != 1)
-    throw InputError({file.string()},
-                     fmt::format("the picture carries the orientation tag {}",
-                                 spec.get_int_attribute("Orientation", 1)),
-                     "turn the pixels themselves and drop the tag: cameras are calibrated on "
-                     "stored pixels");
-}
-
-std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored))
-    throw InputError({file.string()}, "there is no such file", "check the name and its folder");
-  if (!fs::is_regular_file(file, ignored))
-    throw InputError({file.string()}, "this is not a file", "name a picture");
-  if (is_png(file) && !png_begins_well(file))
-    unreadable(file, "the file cannot be read as a picture");
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);
-  config.attribute("raw:ColorSpace", "linear");
-  std::unique_ptr<OIIO::ImageInput> input;
-  try {
-    input = OIIO::ImageInput::open(file.string(), &config);
-  } catch (const std::exception&) {
-    // Some readers throw on broken headers instead of returning nothing.
-  }
-  if (!input) {
-    OIIO::geterror();  // the pending message would be printed at exit otherwise
-    unreadable(file, "the file cannot be read as a picture");
-  }
-  check_size(file, input->spec());
-  return input;
-}
-
-bool is_floating(const OIIO::ImageSpec& spec) { return spec.format.is_floating_point(); }
-
-ImageHeader header_of(const OIIO::ImageSpec& spec) {
-  ImageHeader header;
-  header.width = spec.width;
-  header.height = spec.height;
-  const int colours = spec.nchannels - (spec.alpha_channel >= 0 ? 1 : 0);
-  header.channels = colours >= 3 ? 3 : 1;
-  header.bits = static_cast<int>(spec.format.size()) * 8;
-  header.floating = is_floating(spec);
-  return header;
+/// Of writing: why not, or "", and the bytes of what is made in memory.
+std::pair<std::string, std::string> store(const std::string& task, const fs::path& file,
+                                          const StoredImage& image) {
+  HelperRequest wanted = request(task, file);
+  Packer what;
+  what.put(task).put(file.string());
+  pack(what, image);
+  wanted.content = what.take();
+  wanted.limits = unlimited;
+  return ask_helper(wanted, [](Unpacker& from) {
+    auto why = from.take<std::string>();
+    return std::pair{std::move(why), from.take<std::string>()};
+  });
 }
 
 double srgb_to_linear(double v) {
@@ -152,58 +70,47 @@ void check_finite(const fs::path& file, const Image& image) {
   }
 }
 
-/// Channels `spec.nchannels` of all pixels to the first one or three colours.
-Image keep_colours(const std::vector<float>& all, const OIIO::ImageSpec& spec) {
-  const ImageHeader header = header_of(spec);
-  Image image{header.width, header.height, header.channels, {}};
-  image.values.resize(image.pixels() * image.channels);
-  int source[3], found = 0;
-  for (int c = 0; c < spec.nchannels && found < image.channels; ++c)
-    if (c != spec.alpha_channel) source[found++] = c;
-  for (size_t p = 0; p < image.pixels(); ++p)
-    for (int c = 0; c < found; ++c)
-      image.values[p * image.channels + c] = all[p * spec.nchannels + source[c]];
-  return image;
+template <class Value>
+std::string bytes_of(const std::vector<Value>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
 template <class Level>
-std::vector<Level> to_levels(const Image& image, const Encoding& encoding) {
+std::string to_levels(const Image& image, const Encoding& encoding) {
   const double full = std::numeric_limits<Level>::max();
   std::vector<Level> levels(image.values.size());
   for (size_t i = 0; i < levels.size(); ++i)
     levels[i] = static_cast<Level>(std::lround(
         std::clamp(encode(std::clamp<double>(image.values[i], 0, 1), encoding), 0.0, 1.0) * full));
-  return levels;
+  return bytes_of(levels);
+}
+
+Image unpack_image(Unpacker& from) {
+  Image image;
+  from.get(image.width);
+  from.get(image.height);
+  from.get(image.channels);
+  from.get(image.values);
+  const bool sized = image.width > 0 && image.height > 0 &&
+                     (image.channels == 1 || image.channels == 3) &&
+                     image.values.size() == image.pixels() * static_cast<size_t>(image.channels);
+  if (!sized) throw WireFault();
+  return image;
 }
 
 /// The picture as its file holds it.
 Image read_stored(const fs::path& file, Encoding& stored_as) {
-  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
-  const OIIO::ImageSpec spec = input->spec();
-  const std::string format = input->format_name();
-  if ((format == "jpeg" && !jpeg_is_complete(file)) || (format == "png" && !png_is_intact(file)))
-    unreadable(file, "the picture is truncated or damaged");
-  std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
-  bool complete = false;
-  try {
-    complete = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data());
-  } catch (const std::exception&) {
-    complete = false;
-  }
-  const std::string why = one_line(input->geterror());
-  input->close();
-  if (!complete || !why.empty()) unreadable(file, "the picture is truncated or damaged");
-  if (!is_floating(spec) && spec.format.size() == 1) stored_as.kind = Encoding::Kind::srgb;
-  return keep_colours(all, spec);
+  return ask_helper(request("read", file), [&](Unpacker& from) {
+    if (from.take<bool>()) stored_as.kind = Encoding::Kind::srgb;
+    return unpack_image(from);
+  });
 }
 
 }  // namespace
 
 ImageHeader read_image_header(const fs::path& file) {
-  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
-  ImageHeader header = header_of(input->spec());
-  header.lossy = std::string(input->format_name()) == "jpeg";
-  return header;
+  return ask_helper(request("header", file),
+                    [](Unpacker& from) { return from.take<ImageHeader>(); });
 }
 
 Image read_image_with_holes(const fs::path& file) {
@@ -236,29 +143,33 @@ void write_image(const fs::path& file, const Image& image, Encoding encoding) {
   // The library chooses the format by the extension, so the temporary name keeps it.
   const fs::path temporary =
       file.parent_path() / fmt::format(".{}-{}{}", file.stem().string(), ::getpid(), type);
-  const auto fail = [&](const std::string& why) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw cannot_write(file.string(), one_line(why));
-  };
-  std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(temporary.string());
-  if (!output) fail(OIIO::geterror());
-  const OIIO::TypeDesc stored = type == ".exr"   ? OIIO::TypeDesc::FLOAT
-                                : type == ".png" ? OIIO::TypeDesc::UINT8
-                                                 : OIIO::TypeDesc::UINT16;
-  OIIO::ImageSpec spec(image.width, image.height, image.channels, stored);
-  if (type == ".exr") spec.attribute("compression", "zip");
-  // A third of the default's time; a run's hundreds of small pictures grow by some percent.
-  if (type == ".png") spec.attribute("png:compressionLevel", 3);
-  if (!output->open(temporary.string(), spec)) fail(output->geterror());
-  bool written = false;
-  if (type == ".exr") written = output->write_image(stored, image.values.data());
-  if (type == ".png")
-    written = output->write_image(stored, to_levels<uint8_t>(image, encoding).data());
-  if (stored == OIIO::TypeDesc::UINT16)
-    written = output->write_image(stored, to_levels<uint16_t>(image, encoding).data());
-  if (!written || !output->close()) fail(output->geterror());
-  fs::rename(temporary, file);
+  StoredImage stored{image.width, image.height, image.channels, StoredAs::words, 6, {}};
+  if (type == ".exr") {
+    stored.stored = StoredAs::floats;
+    stored.values = bytes_of(image.values);
+  } else if (type == ".png") {
+    stored.stored = StoredAs::bytes;
+    // A third of the default's time; a run's hundreds of small pictures grow by some percent.
+    stored.compression = 3;
+    stored.values = to_levels<uint8_t>(image, encoding);
+  } else {
+    stored.values = to_levels<uint16_t>(image, encoding);
+  }
+  const std::string why = store("write", temporary, stored).first;
+  if (why.empty()) {
+    fs::rename(temporary, file);
+    return;
+  }
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw cannot_write(file.string(), why);
+}
+
+std::string encode_png(int width, int height, const std::vector<uint16_t>& grey) {
+  const auto [why, bytes] =
+      store("encode", "memory.png", {width, height, 1, StoredAs::words, 6, bytes_of(grey)});
+  if (!why.empty()) throw std::runtime_error("a picture could not be encoded: " + why);
+  return bytes;
 }
 
 }  // namespace hookeye

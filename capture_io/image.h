@@ -1,5 +1,5 @@
-// Photos as linear intensities with a noise model. The only file that touches OpenImageIO is
-// image.cpp.
+// Photos as linear intensities with a noise model. OpenImageIO reads and writes them, in a helper:
+// helpers/pictures.cpp.
 #pragma once
 
 #include <filesystem>

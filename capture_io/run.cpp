@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "capture_io/fingerprints.h"
+#include "capture_io/json_file.h"
 
 namespace hookeye {
 namespace {
@@ -60,20 +61,26 @@ void remove_leftovers(const fs::path& folder) {
   for (const fs::path& path : doomed) fs::remove_all(path, ignored);
 }
 
+bool is_file_name(const std::string& name) {
+  return !name.empty() && name[0] != '.' && name.find('/') == std::string::npos &&
+         name.find('\0') == std::string::npos;
+}
+
 json read_timeline(const fs::path& folder) {
   const fs::path file = folder / "run.json";
-  json timeline;
-  try {
-    timeline = json::parse(read_text(file));
-  } catch (const json::exception&) {
-    throw InputError({file.string()}, "this is not a run's timeline",
-                     "choose another folder, or restore the file");
-  }
-  if (!timeline.is_object() || timeline.value("hookeye", json()) != json(1) ||
-      !timeline.contains("capture") || !timeline["capture"].is_string() ||
-      !timeline.contains("steps") || !timeline["steps"].is_array())
+  json timeline = read_json(file);
+  if (!timeline.is_object() || timeline.value("hookeye", json()) != json(1))
     throw InputError({file.string()}, "this is not a run's timeline in format 1",
                      "choose another folder, or restore the file");
+  expect_shape(timeline,
+               {{"capture", "text"},
+                {"?fingerprints", {{"*", "text"}}},
+                {"steps", json::array({{{"name", "text"}}})}},
+               file);
+  for (const json& step : timeline["steps"])
+    if (!is_file_name(step["name"]))
+      throw InputError({file.string()}, "the name of a step is no name of a folder",
+                       "restore the file, or start a new run");
   return timeline;
 }
 
@@ -116,9 +123,7 @@ void check_unchanged(json& timeline, const fs::path& folder) {
 }
 
 void check_name(const std::string& name) {
-  if (name.empty() || name[0] == '.' || name.find('/') != std::string::npos ||
-      name.find('\0') != std::string::npos)
-    throw std::invalid_argument("Run: not a file name: '" + name + "'");
+  if (!is_file_name(name)) throw std::invalid_argument("Run: not a file name: '" + name + "'");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 # One library a folder: hookeye_layer(render LINK meshing ... PRIVATE embree ...). Sources are all
-# .cpp files below the folder.
+# .cpp files below the folder, but for those of helpers/.
 function(hookeye_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic)
   if(HOOKEYE_WERROR)
@@ -12,6 +12,7 @@ endfunction()
 function(hookeye_layer name)
   cmake_parse_arguments(L "" "" "LINK;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/helpers/")
   add_library(${name} STATIC ${sources})
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
@@ -22,6 +23,22 @@ function(hookeye_layer name)
       <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <string>
       <vector> <fmt/format.h>)
   endif()
+endfunction()
+
+# A program that hosts a library for the main one (capture_io/helper.h), from helpers/NAME.cpp:
+# hookeye_helper(vtk LAYER meshing PRIVATE ${VTK_LIBRARIES}). Whatever uses them depends on `helpers`.
+add_custom_target(helpers)
+function(hookeye_helper name)
+  cmake_parse_arguments(H "" "LAYER" "PRIVATE" ${ARGN})
+  add_executable(helper_${name} helpers/${name}.cpp)
+  set_target_properties(helper_${name} PROPERTIES OUTPUT_NAME ${name}
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/libexec/hookeye)
+  # It loads its own library and none that the layer may need elsewhere.
+  target_link_options(helper_${name} PRIVATE -Wl,--as-needed)
+  target_link_libraries(helper_${name} PRIVATE ${H_LAYER} ${H_PRIVATE})
+  hookeye_flags(helper_${name})
+  add_dependencies(helpers helper_${name})
+  install(TARGETS helper_${name} RUNTIME DESTINATION libexec/hookeye)
 endfunction()
 
 # hookeye_test_entries(TARGET PREFIX FILE...): ctest's PREFIX.NAME runs the tests of NAME_test.cpp in
@@ -57,6 +74,7 @@ function(hookeye_tests name)
   target_link_libraries(test_${name} PRIVATE ${name} ${ARGN})
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE HOOKEYE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  add_dependencies(test_${name} helpers)
   hookeye_flags(test_${name})
   hookeye_test_entries(test_${name} ${name} ${sources})
 endfunction()

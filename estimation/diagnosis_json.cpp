@@ -79,6 +79,8 @@ EffectScore score_from_json(const json& one, const Model& model) {
   if (!score.best || score.best->parameters().size() != predicted.size())
     throw std::runtime_error("effect " + score.effect);
   score.dof = one.at("dof");
+  if (score.dof < 0 || static_cast<size_t>(score.dof) > predicted.size())
+    throw std::runtime_error("effect " + score.effect);
   score.values.resize(score.dof);
   score.standard_error.resize(score.dof);
   for (int i = 0; i < score.dof; ++i) {

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <set>
 
 #include "estimation/model.h"
@@ -41,6 +44,18 @@ bool any_rgb(const Capture& capture) {
   return false;
 }
 
+/// Fits begin with photos of a 32nd of the size, which must have a pixel.
+void check_large_enough(const PhotoSpec& spec, const Camera& camera) {
+  constexpr int kLeast = 32;
+  if (std::min(camera.width, camera.height) >= kLeast) return;
+  throw InputError(
+      spec.place,
+      fmt::format("the photo of camera `{}` has {} x {} pixels, too few for a fit", camera.name,
+                  camera.width, camera.height),
+      fmt::format("at least {0} x {0} pixels, and the body a hundred pixels across or more",
+                  kLeast));
+}
+
 }  // namespace
 
 int Scene::example_index(const std::string& name) const {
@@ -72,8 +87,10 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
   if (!with_photos) return scene;
   for (size_t e = 0; e < capture.examples.size(); ++e)
-    for (const auto& spec : capture.examples[e].photos)
+    for (const auto& spec : capture.examples[e].photos) {
+      check_large_enough(spec, capture.camera(spec.camera));
       scene->photos[e].push_back(read_photo(spec, capture.camera(spec.camera)));
+    }
   return scene;
 }
 

@@ -13,6 +13,7 @@
 #include "capture_io/run.h"
 #include "meshing/detail.h"
 #include "meshing/surface_mesh.h"
+#include "meshing/whole_numbers.h"
 
 namespace hookeye {
 namespace {
@@ -46,6 +47,7 @@ void read_numbers(const std::filesystem::path& file, std::vector<Vector3d>& poin
       throw InputError({file.string(), number}, "there is a zero byte: this is no text",
                        "the file as it was written, in ASCII or UTF-8");
     std::istringstream fields(line);
+    if (line.starts_with("f ")) detail::check_whole_numbers(line, {file.string(), number});
     if (!(fields >> field) || (field != "v" && field != "vt")) continue;
     const int needed = field == "v" ? 3 : 2;
     Vector3d values = Vector3d::Zero();

@@ -307,15 +307,25 @@ class InpReader {
     const auto f = lines_.fields();
     if (generate_) {
       if (f.size() < 2) lines_.fault("GENERATE needs first, last and step", "first, last, step");
-      const int step = f.size() > 2 ? lines_.integer(f[2]) : 1;
-      const int last = lines_.integer(f[1]);
-      if (step < 1 || last > 100'000'000) lines_.fault("no such range", "first, last, step >= 1");
-      for (int i = lines_.integer(f[0]); i <= last; i += step) set.push_back(i);
+      const long first = lines_.integer(f[0]), last = lines_.integer(f[1]);
+      const long step = f.size() > 2 ? lines_.integer(f[2]) : 1;
+      if (first < 1 || step < 1) lines_.fault("no such range", "first >= 1, last, step >= 1");
+      count_members((last - first) / step);
+      for (long i = first; i <= last; i += step) set.push_back(static_cast<int>(i));
       return;
     }
     for (const std::string_view field : f) {
       if (isdigit(static_cast<unsigned char>(field[0]))) set.push_back(lines_.integer(field));
     }
+  }
+
+  /// A range takes no room in the file, but in memory.
+  void count_members(long more) {
+    constexpr long kMost = 20'000'000;
+    generated_ += std::max(more, 0L);
+    if (generated_ > kMost)
+      lines_.fault(fmt::format("the ranges of the sets have more than {} members", kMost),
+                   "ranges over numbers that the file has");
   }
 
   RawVolume finished() const {
@@ -353,6 +363,7 @@ class InpReader {
   Lines lines_;
   Block block_ = Block::other;
   bool generate_ = false;
+  long generated_ = 0;
   int per_ = 0, parts_ = 0, instances_ = 0, placement_lines_ = 0;
   bool in_instance_ = false;
   Eigen::Isometry3d placement_ = Eigen::Isometry3d::Identity();  ///< of the instance's nodes

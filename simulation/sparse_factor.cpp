@@ -46,6 +46,10 @@ struct Common {
   ~Common() { cholmod_finish(&c); }
   Common(const Common&) = delete;
   Common& operator=(const Common&) = delete;
+  /// After a call: it may have failed for want of room, which is no fault of the matrix.
+  void demand_room() const {
+    if (c.status == CHOLMOD_OUT_OF_MEMORY || c.status == CHOLMOD_TOO_LARGE) throw std::bad_alloc();
+  }
   cholmod_common c;
 };
 
@@ -163,6 +167,7 @@ SymbolicFactor::SymbolicFactor(const SparseMatrix& K, std::vector<int> free)
   const SerialOpenMp serial;
   cholmod_sparse A = s.view(nullptr);
   s.factor = cholmod_analyze_p(&A, order.data(), nullptr, 0, &s.common.c);
+  s.common.demand_room();
   if (!s.factor) throw std::runtime_error("CHOLMOD cannot analyse the tangent");
 }
 
@@ -204,9 +209,11 @@ bool TangentFactor::factorize(const SparseMatrix& K, double shift) {
   if (!impl_->factor || !impl_->factor->is_super) {
     impl_->drop();
     impl_->factor = cholmod_copy_factor(s.factor, &c);
+    impl_->common.demand_room();
   }
   cholmod_sparse A = s.view(impl_->values.data());
   const bool done = cholmod_factorize(&A, impl_->factor, &c);
+  impl_->common.demand_room();
   impl_->positive = done && c.status == CHOLMOD_OK && impl_->factor->minor == s.free.size();
   return impl_->positive;
 }
@@ -229,6 +236,7 @@ bool TangentFactor::factorize_indefinite(const SparseMatrix& K) {
   const bool regular = done && c.status == CHOLMOD_OK && impl_->factor->minor == s.free.size();
   c.supernodal = CHOLMOD_SUPERNODAL;
   c.final_ll = 1;
+  impl_->common.demand_room();
   return regular;
 }
 
@@ -246,7 +254,7 @@ void solve_block(const double* b, double* x, Eigen::Index n, Eigen::Index m, cho
   B.xtype = CHOLMOD_REAL;
   B.dtype = CHOLMOD_DOUBLE;
   if (!cholmod_solve2(CHOLMOD_A, L, &B, nullptr, X, nullptr, Y, E, c))
-    throw std::runtime_error("CHOLMOD cannot solve: no memory");
+    throw std::bad_alloc();
   std::copy_n(static_cast<const double*>((*X)->x), n * m, x);
 }
 }  // namespace

@@ -51,7 +51,7 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, bool
 
 void run_add(const AddArguments& arguments, Session& session) {
   check_effect(arguments.request.effect);
-  Run run = Run::open(arguments.run, true);
+  Run run = open_run(arguments.run, true);
   check_stands(run, arguments.request);
   Bench bench = open_capture(run.capture(), session);
   Step current = newest_step(run, bench);

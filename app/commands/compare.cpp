@@ -6,7 +6,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
-#include "app/report/parse_json.h"
+#include "capture_io/json_file.h"
 
 namespace hookeye {
 namespace {
@@ -48,7 +48,7 @@ std::string photo_rows(const json& photos, double floor) {
     const double chi = photo.at("chi");
     std::string camera = photo.at("camera");
     if (coloured.contains({photo.at("example"), camera}))
-      camera += std::string(" ") + "rgb"[photo.at("plane").get<int>()];
+      camera += std::string(" ") + "rgb"[std::clamp(photo.at("plane").get<int>(), 0, 2)];
     rows.push_back({photo.at("example"), camera, photo.at("use"), fmt::format("{:.2f}", chi),
                     marked_bar(chi, floor, scale_of(all, floor)),
                     fmt::format("{:.2f}", chi / floor),
@@ -79,14 +79,33 @@ std::string measured_rows(const json& measured) {
 }
 
 json metrics_of(const std::filesystem::path& step) {
+  const json chi = {{"*", "number"}}, three = json::array({"number", "number", "number"});
+  const json photo = {{"example", "text"},   {"camera", "text"},   {"use", "text"},
+                      {"chi", "number"},     {"?plane", "number"}, {"rms_px", "number"},
+                      {"only_noise", "flag"}};
+  const json measured = {{"example", "text"}, {"kind", "text"},     {"region", "text"},
+                         {"measured", three}, {"predicted", three}, {"over_sigma", three},
+                         {"?unit", "text"}};
   const auto file = step / "metrics.json";
-  std::string damage;
-  if (auto found = parse_json(read_text(file), damage)) return *found;
-  throw InputError({file.string()}, "the file is " + damage, "restore it, or repeat the step");
+  json found = read_json(file);
+  expect_shape(found,
+               {{"chi_fit", "number|null"},
+                {"chi_validate", "number|null"},
+                {"floor", {{"chi", "number"}, {"source", "text"}, {"?by_camera", chi}}},
+                {"photos", json::array({photo})},
+                {"chi_by_example", chi},
+                {"chi_by_camera", chi},
+                {"?chi_by_region", chi},
+                {"measured", json::array({measured})},
+                {"?converged", "flag"},
+                {"?iterations", "number"},
+                {"undetermined", json::array({"text"})}},
+               file);
+  return found;
 }
 
 void run_compare(const std::string& folder, Session& session) {
-  const Run run = Run::open(folder, false);
+  const Run run = open_run(folder, false);
   if (run.steps().empty())
     throw InputError({folder}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");

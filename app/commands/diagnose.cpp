@@ -9,7 +9,7 @@ namespace hookeye {
 namespace {
 
 void run_diagnose(const std::string& folder, Session& session) {
-  Run run = Run::open(folder, true);
+  Run run = open_run(folder, true);
   Bench bench = open_capture(run.capture(), session);
   Step step = newest_step(run, bench);
   diagnose_newest(run, bench, step, diagnosis_options());

@@ -61,7 +61,7 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
   Bench bench = open_capture(arguments.capture, session);
-  Run run = Run::create(arguments.run, bench.scene->capture.file);
+  Run run = create_run(arguments.run, bench.scene->capture.file);
   DiscoverOptions options = discover_options();
   options.diagnosis.without = arguments.without;
   const bool resumed = !run.steps().empty();

@@ -4,6 +4,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "app/commands/tables.h"
+#include "capture_io/json_file.h"
 #include "estimation/additive_material.h"
 #include "estimation/progressive.h"
 #include "estimation/step_json.h"
@@ -49,7 +50,7 @@ void say_refinements(const Fitted& fitted, const Session& session) {
 
 /// What the step's figures tell of the material beyond its misfit.
 void warn_of_lost_ellipticity(const std::filesystem::path& step, Session& session) {
-  const auto told = nlohmann::json::parse(read_text(step / "metrics.json")).at("ellipticity");
+  const auto told = read_json(step / "metrics.json").at("ellipticity");
   if (told.is_null() || told.at("elements_lost") == 0) return;
   session.warn(fmt::format(
       "the material loses ellipticity at the strains of {} elements, most in {}: no resistance "
@@ -59,7 +60,7 @@ void warn_of_lost_ellipticity(const std::filesystem::path& step, Session& sessio
 
 void run_fit(const FitArguments& arguments, Session& session) {
   Bench bench = open_capture(arguments.capture, session);
-  Run run = Run::create(arguments.run, bench.scene->capture.file);
+  Run run = create_run(arguments.run, bench.scene->capture.file);
   if (!run.steps().empty()) {
     if (!arguments.model.empty() || !arguments.material.empty())
       throw InputError({arguments.run},

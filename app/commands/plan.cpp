@@ -8,6 +8,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/validators.h"
+#include "capture_io/json_file.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -56,8 +57,7 @@ PlannedStep open_step(const Run& run, Bench& bench, size_t index) {
   out.fitted = value_or_fail(assess(bench.workspace, form, p, fit_options()));
   const auto file = folder / "diagnosis.json";
   if (std::filesystem::exists(file)) {
-    out.diagnosis =
-        diagnosis_from_json(json::parse(read_text(file), nullptr, false), form.realise(p), file);
+    out.diagnosis = diagnosis_from_json(read_json(file), form.realise(p), file);
   } else {
     out.diagnosis = value_or_fail(diagnose(bench.workspace, out.fitted, diagnosis_options()));
   }
@@ -104,7 +104,7 @@ std::string plan_table(const Plan& plan, size_t most) {
 }
 
 void run_plan(const PlanArguments& arguments, Session& session) {
-  const Run run = Run::open(arguments.run, false);
+  const Run run = open_run(arguments.run, false);
   if (run.steps().empty())
     throw InputError({arguments.run}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");

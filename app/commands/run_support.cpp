@@ -8,6 +8,7 @@
 #include "app/commands/tables.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "capture_io/json_file.h"
 #include "estimation/contest.h"
 #include "estimation/doubts.h"
 #include "estimation/page_data.h"
@@ -34,7 +35,45 @@ void warn_of_noise(const Scene& scene, Session& session) {
       first, others > 0 ? fmt::format(" (and that of {} more)", others) : ""));
 }
 
+/// What is read of run.json beyond what Run itself needs.
+nlohmann::json timeline_shape() {
+  using nlohmann::json;
+  const json some = "number|null", texts = json::array({"text"});
+  const json refit = {{"effect", "text"}, {"?chi_fit", some}, {"?chi_validate", some}};
+  json rival = refit, raced = refit, score = {{"effect", "text"}, {"?evidence", some}};
+  rival["score"] = rival["chi_fit"] = "number";
+  raced["?floor"] = some;
+  score["?confusion"] = json::array({{{"effect", "text"}, {"?cosine", some}}});
+  const json step = {{"added", "text|null"},
+                     {"?dropped", texts},
+                     {"effects", texts},
+                     {"chi_fit", "number"},
+                     {"?chi_validate", some},
+                     {"?rms_px_fit", some},
+                     {"?converged", "flag"},
+                     {"?iterations", "number"},
+                     {"?says", texts},
+                     {"?command", "text"},
+                     {"?diagnosis", json::array({score})},
+                     {"?raced", json::array({raced})},
+                     {"?rivals", json::array({rival})}};
+  return {{"steps", json::array({step})}, {"?floor", {{"chi", "number"}, {"source", "text"}}}};
+}
+
+Run with_whole_timeline(Run run) {
+  expect_shape(run.timeline(), timeline_shape(), run.folder() / "run.json");
+  return run;
+}
+
 }  // namespace
+
+Run open_run(const std::filesystem::path& folder, bool write) {
+  return with_whole_timeline(Run::open(folder, write));
+}
+
+Run create_run(const std::filesystem::path& folder, const std::filesystem::path& capture) {
+  return with_whole_timeline(Run::create(folder, capture));
+}
 
 void warn_of_doubts(const Scene& scene, Session& session) {
   for (const auto& said : scene.body->said) session.warn(said);
@@ -69,8 +108,7 @@ std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest) 
   const auto file = run.steps().back() / "diagnosis.json";
   if (!std::filesystem::exists(file)) return {};
   try {
-    return diagnosis_from_json(nlohmann::json::parse(read_text(file), nullptr, false),
-                               newest.form.realise(newest.p), file);
+    return diagnosis_from_json(read_json(file), newest.form.realise(newest.p), file);
   } catch (const InputError&) {
     return {};  // of another model or version, or damaged: it is made anew
   }

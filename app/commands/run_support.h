@@ -22,6 +22,10 @@ void warn_of_doubts(const Scene& scene, Session& session);
 
 Bench open_capture(const std::filesystem::path& capture, Session& session);
 
+/// Run::open() and Run::create(), and the timeline holds what the commands read in it.
+Run open_run(const std::filesystem::path& folder, bool write);
+Run create_run(const std::filesystem::path& folder, const std::filesystem::path& capture);
+
 /// Throws Interrupted or Failed where there is a failure instead of a value.
 template <class T>
 T value_or_fail(std::variant<T, NumericalFailure> result) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgcodecs.hpp>
-#include <stdexcept>
+
+#include "capture_io/encode_png.h"
 
 namespace hookeye {
 
@@ -12,19 +12,14 @@ Quantised intensity_quantum(double full) { return {full / 65534.0, 1}; }
 Quantised residual_quantum() { return {1.0 / 32.0, 32768}; }
 
 std::string encode_png16(const Image& image, const Quantised& quantum) {
-  cv::Mat codes(image.height, image.width, CV_16UC1);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const double v = image.at(x, y);
-      codes.at<unsigned short>(y, x) =
-          std::isnan(v) ? 0
-                        : static_cast<unsigned short>(std::clamp(
-                              std::round(v / quantum.step) + quantum.zero, 1.0, 65535.0));
-    }
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", codes, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6}))
-    throw std::runtime_error("a picture could not be encoded");
-  return {bytes.begin(), bytes.end()};
+  std::vector<uint16_t> codes(image.pixels(), 0);
+  for (size_t p = 0; p < codes.size(); ++p) {
+    const double v = image.values[p * static_cast<size_t>(image.channels)];
+    if (!std::isnan(v))
+      codes[p] = static_cast<uint16_t>(
+          std::clamp(std::round(v / quantum.step) + quantum.zero, 1.0, 65535.0));
+  }
+  return encode_png(image.width, image.height, codes);
 }
 
 Image shrink(const Image& image, int factor) {

@@ -18,7 +18,7 @@ Quantised intensity_quantum(double full);
 /// Residuals over noise: steps of 1/32 up to +-1024, a hundredth of what noise alone scatters.
 Quantised residual_quantum();
 
-/// 1-channel picture as PNG. NaN becomes 0. The only file that encodes PNG for the page (OpenCV).
+/// 1-channel picture as PNG. NaN becomes 0.
 std::string encode_png16(const Image& image, const Quantised& quantum);
 
 /// Mean of `factor` x `factor` blocks, NaN left out; edge blocks may be smaller.

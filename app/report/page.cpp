@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "app/report/parse_json.h"
+#include "capture_io/json_file.h"
 #include "estimation/page_data.h"
 
 #ifdef HOOKEYE_HAS_PAGE

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string>
 
-#include "app/report/parse_json.h"
+#include "capture_io/json_file.h"
 #include "capture_io/run.h"
 
 namespace hookeye {

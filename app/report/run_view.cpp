@@ -8,8 +8,8 @@
 
 #include "app/report/encode_png.h"
 #include "app/report/facts.h"
-#include "app/report/parse_json.h"
 #include "app/report/rebuilt_timeline.h"
+#include "capture_io/json_file.h"
 #include "capture_io/run.h"
 
 namespace hookeye {

@@ -79,7 +79,7 @@ AddOptions RefitJob::options() {
 }
 
 void RefitJob::refit(const AddRequest& request) {
-  Run run = Run::open(run_, true);
+  Run run = open_run(run_, true);
   if (!bench_) bench_.emplace(open_capture(run.capture(), session_));
   AddOptions wanted = options();
   stage("evaluating the newest step");

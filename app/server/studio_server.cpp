@@ -235,7 +235,7 @@ class Studio {
       return refuse(response, 400, error.what());
     }
     try {
-      check_stands(Run::open(view_.folder(), false), what);
+      check_stands(open_run(view_.folder(), false), what);
     } catch (const InputError& error) {
       return refuse(response, 409, error.what());
     }

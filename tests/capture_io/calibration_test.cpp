@@ -55,6 +55,30 @@ TEST(CalibrationTest, RotationVectorAndMissingPose) {
   EXPECT_FALSE(has_pose);
 }
 
+/// OpenCV's reader calls itself for every level: a stack has an end.
+TEST(CalibrationTest, DeepNestingIsNoCrash) {
+  const TemporaryFolder folder;
+  const auto repeated = [](const std::string& text) {
+    std::string all;
+    for (int i = 0; i < 60000; ++i) all += text;
+    return all;
+  };
+  const std::pair<const char*, std::string> files[] = {
+      {"a.yml", "%YAML:1.0\n---\nK: " + repeated("[") + "\n"},
+      {"a.json", "{\"K\": " + repeated("[") + repeated("]") + "}"},
+      {"a.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>" + repeated("<K>") + "\n"}};
+  for (const auto& [name, text] : files) {
+    write_text(folder / name, text);
+    try {
+      read_opencv_calibration(folder / name);
+      ADD_FAILURE() << name << " was read";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.place().file, (folder / name).string());
+      EXPECT_NE(error.wrong().find("not an OpenCV file"), std::string::npos) << error.what();
+    }
+  }
+}
+
 /// Broken calibrations and what is said about them.
 TEST(CalibrationTest, FaultsAreNamed) {
   const TemporaryFolder folder;

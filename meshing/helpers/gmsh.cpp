@@ -1,23 +1,25 @@
-// The only file that touches gmsh: msh 2.2 / 4.1 and medit meshes.
+// The only file that touches gmsh: msh 2.2 / 4.1 and medit meshes. A program of its own.
 #include <fmt/format.h>
 #include <gmsh.h>
 
 #include <fstream>
 #include <map>
-#include <mutex>
 #include <set>
 #include <sstream>
 #include <unordered_map>
 
+#include "capture_io/helper_main.h"
 #include "meshing/detail.h"
+#include "meshing/parcels.h"
+#include "meshing/whole_numbers.h"
 
 namespace hookeye::detail {
 namespace {
 
-/// gmsh keeps one global state: one session at a time, silent, without the user's start-up files.
+/// Silent, without the user's start-up files.
 class Session {
  public:
-  Session() : lock_(mutex()) {
+  Session() {
     gmsh::initialize(0, nullptr, false);
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::option::setNumber("General.AbortOnError", 2);  // throw
@@ -33,13 +35,6 @@ class Session {
     }
     return "";
   }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  std::lock_guard<std::mutex> lock_;
 };
 
 using Tags = std::vector<std::size_t>;
@@ -120,7 +115,7 @@ class OwnGroups {
     int type = 0, tags = 0, group = 0, other = 0;
     in >> number >> type >> tags;
     if (tags < 1 || !(in >> group) || group == 0) return;
-    for (int i = 1; i < tags; ++i) in >> other;
+    for (int i = 1; i < tags && in >> other;) ++i;
     const size_t corners = type == 4 || type == 11 ? 4 : type == 2 || type == 9 ? 3 : 0;
     Tags nodes(corners);
     for (std::size_t& node : nodes) in >> node;
@@ -160,6 +155,24 @@ void expect_all_tetrahedra(const std::filesystem::path& file, Eigen::Index held,
         place,
         fmt::format("{} announces {} tetrahedra and holds {}", file.string(), announced, held),
         "the whole file");
+}
+
+/// Elements of a text msh 2 and of a medit file.
+void check_numbers(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  double version = 0;
+  int binary = 0;
+  bool counts = file.extension() == ".mesh";
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (line.starts_with("$MeshFormat") && std::getline(in, line)) {
+      ++number;
+      std::istringstream(line) >> version >> binary;
+      if (binary != 0 || version >= 4) return;
+    }
+    if (line.starts_with('$')) counts = line.starts_with("$Elements");
+    if (counts) check_whole_numbers(line, {file.string(), number});
+  }
 }
 
 /// Node tags ascending: node i of a file numbered without gaps becomes column i-1.
@@ -244,26 +257,7 @@ void take_triangles(RawVolume& raw, const std::unordered_map<std::size_t, int>& 
   }
 }
 
-}  // namespace
-
-RawVolume read_gmsh(const std::filesystem::path& file, const Place& place) {
-  const Session session;
-  std::string fault;
-  try {
-    gmsh::open(file.string());
-    fault = Session::complaint();
-  } catch (const std::string& message) {
-    fault = Session::complaint();
-    if (fault.empty()) fault = message;
-  } catch (const std::exception& e) {
-    fault = e.what();
-  } catch (...) {
-    fault = "unreadable";
-  }
-  if (!fault.empty()) {
-    throw InputError(place, fmt::format("{} cannot be read: {}", file.string(), fault),
-                     "a complete gmsh mesh (msh 2.2 or 4.1) or medit mesh");
-  }
+RawVolume taken(const std::filesystem::path& file, const Place& place) {
   RawVolume raw;
   const auto column_of = read_nodes(raw);
   raw.lost = std::max(0, announced_nodes(file) - static_cast<int>(raw.X.cols()));
@@ -274,4 +268,40 @@ RawVolume read_gmsh(const std::filesystem::path& file, const Place& place) {
   return raw;
 }
 
+RawVolume read(const std::filesystem::path& file, const Place& place) {
+  const Session session;
+  std::string fault;
+  check_numbers(file);
+  try {
+    gmsh::open(file.string());
+    fault = Session::complaint();
+    if (fault.empty()) return taken(file, place);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::string& message) {
+    fault = Session::complaint();
+    if (fault.empty()) fault = message;
+  } catch (const std::exception& e) {
+    fault = e.what();
+  } catch (...) {
+    fault = "unreadable";
+  }
+  throw InputError(place, fmt::format("{} cannot be read: {}", file.string(), fault),
+                   "a complete gmsh mesh (msh 2.2 or 4.1) or medit mesh");
+}
+
+std::string answer(Unpacker& request) {
+  request.take<std::string>();  // it has one task
+  const std::filesystem::path file = request.take<std::string>();
+  const Place place = unpack_place(request);
+  Packer out;
+  pack(out, read(file, place));
+  return out.take();
+}
+
+}  // namespace
 }  // namespace hookeye::detail
+
+int main() { return hookeye::serve(hookeye::detail::answer); }

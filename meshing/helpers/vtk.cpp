@@ -1,14 +1,16 @@
-// The only file that touches VTK: ply and stl surfaces, vtu meshes and results.
+// The only file that touches VTK: ply and stl surfaces, vtu meshes and results. A program of its
+// own.
 #include <fmt/format.h>
-#include <unistd.h>
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
+#include <vtkCellTypes.h>
 #include <vtkCommand.h>
 #include <vtkDataArray.h>
 #include <vtkDoubleArray.h>
 #include <vtkExecutive.h>
+#include <vtkGenericCell.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
 #include <vtkPLYReader.h>
@@ -20,7 +22,12 @@
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <fstream>
+
+#include "capture_io/helper_main.h"
 #include "meshing/detail.h"
+#include "meshing/parcels.h"
+#include "meshing/whole_numbers.h"
 
 namespace hookeye {
 namespace {
@@ -103,49 +110,53 @@ detail::TriangleSoup read_with(Reader* reader, const std::filesystem::path& file
   return soup_of(reader->GetOutput(), file);
 }
 
-/// Tries `read` in a process of its own. False: that ended by a signal or without memory.
-template <class Read>
-bool survives(const Read& read) {
-  const pid_t process = fork();
-  if (process < 0) return true;
-  if (process == 0) {
-    detail::die_quietly();
-    try {
-      read();
-    } catch (const InputError&) {  // said by the parent
-    } catch (...) {
-      _exit(1);
-    }
-    _exit(0);
+/// Faces of a text ply: "3 0 1 2".
+void check_ply_numbers(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  bool text = false, faces = false;
+  for (int number = 1; std::getline(in, line); ++number) {
+    text = text || line.starts_with("format ascii");
+    if (line.starts_with("end_header") && !text) return;
+    faces = faces || line.starts_with("end_header");
+    if (faces) detail::check_whole_numbers(line, {file.string(), number});
   }
-  return detail::ended_well(process);
 }
 
-}  // namespace
-
-namespace detail {
-
-TriangleSoup read_ply(const std::filesystem::path& file) {
-  const auto read = [&] {
-    vtkNew<vtkPLYReader> reader;
-    return read_with(reader.Get(), file);
-  };
-  // VTK's reader believes the counts in the file: a file cut short ends the process.
-  if (!survives(read))
-    throw InputError({file.string()}, "the file is damaged: it does not hold what its header says",
-                     "a complete ply file of triangles");
-  return read();
+detail::TriangleSoup read_ply(const std::filesystem::path& file) {
+  check_ply_numbers(file);
+  vtkNew<vtkPLYReader> reader;
+  return read_with(reader.Get(), file);
 }
 
-TriangleSoup read_stl(const std::filesystem::path& file) {
+/// A binary file believes its count: it would be allocated. "solid" begins a text, or a binary
+/// file whose author did not know that.
+void check_stl_count(const std::filesystem::path& file) {
+  constexpr std::streamsize kHead = 80;
+  constexpr double kTriangle = 50.0;
+  char head[kHead + 64] = {};
+  uint32_t count = 0;
+  std::ifstream in(file, std::ios::binary);
+  in.read(head, sizeof head);
+  const std::string_view all(head, static_cast<size_t>(in.gcount()));
+  if (all.size() < kHead + sizeof count) return;
+  const bool text = all.starts_with("solid") && all.find('\0') == std::string_view::npos;
+  std::memcpy(&count, head + kHead, sizeof count);
+  const double room =
+      (static_cast<double>(std::filesystem::file_size(file)) - kHead - sizeof count) / kTriangle;
+  if (text || count <= room) return;
+  throw InputError({file.string()},
+                   fmt::format("the header tells {} triangles, the file has room for {:.0f}", count,
+                               std::floor(room)),
+                   "a complete stl file of triangles");
+}
+
+detail::TriangleSoup read_stl(const std::filesystem::path& file) {
+  check_stl_count(file);
   vtkNew<vtkSTLReader> reader;
   reader->MergingOff();  // merging would drop degenerate triangles and shift all later indices
   return read_with(reader.Get(), file);
 }
-
-}  // namespace detail
-
-namespace {
 
 vtkUnstructuredGrid* load(vtkXMLUnstructuredGridReader* reader, const std::filesystem::path& file,
                           const Place& place) {
@@ -169,71 +180,112 @@ vtkUnstructuredGrid* load(vtkXMLUnstructuredGridReader* reader, const std::files
   return reader->GetOutput();
 }
 
-}  // namespace
-
-namespace detail {
-
-RawVolume read_vtu(const std::filesystem::path& file, const Place& place) {
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  vtkUnstructuredGrid* grid = load(reader, file, place);
-  RawVolume raw;
-  raw.X.resize(3, grid->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i) {
-    grid->GetPoint(i, raw.X.col(i).data());
-  }
+/// Tetrahedra of one order; whatever else has a volume would leave a hole. Faces, edges and points
+/// of the mesh are passed over.
+std::vector<vtkIdType> tetrahedra_of(vtkUnstructuredGrid* grid, const Place& file) {
   std::vector<vtkIdType> cells;
-  int nodes = 0;
+  std::map<int, int> dimension_of;
+  int order = 0;
   for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
     const int type = grid->GetCellType(c);
-    if (type != VTK_TETRA && type != VTK_QUADRATIC_TETRA) continue;
-    const int n = type == VTK_TETRA ? 4 : 10;
-    if (nodes != 0 && n != nodes) {
-      throw InputError(place, fmt::format("cell {} has {} nodes, earlier ones {}", c, n, nodes),
-                       "tetrahedra of one order");
+    const auto [dimension, fresh] = dimension_of.try_emplace(type, 3);
+    if (fresh) {
+      vtkSmartPointer<vtkCell> cell;
+      cell.TakeReference(vtkGenericCell::InstantiateCell(type));
+      if (cell) dimension->second = cell->GetCellDimension();
     }
-    nodes = n;
+    if (dimension->second < 3) continue;
+    if (type != VTK_TETRA && type != VTK_QUADRATIC_TETRA) {
+      throw InputError(file,
+                       fmt::format("cell {} is no tetrahedron with 4 or 10 nodes (kind {}, {})", c,
+                                   type, vtkCellTypes::GetClassNameFromTypeId(type)),
+                       "only tetrahedra of order 1 or 2 in the volume");
+    }
+    if (order != 0 && type != order)
+      throw InputError(file, fmt::format("cell {} is of another order than earlier ones", c),
+                       "tetrahedra of one order");
+    order = type;
     cells.push_back(c);
   }
+  return cells;
+}
+
+detail::RawVolume read_vtu(const std::filesystem::path& file, const Place& place) {
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  vtkUnstructuredGrid* grid = load(reader, file, place);
+  const Place at{file.string()};
+  const vtkIdType points = grid->GetNumberOfPoints();
+  detail::RawVolume raw;
+  raw.X.resize(3, points);
+  for (vtkIdType i = 0; i < points; ++i) grid->GetPoint(i, raw.X.col(i).data());
+  const std::vector<vtkIdType> cells = tetrahedra_of(grid, at);
+  const int nodes = cells.empty() || grid->GetCellType(cells[0]) == VTK_TETRA ? 4 : 10;
   raw.elements.resize(nodes, static_cast<Eigen::Index>(cells.size()));
   vtkNew<vtkIdList> ids;
   for (size_t e = 0; e < cells.size(); ++e) {
     grid->GetCellPoints(cells[e], ids);
+    if (ids->GetNumberOfIds() != nodes)
+      throw InputError(at, fmt::format("cell {} has {} nodes", cells[e], ids->GetNumberOfIds()),
+                       fmt::format("{} nodes, as earlier ones", nodes));
     for (int k = 0; k < nodes; ++k) {
-      raw.elements(k, static_cast<Eigen::Index>(e)) = static_cast<int>(ids->GetId(kFromVtk[k]));
+      const vtkIdType node = ids->GetId(kFromVtk[k]);
+      if (node < 0 || node >= points)
+        throw InputError(at, fmt::format("cell {} names node {}", cells[e], node),
+                         fmt::format("0 to {}: the nodes of the file", points - 1));
+      raw.elements(k, static_cast<Eigen::Index>(e)) = static_cast<int>(node);
     }
     raw.element_names.push_back(std::to_string(cells[e]));
   }
   return raw;
 }
 
-}  // namespace detail
+/// What write_vtu hands over.
+struct Results {
+  Eigen::Matrix3Xd X;
+  Eigen::MatrixXi elements;
+  struct Array {
+    std::string name;
+    Eigen::MatrixXd values;
+    bool on_points = true;
+  };
+  std::vector<Array> arrays;
+};
 
-namespace {
+Results unpack_results(Unpacker& from) {
+  Results out;
+  from.get(out.X);
+  from.get(out.elements);
+  for (auto n = from.take<uint64_t>(); n > 0; --n) {
+    Results::Array array;
+    from.get(array.name);
+    from.get(array.values);
+    from.get(array.on_points);
+    out.arrays.push_back(std::move(array));
+  }
+  return out;
+}
 
-vtkNew<vtkUnstructuredGrid> grid_of(const TetMesh& mesh) {
+vtkNew<vtkUnstructuredGrid> grid_of(const Results& results) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  points->SetNumberOfPoints(mesh.nodes());
-  for (int i = 0; i < mesh.nodes(); ++i) points->SetPoint(i, mesh.X.col(i).data());
+  points->SetNumberOfPoints(results.X.cols());
+  for (Eigen::Index i = 0; i < results.X.cols(); ++i) points->SetPoint(i, results.X.col(i).data());
   grid->SetPoints(points);
-  const int n = mesh.nodes_per_element();
-  const int type = mesh.order == 1 ? VTK_TETRA : VTK_QUADRATIC_TETRA;
+  const auto n = static_cast<int>(results.elements.rows());
+  const int type = n == 4 ? VTK_TETRA : VTK_QUADRATIC_TETRA;
   vtkIdType ids[10];
-  grid->Allocate(mesh.size());
-  for (int e = 0; e < mesh.size(); ++e) {
-    for (int k = 0; k < n; ++k) ids[kFromVtk[k]] = mesh.elements(k, e);
+  grid->Allocate(results.elements.cols());
+  for (Eigen::Index e = 0; e < results.elements.cols(); ++e) {
+    for (int k = 0; k < n; ++k) ids[kFromVtk[k]] = results.elements(k, e);
     grid->InsertNextCell(type, n, ids);
   }
   return grid;
 }
 
-}  // namespace
-
-void write_vtu(const std::filesystem::path& file, const TetMesh& mesh,
-               const std::vector<VtuArray>& arrays) {
-  const vtkNew<vtkUnstructuredGrid> grid = grid_of(mesh);
-  for (const VtuArray& array : arrays) {
+bool write(const std::filesystem::path& file, const Results& results) {
+  const vtkNew<vtkUnstructuredGrid> grid = grid_of(results);
+  for (const Results::Array& array : results.arrays) {
     vtkNew<vtkDoubleArray> data;
     data->SetName(array.name.c_str());
     data->SetNumberOfComponents(static_cast<int>(array.values.rows()));
@@ -244,26 +296,18 @@ void write_vtu(const std::filesystem::path& file, const TetMesh& mesh,
                                    : grid->GetCellData();
     to->AddArray(data);
   }
-  std::filesystem::path partial = file;
-  partial += ".part";
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   Listener listener(writer);
   listener.listen_to(writer->GetExecutive());
-  writer->SetFileName(partial.c_str());
+  writer->SetFileName(file.c_str());
   writer->SetInputData(grid);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
-  const bool written = writer->Write() == 1 && !listener.heard();
-  std::error_code failed;
-  if (written) std::filesystem::rename(partial, file, failed);
-  if (!written || failed) {
-    std::filesystem::remove(partial, failed);
-    throw cannot_write(file.string());
-  }
+  return writer->Write() == 1 && !listener.heard();
 }
 
-Eigen::MatrixXd read_vtu_array(const std::filesystem::path& file, const std::string& name,
-                               bool on_points) {
+Eigen::MatrixXd read_array(const std::filesystem::path& file, const std::string& name,
+                           bool on_points) {
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   vtkUnstructuredGrid* grid = load(reader, file, {file.string()});
   vtkDataSetAttributes* from =
@@ -282,4 +326,25 @@ Eigen::MatrixXd read_vtu_array(const std::filesystem::path& file, const std::str
   return values;
 }
 
+std::string answer(Unpacker& request) {
+  const auto task = request.take<std::string>();
+  const std::filesystem::path file = request.take<std::string>();
+  Packer out;
+  if (task == "ply") detail::pack(out, read_ply(file));
+  if (task == "stl") detail::pack(out, read_stl(file));
+  if (task == "volume") detail::pack(out, read_vtu(file, detail::unpack_place(request)));
+  if (task == "array") {
+    const auto name = request.take<std::string>();
+    out.put(read_array(file, name, request.take<bool>()));
+  }
+  if (task == "write") {
+    const Results results = unpack_results(request);
+    out.put(write(file, results));
+  }
+  return out.take();
+}
+
+}  // namespace
 }  // namespace hookeye
+
+int main() { return hookeye::serve(hookeye::answer); }

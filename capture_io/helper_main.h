@@ -1,0 +1,18 @@
+// The other side of helper.h: what a helper's main() calls.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "capture_io/wire.h"
+
+namespace hookeye {
+
+/// Answers requests until the program goes. `answer` may throw InputError. Returns the exit status.
+int serve(const std::function<std::string(Unpacker&)>& answer);
+
+/// For the rest of this request: memory [bytes] over what the helper has now, and seconds of
+/// computing over what it has used.
+void allow(double memory, double seconds);
+
+}  // namespace hookeye

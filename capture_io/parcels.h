@@ -1,0 +1,64 @@
+// Pictures and cameras as bytes, between the program and its helpers.
+#pragma once
+
+#include <string>
+
+#include "capture_io/camera.h"
+#include "capture_io/wire.h"
+
+namespace hookeye {
+
+/// A picture as it is to be stored.
+enum class StoredAs { bytes, words, floats };
+
+struct StoredImage {
+  int width = 0, height = 0, channels = 0;
+  StoredAs stored = StoredAs::bytes;
+  int compression = 6;  ///< of PNG
+  std::string values;   ///< row-major, channels interleaved, of the kind `stored`
+};
+
+inline void pack(Packer& to, const StoredImage& image) {
+  to.put(image.width).put(image.height).put(image.channels).put(image.stored);
+  to.put(image.compression).put(image.values);
+}
+
+inline StoredImage unpack_stored(Unpacker& from) {
+  StoredImage image;
+  from.get(image.width);
+  from.get(image.height);
+  from.get(image.channels);
+  from.get(image.stored);
+  from.get(image.compression);
+  from.get(image.values);
+  const size_t size = image.stored == StoredAs::floats  ? 4
+                      : image.stored == StoredAs::words ? 2
+                                                        : 1;
+  if (image.width < 0 || image.height < 0 || image.channels < 0 ||
+      image.values.size() != size * static_cast<size_t>(image.width) *
+                                 static_cast<size_t>(image.height) *
+                                 static_cast<size_t>(image.channels))
+    throw WireFault();
+  return image;
+}
+
+inline void pack(Packer& to, const Camera& camera) {
+  to.put(camera.name).put(camera.width).put(camera.height).put(camera.projection);
+  to.put(camera.fx).put(camera.fy).put(camera.cx).put(camera.cy);
+  to.put(camera.distortion).put(camera.R).put(camera.t);
+}
+
+inline Camera unpack_camera(Unpacker& from) {
+  Camera camera;
+  from.get(camera.name);
+  from.get(camera.width);
+  from.get(camera.height);
+  from.get(camera.projection);
+  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) from.get(*value);
+  from.get(camera.distortion);
+  from.get(camera.R);
+  from.get(camera.t);
+  return camera;
+}
+
+}  // namespace hookeye

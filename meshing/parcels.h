@@ -1,0 +1,17 @@
+// Meshes as bytes, between the program and its helpers.
+#pragma once
+
+#include "capture_io/wire.h"
+#include "meshing/detail.h"
+
+namespace hookeye::detail {
+
+void pack(Packer& to, const Place& place);
+void pack(Packer& to, const TriangleSoup& soup);
+void pack(Packer& to, const RawVolume& volume);
+Place unpack_place(Unpacker& from);
+/// Throw WireFault where counts or indices do not fit each other.
+TriangleSoup unpack_soup(Unpacker& from);
+RawVolume unpack_volume(Unpacker& from);
+
+}  // namespace hookeye::detail

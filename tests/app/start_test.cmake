@@ -1,0 +1,17 @@
+# The program starts without the libraries that its helpers host: they bring 300 others, and half a
+# second before the first line of ours. -DPROGRAM=FILE
+execute_process(COMMAND ldd ${PROGRAM} OUTPUT_VARIABLE all RESULT_VARIABLE status)
+if(NOT status EQUAL 0 OR NOT all MATCHES "libstdc")
+  message(FATAL_ERROR "ldd ${PROGRAM} ends with ${status}: ${all}")
+endif()
+foreach(library vtk gmsh OpenImageIO opencv_imgcodecs)
+  if(all MATCHES "lib${library}[^ ]*")
+    message(FATAL_ERROR "the program loads ${CMAKE_MATCH_0} when it starts")
+  endif()
+endforeach()
+string(REGEX MATCHALL "=>" loaded "${all}")
+list(LENGTH loaded count)
+message(STATUS "${count} libraries")
+if(count GREATER 80)
+  message(FATAL_ERROR "the program loads ${count} libraries when it starts")
+endif()

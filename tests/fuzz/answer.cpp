@@ -1,0 +1,29 @@
+// What a helper answers: believed no more than a file.
+#include "capture_io/parcels.h"
+#include "capture_io/wire.h"
+#include "fuzz.h"
+#include "meshing/parcels.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace hookeye;
+  if (size == 0) return 0;
+  Unpacker from({reinterpret_cast<const char*>(data) + 1, size - 1});
+  try {
+    switch (data[0] % 4) {
+      case 0:
+        detail::unpack_volume(from);
+        break;
+      case 1:
+        detail::unpack_soup(from);
+        break;
+      case 2:
+        unpack_stored(from);
+        break;
+      default:
+        unpack_camera(from);
+    }
+    from.end();
+  } catch (const WireFault&) {
+  }
+  return 0;
+}
