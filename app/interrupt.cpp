@@ -19,7 +19,7 @@ void on_signal(int signal, const sigset_t& watched) {
     return;
   }
   constexpr std::string_view said =
-      "\nstopping; finished steps are kept (once more: stop at once)\n";
+      "\nstopping; all that is finished is kept (once more: stop at once)\n";
   // Nothing can be done here when standard error is closed.
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, said.data(), said.size());
 }

@@ -156,7 +156,7 @@ int run_program(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "\nExit status: 0 done, 1 internal error, 2 bad input, 3 the numbers failed,\n"
-      "130 stopped by Ctrl-C (finished steps are kept).");
+      "130 stopped by Ctrl-C (all that is finished is kept).");
   for (const AddCommand add : kCommands) add(app, chosen);
   for (CLI::App* command : app.get_subcommands({})) {
     command->add_flag("--json", session.json, "One JSON document on standard output");

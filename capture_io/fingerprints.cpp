@@ -18,6 +18,10 @@ namespace fs = std::filesystem;
 /// Tells marks of another kind apart: those of runs that an older program made.
 const std::string kKind = "xxh3:";
 
+std::string text_of(const XXH128_hash_t& hash) {
+  return fmt::format("{}{:016x}{:016x}", kKind, hash.high64, hash.low64);
+}
+
 /// XXH3 of 128 bits over all bytes.
 std::string fingerprint(const fs::path& file) {
   constexpr size_t kPiece = 1 << 20;
@@ -31,8 +35,7 @@ std::string fingerprint(const fs::path& file) {
     XXH3_128bits_update(state.get(), piece.data(), static_cast<size_t>(stream.gcount()));
   }
   if (!stream.eof()) return kKind + "unreadable";
-  const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
-  return fmt::format("{}{:016x}{:016x}", kKind, hash.high64, hash.low64);
+  return text_of(XXH3_128bits_digest(state.get()));
 }
 
 bool same_kind(const std::string& a, const std::string& b) {
@@ -50,6 +53,10 @@ void add_named(const YamlNode& node, const fs::path& folder,
 }
 
 }  // namespace
+
+std::string fingerprint_of(std::string_view bytes) {
+  return text_of(XXH3_128bits(bytes.data(), bytes.size()));
+}
 
 std::map<std::string, std::string> fingerprints(const fs::path& yaml) {
   std::map<std::string, std::string> out;

@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 const std::string temporary_prefix = ".tmp-";
+constexpr const char* kArchive = "archive";
 
 /// An advisory lock on RUN/.lock, held as long as the object lives; the kernel drops it with the
 /// process, so a kill leaves no stale lock.
@@ -139,7 +140,7 @@ struct Run::Impl {
   Impl& operator=(const Impl&) = delete;
   /// A run that began here and has no step to show is none.
   ~Impl() {
-    if (!began || !timeline.at("steps").empty()) return;
+    if (!began || !timeline.at("steps").empty() || fs::exists(folder / kArchive)) return;
     remove_leftovers(folder);
     std::error_code ignored;
     if (!fs::is_empty(folder / "steps", ignored)) return;
@@ -221,6 +222,7 @@ Run Run::open(const fs::path& folder, bool write) {
 
 const fs::path& Run::folder() const { return impl_->folder; }
 fs::path Run::capture() const { return impl_->timeline["capture"].get<std::string>(); }
+fs::path Run::archive() const { return impl_->folder / kArchive; }
 const json& Run::timeline() const { return impl_->timeline; }
 
 std::vector<fs::path> Run::steps() const {

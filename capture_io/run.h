@@ -19,7 +19,7 @@ class Run {
   /// Creates the folder (parents too) and run.json, or opens it when it holds a run of the same
   /// capture. Throws InputError when it holds something else. One writer at a time: takes an
   /// advisory lock on RUN/.lock, throws InputError when another process has it. A run that has no
-  /// step when the object goes (the first fit failed) goes with it.
+  /// step and no archive() when the object goes (the first fit failed) goes with it.
   static Run create(const std::filesystem::path& folder, const std::filesystem::path& capture);
   /// Opens an existing run; `write` takes the lock.
   static Run open(const std::filesystem::path& folder, bool write);
@@ -31,6 +31,7 @@ class Run {
   std::filesystem::path capture() const;             ///< absolute path of the capture's yaml
   const nlohmann::json& timeline() const;            ///< the content of run.json (product contract)
   std::vector<std::filesystem::path> steps() const;  ///< folders of finished steps, in order
+  std::filesystem::path archive() const;  ///< file of what was worked out so far (journal.h)
 
   /// `write` fills a temporary folder; it becomes steps/NN-NAME only when `write` returned, then
   /// `entry` is appended to run.json's "steps". Returns the step's folder.

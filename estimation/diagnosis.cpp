@@ -7,11 +7,14 @@
 #include <cmath>
 #include <map>
 
+#include "capture_io/input_error.h"
+#include "estimation/archived.h"
 #include "estimation/candidates.h"
 #include "estimation/diagnosis_sums.h"
 #include "estimation/evidence.h"
 #include "estimation/gram.h"
 #include "estimation/mesh_error.h"
+#include "estimation/step_json.h"
 
 namespace hookeye {
 
@@ -196,16 +199,6 @@ void weigh(std::vector<EffectScore>& scores) {
 
 }  // namespace
 
-void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
-  const auto parameters = fitted.form.parameters();
-  fitted.mesh_reach = diagnosis.mesh_shift;
-  for (int i = 0; i < fitted.mesh_reach.size(); ++i) {
-    const double reach = fitted.mesh_reach[i];
-    double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
-    end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
-  }
-}
-
 namespace {
 
 /// The candidates with their evidence, and the best one of every effect.
@@ -274,15 +267,19 @@ EffectScore score_effect(const Context& context, const Scored& scored, size_t be
   return score;
 }
 
+/// Drawn, or speaks: it is told where it takes the body.
+bool is_displaced(const EffectScore& score) {
+  return score.pictured ||
+         (score.testable && score.evidence >= kNameable && !sensors_alone(*score.best));
+}
+
 /// Which of the ranked effects are drawn, and where those and all that speak take the body.
 void displace_leaders(const Evaluation& evaluation, const Scored& scored,
                       std::vector<EffectScore>& effects) {
   for (size_t i = 0; i < effects.size(); ++i) {
     EffectScore& score = effects[i];
     score.pictured = score.testable && i < kPictured;
-    const bool speaks =
-        score.testable && score.evidence >= kNameable && !sensors_alone(*score.best);
-    if (score.pictured || speaks)
+    if (is_displaced(score))
       displace(evaluation, scored.projected[scored.best.at(score.effect)], score);
   }
 }
@@ -301,10 +298,8 @@ std::variant<Evaluation, NumericalFailure> evaluate_for(Workspace& workspace, co
   return workspace.evaluate(fitted.form, fitted.p, out, ingredients);
 }
 
-}  // namespace
-
-std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
-                                                   const DiagnosisOptions& options) {
+std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, const Fitted& fitted,
+                                                        const DiagnosisOptions& options) {
   Diagnosis out;
   const Scene& scene = *fitted.form.scene;
   std::vector<EffectScore> idle;
@@ -344,6 +339,59 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
   displace_leaders(evaluation, scored, out.effects);
   out.effects.insert(out.effects.end(), idle.begin(), idle.end());
   return out;
+}
+
+Question question_of_diagnosis(const Fitted& fitted, const DiagnosisOptions& options) {
+  Question question = question_of("diagnosis", fitted.form, fitted.p);
+  for (const std::string& name : options.without) question.text += "\nwithout " + name;
+  for (const Effect* effect : options.also) question.text += "\nalso " + effect->name();
+  question.numbers.push_back(options.null_simulations);
+  question.numbers.push_back(options.seed);
+  return question;
+}
+
+}  // namespace
+
+std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
+                                                   const DiagnosisOptions& options) {
+  return archived<Diagnosis>(
+      workspace, options.cancel, [&] { return question_of_diagnosis(fitted, options); },
+      [&] { return diagnose_anew(workspace, fitted, options); },
+      [](const Diagnosis& diagnosis) { return to_json(diagnosis); },
+      [&](const nlohmann::json& known) -> std::optional<Diagnosis> {
+        try {
+          return diagnosis_from_json(known, realised(fitted), "archive");
+        } catch (const InputError&) {
+          return {};  // of an effect that is not of the catalogue
+        }
+      });
+}
+
+bool lacks_displaced(const Diagnosis& diagnosis) {
+  return std::any_of(
+      diagnosis.effects.begin(), diagnosis.effects.end(),
+      [](const EffectScore& score) { return is_displaced(score) && score.displaced.empty(); });
+}
+
+std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitted& fitted,
+                                               const std::atomic<bool>* cancel,
+                                               Diagnosis& diagnosis) {
+  std::vector<std::shared_ptr<const Ingredient>> ingredients;
+  for (const EffectScore& score : diagnosis.effects)
+    if (is_displaced(score)) ingredients.push_back(score.best);
+  EvaluationOptions options;
+  options.held_out = true;
+  options.cancel = cancel;
+  const auto result = workspace.evaluate(fitted.form, fitted.p, options, ingredients);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  ProjectedHypothesis columns;
+  columns.first = columns.base = fitted.form.size();
+  for (EffectScore& score : diagnosis.effects) {
+    if (!is_displaced(score)) continue;
+    displace(std::get<Evaluation>(result), columns, score);
+    columns.first += score.dof;
+  }
+  return {};
 }
 
 }  // namespace hookeye

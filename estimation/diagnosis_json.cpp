@@ -50,19 +50,21 @@ json to_json(const Diagnosis& diagnosis) {
     effects.push_back(effect_json(score));
     effects.back()["named"] = nameable(score, diagnosis);
   }
-  return {{"floor", to_json(diagnosis.floor)},
-          {"gate", diagnosis.gate},
-          {"effective_count", diagnosis.effective_count},
-          {"whiteness_p", diagnosis.whiteness_p},
-          {"mesh_note", diagnosis.mesh_note},
-          {"mesh_fall", diagnosis.mesh_fall},
-          {"mesh_fall_held_out", diagnosis.mesh_fall_held_out},
-          {"held_out_missed", diagnosis.held_out_missed},
-          {"held_out_over", diagnosis.held_out_over},
-          {"mesh_in_measured", diagnosis.mesh_in_measured},
-          {"leaders", leaders(diagnosis)},
-          {"conclusion", conclusion(diagnosis)},
-          {"effects", std::move(effects)}};
+  return {
+      {"floor", to_json(diagnosis.floor)},
+      {"gate", diagnosis.gate},
+      {"effective_count", diagnosis.effective_count},
+      {"whiteness_p", diagnosis.whiteness_p},
+      {"mesh_shift", std::vector<double>(diagnosis.mesh_shift.begin(), diagnosis.mesh_shift.end())},
+      {"mesh_note", diagnosis.mesh_note},
+      {"mesh_fall", diagnosis.mesh_fall},
+      {"mesh_fall_held_out", diagnosis.mesh_fall_held_out},
+      {"held_out_missed", diagnosis.held_out_missed},
+      {"held_out_over", diagnosis.held_out_over},
+      {"mesh_in_measured", diagnosis.mesh_in_measured},
+      {"leaders", leaders(diagnosis)},
+      {"conclusion", conclusion(diagnosis)},
+      {"effects", std::move(effects)}};
 }
 
 namespace {
@@ -78,6 +80,7 @@ EffectScore score_from_json(const json& one, const Model& model) {
   const json& predicted = one.at("predicted");
   if (!score.best || score.best->parameters().size() != predicted.size())
     throw std::runtime_error("effect " + score.effect);
+  score.pictured = one.contains("pictures");
   score.dof = one.at("dof");
   if (score.dof < 0 || static_cast<size_t>(score.dof) > predicted.size())
     throw std::runtime_error("effect " + score.effect);
@@ -116,6 +119,7 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     const json& floor = document.at("floor");
     out.floor.chi = floor.at("chi");
     out.floor.cell_variance = floor.at("cell_variance");
+    out.floor.cell_inflation = floor.value("cell_inflation", 1.0);
     out.floor.per_px2 = floor.value("per_px2", 0.0);
     out.floor.source = floor.at("source");
     out.floor.by_camera = floor.value("by_camera", out.floor.by_camera);
@@ -123,6 +127,8 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     out.gate = document.at("gate");
     out.effective_count = document.at("effective_count");
     out.whiteness_p = document.at("whiteness_p");
+    const auto shift = document.value("mesh_shift", std::vector<double>{});
+    out.mesh_shift = VectorXd::Map(shift.data(), static_cast<Eigen::Index>(shift.size()));
     out.mesh_note = document.value("mesh_note", "");
     out.mesh_fall = document.value("mesh_fall", 0.0);
     out.mesh_fall_held_out = document.value("mesh_fall_held_out", 0.0);

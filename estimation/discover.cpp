@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "estimation/archive.h"
 #include "estimation/contest.h"
 #include "estimation/diagnosis_sums.h"
 #include "estimation/fit_to_all.h"
@@ -57,6 +58,23 @@ void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& m
   if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
     tie.clear();
 }
+
+/// Nothing is worked out twice in one search, whether or not what it comes to outlives it.
+class OwnArchive {
+ public:
+  explicit OwnArchive(Workspace& workspace) : workspace_(workspace), own_(!workspace.archive()) {
+    if (own_) workspace_.keep_in(std::make_shared<Archive>());
+  }
+  OwnArchive(const OwnArchive&) = delete;
+  OwnArchive& operator=(const OwnArchive&) = delete;
+  ~OwnArchive() {
+    if (own_) workspace_.keep_in(nullptr);
+  }
+
+ private:
+  Workspace& workspace_;
+  bool own_;
+};
 
 /// All that a search fits may be given up but for its base.
 DiscoverOptions of_rivals(DiscoverOptions options) {
@@ -361,6 +379,7 @@ class Search {
 std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
                                                         const DiscoverOptions& options,
                                                         const DiscoverEvents& events) {
+  const OwnArchive archive(workspace);
   return Search(workspace, options, events).run(std::move(first));
 }
 
@@ -368,6 +387,7 @@ std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const M
                                                    const VectorXd& start,
                                                    const DiscoverOptions& options,
                                                    const DiscoverEvents& events) {
+  const OwnArchive archive(workspace);
   auto base = fit(workspace, form, start, options.fit);
   if (auto* failure = std::get_if<NumericalFailure>(&base)) return *failure;
   Step step;

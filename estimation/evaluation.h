@@ -99,6 +99,8 @@ struct Evaluation {
 /// an iteration with 100 parameters). Where the C library is not glibc, nothing happens.
 void keep_freed_memory();
 
+class Archive;
+
 /// Keeps solvers, renderers and photo pyramids of a scene between evaluations. One at a time.
 /// Evaluating a form of another scene (a finer mesh) moves the workspace there.
 class Workspace {
@@ -113,9 +115,18 @@ class Workspace {
       const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
       const std::vector<std::shared_ptr<const Ingredient>>& candidates = {});
 
+  /// The next evaluation of a form of `scene` starts there: deformed positions by example, 3n each.
+  /// Examples of which they are empty start as they would have.
+  void start_from(const std::shared_ptr<const Scene>& scene, const std::vector<VectorXd>& q);
+
+  /// What fits, trials and diagnoses in this workspace are kept in, and found. Null: nothing is.
+  void keep_in(std::shared_ptr<Archive> archive);
+  Archive* archive() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Archive> archive_;
 };
 
 /// flow_statistics() of every photo of an example, in their order; the channels of one photo

@@ -7,6 +7,7 @@
 
 #include "capture_io/input_error.h"
 #include "estimation/additive_material.h"
+#include "estimation/archived.h"
 #include "estimation/convex_fit.h"
 #include "estimation/fit_stage.h"
 #include "estimation/floor.h"
@@ -35,8 +36,12 @@ double misfit_scale(const Evaluation& evaluation) {
   return std::max(1.0, 1.4826 * static_cast<double>(sample[sample.size() / 2]));
 }
 
-std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
-                                              const VectorXd& p, const FitOptions& options) {
+namespace {
+
+bool is_cancelled(const FitOptions& options) { return options.cancel && options.cancel->load(); }
+
+std::variant<Fitted, NumericalFailure> assess_anew(Workspace& workspace, const ModelForm& form,
+                                                   const VectorXd& p, const FitOptions& options) {
   if (options.progress) options.progress({"final", 0, 0, 0.0});
   EvaluationOptions evaluation;
   evaluation.pictures = true;
@@ -64,6 +69,29 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
       out.low[i] = parameters[i].low, out.high[i] = parameters[i].high;
   }
   return out;
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
+                                              const VectorXd& p, const FitOptions& options) {
+  return archived<Fitted>(
+      workspace, options.cancel,
+      [&] {
+        Question question = question_of("state", form, p);
+        question.numbers.push_back(options.most_iterations);
+        return question;
+      },
+      [&] { return assess_anew(workspace, form, p, options); },
+      [&](const Fitted& fitted) {
+        return nlohmann::json{{"states", states_json(fitted.evaluation, form.scene->body->mesh)}};
+      },
+      [&](const nlohmann::json& known) -> std::optional<std::variant<Fitted, NumericalFailure>> {
+        workspace.start_from(form.scene, states_from(known.at("states"), *form.scene));
+        auto again = assess_anew(workspace, form, p, options);
+        if (std::holds_alternative<Fitted>(again) || is_cancelled(options)) return again;
+        return {};
+      });
 }
 
 namespace {
@@ -226,8 +254,6 @@ bool lost(const Fitted& fitted) {
          std::any_of(parameters.begin(), parameters.end(), is_modulus);
 }
 
-bool is_cancelled(const FitOptions& options) { return options.cancel && options.cancel->load(); }
-
 /// From `start` to the end: the fitted examples, the held-out ones' own numbers, intervals.
 std::variant<Fitted, NumericalFailure> fit_from(Workspace& workspace, const ModelForm& form,
                                                 const VectorXd& start, const FitOptions& options) {
@@ -258,9 +284,10 @@ Model realised(const Fitted& fitted) {
   return model;
 }
 
-std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
-                                           const VectorXd& start, const FitOptions& options) {
-  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+namespace {
+
+std::variant<Fitted, NumericalFailure> fit_anew(Workspace& workspace, const ModelForm& form,
+                                                const VectorXd& start, const FitOptions& options) {
   if (has_additive(form)) return fit_convex_to_end(workspace, form, start, options);
   auto fitted = fit_from(workspace, form, start, options);
   const auto* first = std::get_if<Fitted>(&fitted);
@@ -273,6 +300,55 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
   const bool better =
       second && (!first || second->evaluation.chi(false) < first->evaluation.chi(false));
   return better ? again : fitted;
+}
+
+Question question_of_fit(const ModelForm& form, const VectorXd& start, const FitOptions& options) {
+  Question question = question_of("fit", form, start);
+  for (const double one : {1.0 * options.max_iterations, 1.0 * options.coarse_to_fine,
+                           options.huber, options.aim_chi, 1.0 * options.most_iterations})
+    question.numbers.push_back(one);
+  return question;
+}
+
+nlohmann::json fit_json(const Fitted& fitted) {
+  return {{"p", vector_json(fitted.p)},
+          {"chi", {fitted.evaluation.chi(false), fitted.evaluation.chi(true)}},
+          {"iterations", fitted.iterations},
+          {"converged", fitted.converged},
+          {"smallest_eigenvalue", fitted.smallest_eigenvalue}};
+}
+
+/// The fit that ended so. Empty: it does not look as it did, from another equilibrium.
+std::optional<std::variant<Fitted, NumericalFailure>> fit_from_json(Workspace& workspace,
+                                                                    const ModelForm& form,
+                                                                    const nlohmann::json& known,
+                                                                    const FitOptions& options) {
+  auto there = assess(workspace, form, vector_from(known.at("p")), options);
+  if (is_cancelled(options)) return there;
+  auto* fitted = std::get_if<Fitted>(&there);
+  if (!fitted) return {};
+  for (const bool held_out : {false, true}) {
+    const double chi = known.at("chi").at(held_out ? 1 : 0);
+    if (std::abs(fitted->evaluation.chi(held_out) - chi) > 1e-3 * chi) return {};
+  }
+  fitted->iterations = known.at("iterations");
+  fitted->converged = known.at("converged");
+  fitted->smallest_eigenvalue = known.at("smallest_eigenvalue");
+  return there;
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
+                                           const VectorXd& start, const FitOptions& options) {
+  if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+  return archived<Fitted>(
+      workspace, options.cancel, [&] { return question_of_fit(form, start, options); },
+      [&] { return fit_anew(workspace, form, start, options); }, fit_json,
+      [&](const nlohmann::json& known) {
+        form.realise(start);  // some ingredients work out of the first model what they change
+        return fit_from_json(workspace, form, known, options);
+      });
 }
 
 }  // namespace hookeye

@@ -23,6 +23,7 @@ using nlohmann::json;
 json to_json(const Floor& floor) {
   return {{"chi", floor.chi},
           {"cell_variance", floor.cell_variance},
+          {"cell_inflation", floor.cell_inflation},
           {"per_px2", floor.per_px2},
           {"source", floor.source},
           {"by_camera", floor.by_camera},

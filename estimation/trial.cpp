@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimation/archived.h"
 #include "estimation/floor.h"
 
 namespace hookeye {
@@ -41,9 +42,11 @@ VectorXd bounded_step(const Scaling& scaling, const VectorXd& p, const VectorXd&
   return scaling.to_p(x);
 }
 
-std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& p,
-                                                       const FitOptions& options) {
+namespace {
+
+std::variant<TrialScale, NumericalFailure> scale_anew(Workspace& workspace, const ModelForm& form,
+                                                      const VectorXd& p,
+                                                      const FitOptions& options) {
   EvaluationOptions all = half_size(options);
   all.held_out = true;
   auto seen = workspace.evaluate(form, p, all);
@@ -58,9 +61,9 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
                     floor.source == "rest photos" ? floor.chi : 0.0, measured_weight(floor)};
 }
 
-std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, const TrialScale& scale,
-                                               const FitOptions& options) {
+std::variant<Trial, NumericalFailure> step_anew(Workspace& workspace, const ModelForm& form,
+                                                const VectorXd& start, const TrialScale& scale,
+                                                const FitOptions& options) {
   EvaluationOptions derivatives = half_size(options);
   derivatives.derivatives = true;
   derivatives.huber = scale.huber;
@@ -83,6 +86,57 @@ std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const Model
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
   }
   return std::get<NumericalFailure>(std::move(seen));  // not even the start: a held-out example
+}
+
+}  // namespace
+
+std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
+                                                       const VectorXd& p,
+                                                       const FitOptions& options) {
+  return archived<TrialScale>(
+      workspace, options.cancel,
+      [&] {
+        Question question = question_of("scale", form, p);
+        question.numbers.push_back(options.huber);
+        return question;
+      },
+      [&] { return scale_anew(workspace, form, p, options); },
+      [](const TrialScale& scale) {
+        return nlohmann::json{{"huber", scale.huber},
+                              {"chi", scale.chi},
+                              {"chi_validate", scale.chi_validate},
+                              {"floor", scale.floor},
+                              {"measured_weight", scale.measured_weight}};
+      },
+      [](const nlohmann::json& known) {
+        return std::optional(TrialScale{known.at("huber"), known.at("chi"),
+                                        known.at("chi_validate"), known.at("floor"),
+                                        known.at("measured_weight")});
+      });
+}
+
+std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
+                                               const VectorXd& start, const TrialScale& scale,
+                                               const FitOptions& options) {
+  return archived<Trial>(
+      workspace, options.cancel,
+      [&] {
+        Question question = question_of("trial", form, start);
+        for (const double one : {scale.huber, scale.chi, scale.floor, scale.measured_weight})
+          question.numbers.push_back(one);
+        return question;
+      },
+      [&] { return step_anew(workspace, form, start, scale, options); },
+      [](const Trial& trial) {
+        return nlohmann::json{{"p", vector_json(trial.p)},
+                              {"chi_fit", trial.chi_fit},
+                              {"chi_validate", trial.chi_validate},
+                              {"floor", trial.floor}};
+      },
+      [](const nlohmann::json& known) {
+        return std::optional(Trial{vector_from(known.at("p")), known.at("chi_fit"),
+                                   known.at("chi_validate"), known.at("floor")});
+      });
 }
 
 double over_floor(const Trial& trial) {

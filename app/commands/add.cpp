@@ -8,6 +8,7 @@
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
+#include "app/commands/kept_work.h"
 #include "app/interrupt.h"
 #include "app/text.h"
 #include "estimation/effect.h"
@@ -54,6 +55,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   Run run = open_run(arguments.run, true);
   check_stands(run, arguments.request);
   Bench bench = open_capture(run.capture(), session);
+  const KeptWork kept(run, bench);
   Step current = newest_step(run, bench);
   AddOptions options;
   options.fit = fit_options();

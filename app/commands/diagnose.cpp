@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
+#include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
 #include "estimation/step_json.h"
 
@@ -11,6 +12,7 @@ namespace {
 void run_diagnose(const std::string& folder, Session& session) {
   Run run = open_run(folder, true);
   Bench bench = open_capture(run.capture(), session);
+  const KeptWork kept(run, bench);
   Step step = newest_step(run, bench);
   diagnose_newest(run, bench, step, diagnosis_options());
   session.document = to_json(step.diagnosis);

@@ -2,11 +2,15 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
+#include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
+#include "app/interrupt.h"
 #include "estimation/step_json.h"
 
 namespace hookeye {
@@ -17,15 +21,57 @@ struct DiscoverArguments {
   std::vector<std::string> without;
 };
 
-DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
-  auto recorded = std::make_shared<bool>(first_is_recorded);
+/// The run has a step that the search, taken up, does not come to: made by another hand, or by
+/// another way of rounding.
+struct OtherStep {};
+
+/// The step of the timeline is this one, but for rounding.
+bool same_step(const nlohmann::json& told, const Step& step) {
+  const nlohmann::json now = timeline_entry(step);
+  for (const char* key : {"name", "added", "dropped", "effects"})
+    if (told.value(key, nlohmann::json()) != now.at(key)) return false;
+  const nlohmann::json &were = told.at("parameters"), &are = now.at("parameters");
+  return std::equal(were.begin(), were.end(), are.begin(), are.end(), [](auto& was, auto& is) {
+    const double value = number_in(was, "value"), other = number_in(is, "value");
+    const double interval = number_in(was, "high") - number_in(was, "low");
+    const double rounding = 1e-6 * (std::abs(value) + std::abs(other));
+    return was.at("name") == is.at("name") &&
+           std::abs(value - other) <= std::max(rounding, 0.01 * interval);
+  });
+}
+
+/// Steps as the search comes to them: what the run has already stays as it is.
+class Recorder {
+ public:
+  /// `from`: the step that the search goes on from, which has no diagnosis yet; -1: none.
+  Recorder(Run& run, Bench& bench, int from)
+      : run_(run), bench_(bench), from_(from), next_(static_cast<size_t>(std::max(from, 0))) {}
+
+  void operator()(const Step& step) {
+    const size_t index = next_++;
+    if (index >= run_.steps().size()) {
+      record(run_, whole(step), invocation(), true);
+    } else if (!same_step(run_.timeline().at("steps").at(index), step)) {
+      throw OtherStep{};
+    } else if (from_ >= 0 && index + 1 == run_.steps().size() && index == size_t(from_)) {
+      record_diagnosis(run_, whole(step));
+    }
+  }
+
+ private:
+  Step whole(const Step& step) { return with_displaced(bench_, step, &interrupted()); }
+
+  Run& run_;
+  Bench& bench_;
+  int from_;
+  size_t next_;
+};
+
+DiscoverEvents events(Run& run, Bench& bench, int from) {
+  auto recorder = std::make_shared<Recorder>(run, bench, from);
   DiscoverEvents events;
-  events.step = [&run, &bench, recorded](const Step& step) {
-    if (*recorded)
-      record_diagnosis(run, step);
-    else
-      record(run, step);
-    *recorded = false;
+  events.step = [recorder](const Step& step) {
+    (*recorder)(step);
     spdlog::info("{}: chi {} fitted, {} held out (floor {:.3f})", name_of(step),
                  chi_text(step.fitted.evaluation.chi(false)),
                  chi_text(step.fitted.evaluation.chi(true)), step.diagnosis.floor.chi);
@@ -58,22 +104,52 @@ DiscoverEvents events(Run& run, const Bench& bench, bool first_is_recorded) {
   return events;
 }
 
+/// The step that the search of this run goes on from, -1 where it makes the base itself: where it
+/// was taken up before, if what it came to is known still. With all that was asked in between it
+/// then takes the same way.
+int begin(Run& run, const DiscoverOptions& options, bool known) {
+  const int last = static_cast<int>(run.steps().size()) - 1;
+  const nlohmann::json asked = {{"without", options.diagnosis.without}};
+  const nlohmann::json told = run.timeline().value("search", nlohmann::json::object());
+  if (known && told.contains("from") && told.value("asked", nlohmann::json()) == asked &&
+      told.at("from") <= last)
+    return told.at("from");
+  run.update([&](auto& timeline) { timeline["search"] = {{"from", last}, {"asked", asked}}; });
+  return last;
+}
+
+Discovery search_from(int from, Run& run, Bench& bench, DiscoverOptions options) {
+  for (int i = 0; i <= from; ++i) {
+    const nlohmann::json& step = run.timeline().at("steps").at(static_cast<size_t>(i));
+    if (auto tied = tied_in(step); tied.size() > 1) options.tie = std::move(tied);
+    options.past.push_back(contested_in(step));
+  }
+  const DiscoverEvents on = events(run, bench, from);
+  const ModelForm form = base_form(bench.scene);
+  return value_or_fail(from < 0 ? discover(bench.workspace, form, form.initial(), options, on)
+                                : discover_from(bench.workspace,
+                                                step_of(run, bench, static_cast<size_t>(from)),
+                                                options, on));
+}
+
+/// `known`: something of it was worked out before.
+Discovery search(Run& run, Bench& bench, const DiscoverOptions& options, bool known) {
+  try {
+    return search_from(begin(run, options, known), run, bench, options);
+  } catch (const OtherStep&) {
+    spdlog::info("the search goes on from the newest step");
+    return search_from(begin(run, options, false), run, bench, options);
+  }
+}
+
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
   Bench bench = open_capture(arguments.capture, session);
   Run run = create_run(arguments.run, bench.scene->capture.file);
+  const KeptWork kept(run, bench);
   DiscoverOptions options = discover_options();
   options.diagnosis.without = arguments.without;
-  const bool resumed = !run.steps().empty();
-  for (const auto& step : run.timeline().value("steps", nlohmann::json::array())) {
-    if (auto tied = tied_in(step); tied.size() > 1) options.tie = std::move(tied);
-    options.past.push_back(contested_in(step));
-  }
-  const DiscoverEvents on = events(run, bench, resumed);
-  const ModelForm form = base_form(bench.scene);
-  const Discovery found =
-      value_or_fail(resumed ? discover_from(bench.workspace, newest_step(run, bench), options, on)
-                            : discover(bench.workspace, form, form.initial(), options, on));
+  const Discovery found = search(run, bench, options, kept.from_before());
   // What held-out photos alone show there are the values.
   std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
   if (const auto high = high_floor(found.floor); !high.empty())

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
+#include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
 #include "app/commands/tables.h"
 #include "capture_io/json_file.h"
@@ -61,6 +62,7 @@ void warn_of_lost_ellipticity(const std::filesystem::path& step, Session& sessio
 void run_fit(const FitArguments& arguments, Session& session) {
   Bench bench = open_capture(arguments.capture, session);
   Run run = create_run(arguments.run, bench.scene->capture.file);
+  const KeptWork kept(run, bench);
   if (!run.steps().empty()) {
     if (!arguments.model.empty() || !arguments.material.empty())
       throw InputError({arguments.run},

@@ -89,15 +89,19 @@ Bench open_capture(const std::filesystem::path& capture_path, Session& session) 
 }
 
 Step newest_step(const Run& run, Bench& bench, const FitOptions& options) {
-  const auto steps = run.steps();
-  if (steps.empty())
+  const size_t steps = run.steps().size();
+  if (steps == 0)
     throw InputError({run.folder().string()}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");
-  const auto& entry = run.timeline().at("steps").back();
+  return step_of(run, bench, steps - 1, options);
+}
+
+Step step_of(const Run& run, Bench& bench, size_t index, const FitOptions& options) {
+  const auto& entry = run.timeline().at("steps").at(index);
   Step step;
   step.name = entry.at("name");
   if (!entry.at("added").is_null()) step.added = entry.at("added");
-  auto [form, p] = read_model(steps.back() / "model.yaml", bench.scene);
+  auto [form, p] = read_model(run.steps().at(index) / "model.yaml", bench.scene);
   step.fitted = value_or_fail(assess(bench.workspace, form, p, options));
   step.fitted.converged = entry.value("converged", true);
   step.fitted.iterations = entry.value("iterations", 0);
@@ -180,25 +184,34 @@ namespace {
 
 /// What discover said was said of the step that was the newest then. Before the new step is
 /// written, so that no kill leaves it beside a step that it does not mean.
-void drop_verdict(Run& run) {
-  run.update([](nlohmann::json& timeline) {
+void drop_verdict(Run& run, bool of_search) {
+  run.update([&](nlohmann::json& timeline) {
     for (const char* key : {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all"})
       timeline.erase(key);
+    if (!of_search) timeline.erase("search");
   });
 }
 
 }  // namespace
 
-std::filesystem::path record(Run& run, const Step& step, const std::string& command) {
+std::filesystem::path record(Run& run, const Step& step, const std::string& command,
+                             bool of_search) {
   nlohmann::json entry = timeline_entry(step);
   entry["command"] = command;
   std::error_code gone;  // a folder that was removed meanwhile has no name
   entry["made_in"] = std::filesystem::current_path(gone).string();
   entry["made_by"] = versions();
-  drop_verdict(run);
+  drop_verdict(run, of_search);
   return run.add_step(step.name, std::move(entry), [&](const std::filesystem::path& folder) {
     write_step(folder, *step.fitted.form.scene, step);
   });
+}
+
+Step with_displaced(Bench& bench, Step step, const std::atomic<bool>* cancel) {
+  if (lacks_displaced(step.diagnosis))
+    if (auto failure = displace_again(bench.workspace, step.fitted, cancel, step.diagnosis))
+      fail(std::move(*failure));
+  return step;
 }
 
 void record_diagnosis(Run& run, const Step& step) {
@@ -225,6 +238,7 @@ void record_diagnosis(Run& run, const Step& step) {
 void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions& options) {
   step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
   reach_for_mesh(step.fitted, step.diagnosis);
+  step = with_displaced(bench, std::move(step), options.cancel);
   record_diagnosis(run, step);
 }
 

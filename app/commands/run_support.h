@@ -38,7 +38,9 @@ FitOptions fit_options();
 DiagnosisOptions diagnosis_options();
 /// What is to be said of a fit that stopped before its end; empty: it did not.
 std::string not_converged(bool converged, int iterations);
-/// The newest step of a run, its model evaluated again (pictures and derivatives).
+/// A step of a run, its model evaluated again (pictures and derivatives).
+Step step_of(const Run& run, Bench& bench, size_t index, const FitOptions& options = fit_options());
+/// Its newest one. Throws InputError where it has none.
 Step newest_step(const Run& run, Bench& bench, const FitOptions& options = fit_options());
 
 /// The newest step's diagnosis as written. Empty: there is none of this model.
@@ -53,11 +55,14 @@ Contested contested_in(const nlohmann::json& step);
 DiscoverOptions discover_options();
 
 /// Writes the step's folder and the timeline's entry, which keeps the command that made it. The
-/// run's verdict goes: it was about the step before.
-std::filesystem::path record(Run& run, const Step& step, const std::string& command = invocation());
+/// run's verdict goes: it was about the step before. So does `search`, unless the step is of it.
+std::filesystem::path record(Run& run, const Step& step, const std::string& command = invocation(),
+                             bool of_search = false);
 /// The lowest floor that any step of the run has shown: a model that lacks something leaves some of
 /// it in the rest photos too.
 void tell_floor(nlohmann::json& timeline, const Floor& floor);
+/// The step with all that record() writes of its diagnosis (lacks_displaced).
+Step with_displaced(Bench& bench, Step step, const std::atomic<bool>* cancel);
 /// Puts a diagnosis into the newest step and the timeline. What the fit wrote stays as it is.
 void record_diagnosis(Run& run, const Step& step);
 

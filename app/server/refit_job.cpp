@@ -1,5 +1,6 @@
 #include "app/server/refit_job.h"
 
+#include "app/commands/kept_work.h"
 #include "app/interrupt.h"
 
 namespace hookeye {
@@ -81,6 +82,7 @@ AddOptions RefitJob::options() {
 void RefitJob::refit(const AddRequest& request) {
   Run run = open_run(run_, true);
   if (!bench_) bench_.emplace(open_capture(run.capture(), session_));
+  const KeptWork kept(run, *bench_);
   AddOptions wanted = options();
   stage("evaluating the newest step");
   FitOptions quiet = wanted.fit;

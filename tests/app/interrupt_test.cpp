@@ -68,7 +68,7 @@ class Interrupted : public Cli {
 TEST_F(Interrupted, AFitIsDoneAnewAndASearchGoesOn) {
   const Result stopped = interrupt_at("fit 0/", "fit capture -o run");
   ASSERT_EQ(stopped.status, 130) << stopped.out << stopped.err;
-  EXPECT_THAT(stopped.err, HasSubstr("stopping; finished steps are kept"));
+  EXPECT_THAT(stopped.err, HasSubstr("stopping; all that is finished is kept"));
   EXPECT_FALSE(fs::exists(folder_ / "run/steps/00-base"));
   for (const std::string& file : files(folder_ / "run"))
     EXPECT_THAT(file, AnyOf("run.json", ".lock"));

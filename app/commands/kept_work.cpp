@@ -1,0 +1,40 @@
+#include "app/commands/kept_work.h"
+
+#include <spdlog/spdlog.h>
+
+#include "app/interrupt.h"
+#include "capture_io/fingerprints.h"
+#include "estimation/archive.h"
+
+namespace hookeye {
+namespace {
+
+/// Another program, or another capture, comes to other answers.
+std::string made_for(const Run& run) {
+  return nlohmann::json{{"hookeye", versions()},
+                        {"program", fingerprint_of(read_text("/proc/self/exe"))},
+                        {"capture", run.timeline().value("fingerprints", nlohmann::json())}}
+      .dump();
+}
+
+}  // namespace
+
+KeptWork::KeptWork(const Run& run, Bench& bench) : run_(run), bench_(bench) {
+  auto archive = std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), made_for(run)));
+  from_before_ = !archive->empty();
+  archive->asked = [](const Question& question, bool found) {
+    spdlog::debug("{}: {}", question.kind, found ? "known" : "anew");
+  };
+  bench_.workspace.keep_in(std::move(archive));
+}
+
+KeptWork::~KeptWork() {
+  for (const auto& [kind, tally] : bench_.workspace.archive()->tallies())
+    spdlog::debug("{}: {} anew, {} known", kind, tally.kept, tally.found);
+  bench_.workspace.keep_in(nullptr);
+  if (!run_.steps().empty() || interrupted()) return;
+  std::error_code ignored;
+  std::filesystem::remove(run_.archive(), ignored);
+}
+
+}  // namespace hookeye

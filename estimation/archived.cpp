@@ -1,0 +1,102 @@
+#include "estimation/archived.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "capture_io/fingerprints.h"
+#include "estimation/normal_equations.h"
+
+namespace hookeye {
+
+using nlohmann::json;
+
+namespace {
+
+template <class Array>
+std::string fingerprint_of_numbers(const Array& numbers) {
+  return fingerprint_of({reinterpret_cast<const char*>(numbers.data()),
+                         static_cast<size_t>(numbers.size()) * sizeof(*numbers.data())});
+}
+
+std::string text_of(const Scene& scene) {
+  const TetMesh& mesh = scene.body->mesh;
+  std::string out = fmt::format("mesh {} {}; held out:", fingerprint_of_numbers(mesh.X),
+                                fingerprint_of_numbers(mesh.elements));
+  for (const ExampleSpec& example : scene.capture.examples) out += example.validate ? " 1" : " 0";
+  return out;
+}
+
+/// Bounds and starts that scale with a model come out of it with its rounding.
+std::string text_of(const Ingredient& ingredient) {
+  std::string out = fmt::format("\n{} [{}]", ingredient.name(), ingredient.variant());
+  for (const Parameter& one : ingredient.parameters())
+    out += fmt::format("\n {} {:.5g} {:.5g} {:.5g} {:.5g} {} {}", one.name, one.value, one.low,
+                       one.high, one.typical, one.positive, one.example);
+  return out;
+}
+
+}  // namespace
+
+Question question_of(const std::string& kind, const ModelForm& form, const VectorXd& p) {
+  Question out{kind, text_of(*form.scene), {}};
+  for (const auto& ingredient : form.ingredients) out.text += text_of(*ingredient);
+  const VectorXd x = Scaling{form.parameters()}.to_x(p);
+  out.numbers.assign(x.begin(), x.end());
+  return out;
+}
+
+json states_json(const Evaluation& evaluation, const TetMesh& mesh) {
+  json out = json::array();
+  for (const ExampleEvaluation& example : evaluation.examples) {
+    const VectorXd u = example.equilibrium->q - mesh.X.reshaped();
+    const double unit = u.cwiseAbs().maxCoeff() / INT16_MAX;
+    std::vector<std::int16_t> times(static_cast<size_t>(u.size()));
+    for (size_t i = 0; unit > 0.0 && i < times.size(); ++i)
+      times[i] = static_cast<std::int16_t>(std::lround(u[static_cast<Eigen::Index>(i)] / unit));
+    std::vector<std::uint8_t> bytes(times.size() * sizeof(times[0]));
+    std::memcpy(bytes.data(), times.data(), bytes.size());
+    out.push_back({{"example", example.example},
+                   {"unit", unit},
+                   {"displacement", json::binary(std::move(bytes))}});
+  }
+  return out;
+}
+
+std::vector<VectorXd> states_from(const json& states, const Scene& scene) {
+  const VectorXd rest = scene.body->mesh.X.reshaped();
+  std::vector<VectorXd> out(scene.capture.examples.size());
+  for (const json& state : states) {
+    const auto& bytes = state.at("displacement").get_binary();
+    std::vector<std::int16_t> times(static_cast<size_t>(rest.size()));
+    if (bytes.size() != times.size() * sizeof(times[0])) continue;
+    std::memcpy(times.data(), bytes.data(), bytes.size());
+    VectorXd& q = out.at(state.at("example"));
+    q = rest;
+    for (size_t i = 0; i < times.size(); ++i)
+      q[static_cast<Eigen::Index>(i)] += state.at("unit").get<double>() * times[i];
+  }
+  return out;
+}
+
+json vector_json(const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); }
+
+VectorXd vector_from(const json& list) {
+  const auto numbers = list.get<std::vector<double>>();
+  return VectorXd::Map(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+json failure_json(const NumericalFailure& failure) {
+  return {{"failed", failure.reason},
+          {"example", failure.example},
+          {"load_fraction", failure.load_fraction}};
+}
+
+std::optional<NumericalFailure> failure_from(const json& answer) {
+  if (!answer.contains("failed")) return {};
+  return NumericalFailure{answer.at("example"), answer.at("load_fraction"), answer.at("failed")};
+}
+
+}  // namespace hookeye

@@ -1,0 +1,91 @@
+// A search that is stopped in whatever moment and taken up again: nothing that ended is lost, and
+// it comes to the same.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <random>
+
+#include "app/fitted_run.h"
+
+namespace hookeye::test {
+namespace {
+
+class Killed : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    write("recipe.yaml", kSmallRecipe);
+    const Result made = hookeye("synth recipe.yaml -o capture");
+    ASSERT_EQ(made.status, 0) << made.err;
+  }
+
+  /// Exit status of the search in `run`; what it worked out is added to `anew`.
+  int search(const std::string& run, const std::string& more = "") {
+    const std::string command = "cd '" + folder_.string() + "' && " + more + " '" HOOKEYE_PROGRAM
+                                "' discover -v capture -o " + run + " >>out.txt 2>err.txt";
+    const int status = std::system(("sh -c \"" + command + "\" 2>>sh.txt").c_str());
+    std::istringstream lines(read(folder_ / "err.txt"));
+    for (std::string line; std::getline(lines, line);)
+      for (const char* kind : {"fit", "diagnosis", "trial", "scale"})
+        if (line.find(std::string(kind) + ": anew") != std::string::npos) ++anew_[run][kind];
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  json timeline(const std::string& run) const {
+    return json::parse(read(folder_ / run / "run.json"));
+  }
+  std::map<std::string, std::map<std::string, int>> anew_;
+};
+
+TEST_F(Killed, ASearchLosesNothingThatEnded) {
+  const auto began = std::chrono::steady_clock::now();
+  ASSERT_EQ(search("whole"), 0) << read(folder_ / "err.txt");
+  const double took =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  ASSERT_GT(anew_["whole"]["fit"], 2);
+
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  int stopped = 0;
+  for (const char* signal : {"KILL", "INT", "KILL"}) {
+    const double after = took * std::uniform_real_distribution<double>(0.1, 0.7)(random);
+    const int status = search("killed", "timeout -s " + std::string(signal) + " " +
+                                            std::to_string(after) + (stopped == 1 ? " taskset 1" : ""));
+    if (status == 0) break;
+    EXPECT_THAT(status, testing::AnyOf(137, 124)) << read(folder_ / "err.txt");
+    ++stopped;
+  }
+  EXPECT_GT(stopped, 0);
+  ASSERT_EQ(search("killed"), 0) << read(folder_ / "err.txt");
+  for (const auto& [kind, count] : anew_["whole"])
+    EXPECT_LE(anew_["killed"][kind], count + stopped) << kind;
+
+  const json whole = timeline("whole"), killed = timeline("killed");
+  for (const char* key : {"verdict", "sentence", "missing", "tie", "hint", "search"})
+    EXPECT_EQ(killed.at(key), whole.at(key));
+  ASSERT_EQ(killed.at("steps").size(), whole.at("steps").size());
+  for (size_t i = 0; i < whole.at("steps").size(); ++i) {
+    const json &a = whole.at("steps")[i], &b = killed.at("steps")[i];
+    EXPECT_EQ(a.at("name"), b.at("name"));
+    ASSERT_EQ(a.at("parameters").size(), b.at("parameters").size());
+    for (size_t k = 0; k < a.at("parameters").size(); ++k) {
+      const json &was = a.at("parameters")[k], &is = b.at("parameters")[k];
+      const double interval = was.at("high").get<double>() - was.at("low").get<double>();
+      EXPECT_NEAR(was.at("value"), is.at("value"), 1e-3 * interval) << was.at("name");
+    }
+    const fs::path pictures = folder_ / "killed/steps" /
+                              ("0" + std::to_string(i) + "-" + b.at("name").get<std::string>());
+    EXPECT_TRUE(fs::exists(pictures / "diagnosis.json"));
+    EXPECT_EQ(fs::exists(pictures / "removed"),
+              fs::exists(folder_ / "whole/steps" / pictures.filename() / "removed"));
+  }
+
+  // All of it is known now.
+  anew_.clear();
+  ASSERT_EQ(search("killed", "taskset 1"), 0) << read(folder_ / "err.txt");
+  EXPECT_THAT(anew_, testing::IsEmpty());
+  EXPECT_EQ(timeline("killed").at("sentence"), whole.at("sentence"));
+}
+
+}  // namespace
+}  // namespace hookeye::test
