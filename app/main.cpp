@@ -12,6 +12,7 @@
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
 #include "app/invocation.h"
+#include "app/printable.h"
 #include "app/progress.h"
 #include "app/validators.h"
 #include "capture_io/input_error.h"
@@ -27,7 +28,10 @@ enum Exit { kDone = 0, kInternal = 1, kBadInput = 2, kNumericalFailure = 3, kInt
 class LogSink : public spdlog::sinks::base_sink<std::mutex> {
   void sink_it_(const spdlog::details::log_msg& message) override {
     Progress::clear_line();
-    out_.log(message);
+    const std::string text = printable({message.payload.data(), message.payload.size()});
+    spdlog::details::log_msg shown = message;
+    shown.payload = text;
+    out_.log(shown);
   }
   void flush_() override { out_.flush(); }
   void set_pattern_(const std::string& pattern) override { out_.set_pattern(pattern); }
@@ -48,14 +52,14 @@ void set_up_log(bool verbose) {
 void print(const nlohmann::ordered_json& document) {
   using nlohmann::ordered_json;
   const std::string text =
-      document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+      printable(document.dump(2, ' ', false, ordered_json::error_handler_t::replace)) + "\n";
   std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
 int report(const Session& session, Exit status, const std::string& kind, const std::string& wrong,
            nlohmann::ordered_json more = nlohmann::ordered_json::object()) {
   Progress::clear_line();
-  fmt::print(stderr, "{}\n", wrong);
+  fmt::print(stderr, "{}\n", printable(wrong));
   if (session.json) {
     more["kind"] = kind;
     more["message"] = wrong;
@@ -192,7 +196,7 @@ int main(int argc, char** argv) {
   try {
     return hookeye::run_program(argc, argv);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "internal error: {}\n", error.what());
+    fmt::print(stderr, "internal error: {}\n", hookeye::printable(error.what()));
     return 1;
   }
 }

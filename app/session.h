@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/printable.h"
 #include "app/text.h"
 #include "capture_io/numerical_failure.h"
 
@@ -20,8 +21,8 @@ class App;
 namespace hookeye {
 
 /// Commands fill `document`, which is printed with --json, and say() lines for people, which are
-/// printed without. Warnings go through warn(): standard error and, at the end, the
-/// document's "warnings".
+/// printed without (printable: they quote files). Warnings go through warn(): standard error and,
+/// at the end, the document's "warnings".
 struct Session {
   bool json = false;
   bool verbose = false;
@@ -31,7 +32,7 @@ struct Session {
 
   template <class... Args>
   void say(fmt::format_string<Args...> format, Args&&... args) const {
-    if (!json) fmt::print(format, std::forward<Args>(args)...);
+    if (!json) fmt::print("{}", printable(fmt::format(format, std::forward<Args>(args)...)));
   }
   void warn(const std::string& sentence);
 };

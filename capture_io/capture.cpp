@@ -63,6 +63,14 @@ void check_references(const Capture& capture) {
   }
 }
 
+/// A title stands on one line, so that none can add lines to what is said below it.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
 /// Results are files EXAMPLE-CAMERA and EXAMPLE_CAMERA.
 void check_file_names(const Capture& capture) {
   for (const char* joint : {"-", "_"}) {
@@ -131,7 +139,8 @@ Capture read_capture(const fs::path& path) {
   capture.file = fs::canonical(given);
   capture.folder = capture.file.parent_path();
   const CaptureFolder folder{given.parent_path(), capture.folder};
-  if (const YamlNode* title = top.find("title")) capture.title = read_string(*title, "title");
+  if (const YamlNode* title = top.find("title"))
+    capture.title = one_line(read_string(*title, "title"));
   capture.units = read_units(top.need("units", "write `units: {length: mm, force: N}`"));
   capture.body = read_body(top.need("body", "write `body: {surface: rest.obj}`"), folder);
   read_model(
