@@ -27,7 +27,7 @@ class Lock {
  public:
   explicit Lock(const fs::path& folder) {
     const fs::path file = folder / ".lock";
-    handle_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    handle_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (handle_ < 0)
       throw InputError({folder.string()}, "the run folder cannot be written",
                        "check its permissions or choose another folder");

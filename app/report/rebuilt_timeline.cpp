@@ -3,6 +3,7 @@
 #include <sstream>
 #include <string>
 
+#include "app/report/inside.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
 
@@ -13,10 +14,11 @@ using nlohmann::json;
 
 namespace {
 
-/// An object, empty where the file does not hold one.
+/// An object, empty where the step's file does not hold one.
 json object_in(const fs::path& file) {
   std::string damage;
-  const auto found = fs::exists(file) ? parse_json(read_text(file), damage) : std::nullopt;
+  const auto found =
+      inside(file.parent_path(), file) ? parse_json(read_text(file), damage) : std::nullopt;
   return found && found->is_object() ? *found : json::object();
 }
 
@@ -37,7 +39,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 
 json parameters_in(const fs::path& file) {
   json all = json::array();
-  if (!fs::exists(file)) return all;
+  if (!inside(file.parent_path(), file)) return all;
   std::istringstream lines(read_text(file));
   std::string line;
   std::getline(lines, line);  // the head

@@ -8,6 +8,7 @@
 
 #include "app/report/encode_png.h"
 #include "app/report/facts.h"
+#include "app/report/inside.h"
 #include "app/report/rebuilt_timeline.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
@@ -20,10 +21,12 @@ using nlohmann::json;
 namespace {
 
 /// The parsed file, or null and a fault that ends with what follows from it.
-json read_json(const fs::path& file, const std::string& called, const std::string& so,
-               json& faults) {
+json read_json(const fs::path& run, const fs::path& file, const std::string& called,
+               const std::string& so, json& faults) {
   std::string damage = "not there";
-  if (fs::exists(file)) {
+  if (fs::is_symlink(file) && !inside(run, file)) {
+    damage = "a link out of this run";
+  } else if (inside(run, file)) {
     try {
       if (auto found = parse_json(read_text(file), damage)) return *found;
     } catch (const InputError&) {
@@ -43,19 +46,28 @@ json timeline_of(const fs::path& run, const std::vector<fs::path>& steps, json& 
   const std::string so =
       "steps and their figures are taken from the step folders; the verdict and the place of the "
       "capture are lost";
-  json found = read_json(run / "run.json", "run.json", so, faults);
+  json found = read_json(run, run / "run.json", "run.json", so, faults);
   if (is_timeline(found)) return found;
   if (!found.is_null()) faults.push_back("run.json is not a run's timeline: " + so);
   return rebuilt_timeline(steps);
 }
 
+/// What lies in a folder of the run; links out of the run do not, nor does what a folder that is
+/// one holds.
+std::vector<fs::path> entries_of(const fs::path& run, const fs::path& folder) {
+  std::vector<fs::path> out;
+  std::error_code ignored;
+  if (!inside(run, folder)) return out;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (inside(run, entry.path())) out.push_back(entry.path());
+  return out;
+}
+
 /// Steps in order: those on disk, whether the timeline knows them or not.
 std::vector<fs::path> step_folders(const fs::path& run) {
   std::vector<fs::path> out;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(run / "steps", ignored))
-    if (entry.is_directory() && entry.path().filename().string()[0] != '.')
-      out.push_back(entry.path());
+  for (const auto& entry : entries_of(run, run / "steps"))
+    if (fs::is_directory(entry) && entry.filename().string()[0] != '.') out.push_back(entry);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -98,7 +110,7 @@ RunView::RunView(fs::path folder) : folder_(std::move(folder)) {
                      "make one with `hookeye fit CAPTURE -o RUN`");
   folder_ = fs::canonical(folder_);
   json ignored = json::array();
-  const json timeline = read_json(folder_ / "run.json", "run.json", "", ignored);
+  const json timeline = read_json(folder_, folder_ / "run.json", "run.json", "", ignored);
   const std::string where =
       timeline.is_object() && timeline.contains("capture") && timeline["capture"].is_string()
           ? timeline["capture"].get<std::string>()
@@ -163,41 +175,40 @@ json RunView::photos_json(json& faults, int factor) {
 json RunView::step_json(const fs::path& step, json& faults, int factor) {
   const std::string name = step.filename().string();
   json out = {{"folder", name},
-              {"metrics", read_json(step / "metrics.json", name + "/metrics.json",
+              {"metrics", read_json(folder_, step / "metrics.json", name + "/metrics.json",
                                     "the figures of this step are not here", faults)},
               {"diagnosis", nullptr}};
   if (fs::exists(step / "diagnosis.json"))  // else it has not been diagnosed, which is no fault
-    out["diagnosis"] = read_json(step / "diagnosis.json", name + "/diagnosis.json",
+    out["diagnosis"] = read_json(folder_, step / "diagnosis.json", name + "/diagnosis.json",
                                  "what this step lacks is not here", faults);
   out["residuals"] = json::object();
   out["fields"] = json::object();
   out["files"] = json::array();
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(step / "residuals", none))
-    if (entry.path().extension() == ".exr") {
-      const std::string photo = entry.path().stem().string();
+  for (const auto& entry : entries_of(folder_, step / "residuals"))
+    if (entry.extension() == ".exr") {
+      const std::string photo = entry.stem().string();
       out["residuals"][photo] = {{"blob", at_factor("residual/" + name + "/" + photo, factor)},
                                  {"shrink", factor},
                                  {"quantum", quantum_json(residual_quantum())}};
     }
-  for (const auto& entry : fs::directory_iterator(step / "page", none))
-    if (entry.path().extension() == ".json")
-      out["fields"][entry.path().stem().string()] =
-          "field/" + name + "/" + entry.path().filename().string();
-  for (const auto& entry : fs::directory_iterator(step / "removed", none))
-    if (entry.path().extension() == ".json")
-      out["fields"]["removes-" + entry.path().stem().string()] =
-          "field/" + name + "/removes-" + entry.path().filename().string();
+  for (const auto& entry : entries_of(folder_, step / "page"))
+    if (entry.extension() == ".json")
+      out["fields"][entry.stem().string()] = "field/" + name + "/" + entry.filename().string();
+  for (const auto& entry : entries_of(folder_, step / "removed"))
+    if (entry.extension() == ".json")
+      out["fields"]["removes-" + entry.stem().string()] =
+          "field/" + name + "/removes-" + entry.filename().string();
   out["deformed"] = json::array();
-  for (const auto& entry : fs::directory_iterator(step / "deformed", none))
-    if (entry.path().extension() == ".vtu")
-      out["deformed"].push_back(
-          {{"name", entry.path().filename().string()},
-           {"blob", "deformed/" + name + "/" + entry.path().filename().string()}});
+  for (const auto& entry : entries_of(folder_, step / "deformed"))
+    if (entry.extension() == ".vtu")
+      out["deformed"].push_back({{"name", entry.filename().string()},
+                                 {"blob", "deformed/" + name + "/" + entry.filename().string()}});
   std::sort(out["deformed"].begin(), out["deformed"].end());
+  std::error_code none;
   for (const auto& entry : fs::recursive_directory_iterator(step, none))
-    if (entry.is_regular_file() && entry.path().parent_path().filename() != "page")
-      out["files"].push_back(fs::relative(entry.path(), folder_).generic_string());
+    if (entry.is_regular_file() && entry.path().parent_path().filename() != "page" &&
+        inside(folder_, entry.path()))
+      out["files"].push_back(entry.path().lexically_relative(folder_).generic_string());
   std::sort(out["files"].begin(), out["files"].end());
   if (out["residuals"].empty()) faults.push_back(name + "/residuals is not there");
   if (out["fields"].empty())
@@ -237,6 +248,8 @@ std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const 
                                                  int factor) {
   const auto found = planes_.find(name);
   if (found == planes_.end()) return {};
+  const fs::path& file = found->second.spec.file;
+  if (!inside(capture_->folder, file)) return {};  // it has become a link since it was named
   Photo photo = read_photo(found->second.spec, found->second.camera);
   if (kind == "photo")
     return Blob{
@@ -250,7 +263,7 @@ std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const 
 std::optional<RunView::Blob> RunView::residual_blob(const std::string& step,
                                                     const std::string& name, int factor) {
   const fs::path file = folder_ / "steps" / step / "residuals" / (name + ".exr");
-  if (!fs::exists(file)) return {};
+  if (!inside(folder_, file)) return {};
   return Blob{encode_png16(shrink(read_image_with_holes(file), factor), residual_quantum()),
               "image/png"};
 }
@@ -269,7 +282,8 @@ std::optional<RunView::Blob> RunView::blob(const std::string& request) {
   if (kind == "residual") return residual_blob(step, name, factor);
   if (kind == "deformed") {
     const fs::path body = folder_ / "steps" / step / "deformed" / name;
-    if (body.extension() != ".vtu" || !fs::is_regular_file(body)) return {};
+    if (body.extension() != ".vtu" || !fs::is_regular_file(body) || !inside(folder_, body))
+      return {};
     return Blob{read_text(body), "application/octet-stream"};
   }
   if (kind != "field") return {};
@@ -277,7 +291,7 @@ std::optional<RunView::Blob> RunView::blob(const std::string& request) {
   const fs::path file = name.rfind(removes, 0) == 0
                             ? folder_ / "steps" / step / "removed" / name.substr(removes.size())
                             : folder_ / "steps" / step / "page" / name;
-  if (!fs::is_regular_file(file)) return {};
+  if (!fs::is_regular_file(file) || !inside(folder_, file)) return {};
   return Blob{read_text(file), "application/json", true};
 }
 

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/interrupt.h"
+#include "app/report/inside.h"
 #include "app/report/page.h"
 #include "app/server/refit_job.h"
 #include "capture_io/run.h"
@@ -42,7 +43,8 @@ std::string make_token() {
 class StudioLock {
  public:
   explicit StudioLock(const fs::path& run) : file_(run / ".studio") {
-    handle_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    // Not through a link: the address would be written into what it leads to.
+    handle_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (handle_ < 0) return;  // a run that cannot be written is shown all the same
     if (::flock(handle_, LOCK_EX | LOCK_NB) == 0) return;
     ::close(handle_);
@@ -166,6 +168,8 @@ class Studio {
     server_.set_default_headers({{"Cache-Control", "no-store"},
                                  {"Referrer-Policy", "no-referrer"},
                                  {"X-Content-Type-Options", "nosniff"},
+                                 // what a page cannot say of itself; the rest it does
+                                 {"Content-Security-Policy", "frame-ancestors 'none'"},
                                  {"Cross-Origin-Resource-Policy", "same-origin"}});
     server_.set_pre_routing_handler([this](const Request& request, Response& response) {
       const std::string local = fmt::format("localhost:{}", port_);
@@ -210,14 +214,16 @@ class Studio {
   void file(const Request& request, Response& response) {
     std::error_code error;
     const fs::path wanted = fs::canonical(view_.folder() / request.get_param_value("name"), error);
-    const std::string inside = wanted.string().substr(0, view_.folder().string().size() + 1);
     static const std::string kKinds[] = {".json", ".vtu", ".csv", ".yaml", ".exr", ".png"};
     const bool kind =
         std::find(std::begin(kKinds), std::end(kKinds), wanted.extension()) != std::end(kKinds);
-    if (error || inside != view_.folder().string() + "/" || !kind || !fs::is_regular_file(wanted))
+    if (error || !inside(view_.folder(), wanted) || !kind || !fs::is_regular_file(wanted))
       return refuse(response, 404, "there is no such file in this run");
-    response.set_header("Content-Disposition",
-                        "attachment; filename=\"" + wanted.filename().string() + "\"");
+    std::string name = wanted.filename().string();
+    std::replace_if(
+        name.begin(), name.end(),
+        [](unsigned char c) { return c < 32 || c == 127 || c == '"' || c == '\\'; }, '_');
+    response.set_header("Content-Disposition", "attachment; filename=\"" + name + "\"");
     send(response, read_text(wanted), "application/octet-stream");
   }
 
@@ -234,6 +240,11 @@ class Studio {
     } catch (const InputError& error) {
       return refuse(response, 400, error.what());
     }
+    // A refit reads the newest step and writes beside it: no link may lead it elsewhere.
+    if (const fs::path out = link_out_of(view_.folder()); !out.empty())
+      return refuse(response, 409,
+                    fmt::format("{} is a link out of this run: nothing is written here",
+                                out.lexically_relative(view_.folder()).string()));
     try {
       check_stands(open_run(view_.folder(), false), what);
     } catch (const InputError& error) {
