@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "app/printable.h"
+
 namespace hookeye {
 namespace {
 
@@ -34,6 +36,7 @@ Progress::Progress(std::string title, int total)
       total_(total),
       terminal_(is_terminal()),
       start_(Clock::now()),
+      counted_from_(start_),
       shown_(start_ - std::chrono::hours(1)) {
   if (terminal_) show();
 }
@@ -53,10 +56,18 @@ void Progress::advance(const std::string& note) {
 
 void Progress::set(int done, int total, const std::string& note) {
   const std::lock_guard lock(mutex_);
+  if (done < done_ || total != total_) first_ = done, counted_from_ = Clock::now();
   done_ = done;
   total_ = total;
   note_ = note;
   show();
+}
+
+/// At the pace since the count began anew; 0: not known.
+double Progress::seconds_left(Clock::time_point now) const {
+  if (total_ <= 0 || done_ <= first_ || done_ >= total_) return 0.0;
+  const double seconds = std::chrono::duration<double>(now - counted_from_).count();
+  return seconds / (done_ - first_) * (total_ - done_);
 }
 
 void Progress::show() {
@@ -69,10 +80,13 @@ void Progress::show() {
   if (total_ > 0) {
     const int filled = std::clamp(kBarWidth * done_ / total_, 0, kBarWidth);
     if (terminal_) line += fmt::format(" [{:#<{}}{:.<{}}]", "", filled, "", kBarWidth - filled);
-    line += fmt::format(" {}/{}", done_, total_);
+    line += fmt::format(" {}/{}, {:.0f} %", done_, total_, 100.0 * done_ / total_);
   }
   if (!note_.empty()) line += fmt::format(", {}", note_);
   line += fmt::format(", {:.0f} s", seconds);
+  if (const double left = seconds_left(now); left >= 1.0)
+    line += fmt::format(", about {:.0f} s left", left);
+  line = printable(line);
   if (terminal_) {
     fmt::print(stderr, "\r{}\033[K", line.substr(0, terminal_width()));
     bar_on_line = true;

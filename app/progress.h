@@ -1,4 +1,5 @@
-// Progress of long work on standard error: a bar on a terminal, plain lines elsewhere.
+// Progress of long work on standard error, with its share and an estimate of the time left: a bar
+// on a terminal, plain lines elsewhere.
 #pragma once
 
 #include <chrono>
@@ -25,14 +26,16 @@ class Progress {
   static void clear_line();
 
  private:
-  void show();
-
   using Clock = std::chrono::steady_clock;
+  void show();
+  double seconds_left(Clock::time_point now) const;
+
   std::mutex mutex_;
   std::string title_, note_;
   int done_ = 0, total_ = 0;
   bool terminal_;
-  Clock::time_point start_, shown_;
+  Clock::time_point start_, counted_from_, shown_;
+  int first_ = 0;  ///< done when counting began anew
 };
 
 }  // namespace hookeye

@@ -1,4 +1,8 @@
 // What is missing and what to photograph next, as product.md's JSON.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "capture_io/input_error.h"
@@ -44,11 +48,44 @@ json effect_json(const EffectScore& score) {
 
 }  // namespace
 
+namespace {
+
+/// "0.0012 (as much as 0.006 px of motion of the whole surface)".
+std::string fall_text(double fall, const Floor& floor) {
+  return floor.per_px2 > 0.0 ? fmt::format("{:.2g} (as {:.2g} px of motion all over the surface)",
+                                           fall, std::sqrt(std::max(0.0, fall) / floor.per_px2))
+                             : fmt::format("{:.2g}", fall);
+}
+
+}  // namespace
+
+std::string not_named_because(const EffectScore& score, const Diagnosis& diagnosis) {
+  if (!score.testable || nameable(score, diagnosis)) return "";
+  if (score.evidence < diagnosis.gate)
+    return fmt::format(
+        "its log Bayes factor {:.1f} is below {:.1f}, the 95 % critical value over all effects, "
+        "which chance alone exceeds in 5 % of runs",
+        score.evidence, diagnosis.gate);
+  if (score.evidence < kNameable)
+    return fmt::format("its log Bayes factor {:.1f} is below {:g}, which is asked for in any case",
+                       score.evidence, kNameable);
+  const double renderer = renderers_err_by(diagnosis.floor);
+  const bool mesh = score.mesh_fall > renderer;
+  return fmt::format(
+      "its log Bayes factor {:.1f} is above the critical value {:.1f}, but that knows of noise "
+      "alone: it would lower the squared residual by {}, and {} may be as much as {}",
+      score.evidence, std::max(diagnosis.gate, kNameable), fall_text(score.fall, diagnosis.floor),
+      mesh ? "the mesh's own error" : "the error of a renderer or a lens",
+      fall_text(mesh ? score.mesh_fall : renderer, diagnosis.floor));
+}
+
 json to_json(const Diagnosis& diagnosis) {
   json effects = json::array();
   for (const auto& score : diagnosis.effects) {
     effects.push_back(effect_json(score));
     effects.back()["named"] = nameable(score, diagnosis);
+    if (const auto why = not_named_because(score, diagnosis); !why.empty())
+      effects.back()["why_not_named"] = why;
   }
   return {
       {"floor", to_json(diagnosis.floor)},

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimation/additive_material.h"
-#include "estimation/fit.h"
+#include "estimation/mean_energy.h"
 
 namespace hookeye {
 
@@ -37,7 +37,10 @@ VectorXd addends_beyond(const Scene& scene, const Model& realised, const VectorX
 /// The first of `metrics.energy`, of any material, effects included: a pull at constant volume
 /// (along x, y and z where that differs) and a change of volume, of the mean over the body. Bands
 /// to first order in the parameters.
-nlohmann::json law_curves(const Scene& scene, const Fitted& fitted);
+nlohmann::json law_curves(const Scene& scene, const Fitted& fitted,
+                          const EnergyNeighbourhood& near);
+/// Whether a pull along x, y and z costs the same.
+bool pulls_alike(const MeanEnergy& energy);
 /// The rest of `metrics.energy`, of additive materials: one curve an addend {name, unit, axis,
 /// stretch, value, low, high, visited, beyond}: Psi over its component (`stretch` holds the
 /// strains, `axis` names them), a two-component addend along its first component with the second at

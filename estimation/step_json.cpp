@@ -12,6 +12,7 @@
 #include "estimation/energy_curves.h"
 #include "estimation/fitted_fields.h"
 #include "estimation/lost_ellipticity.h"
+#include "estimation/material_card.h"
 #include "estimation/page_data.h"
 #include "estimation/removed.h"
 #include "estimation/verdict.h"
@@ -163,13 +164,14 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
   return all;
 }
 
-/// A curve and its band for every load path, and for every addend. Where several addends share a
-/// strain their sum is known better than each.
-json energy(const Scene& scene, const Fitted& fitted) {
-  json all = law_curves(scene, fitted);
-  if (has_additive(fitted.form.realise(fitted.p)))
-    for (json& one : energy_curves(scene, fitted)) all.push_back(std::move(one));
-  return all;
+/// A curve and its band for every load path, and for every addend (where several addends share a
+/// strain their sum is known better than each), and the material's card.
+void tell_material(const Scene& scene, const Fitted& fitted, json& out) {
+  const EnergyNeighbourhood near(fitted);
+  out["energy"] = law_curves(scene, fitted, near);
+  if (has_additive(near.model()))
+    for (json& one : energy_curves(scene, fitted)) out["energy"].push_back(std::move(one));
+  out["material"] = material_card(scene, fitted, near);
 }
 
 }  // namespace
@@ -223,7 +225,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
         {"times", most.times},
         {"use", most.held_out ? "validate" : "fit"},
         {"its_own", at_floor(fitted, floor) && !explains_photos(fitted, floor)}};
-  out["energy"] = energy(scene, fitted);
+  tell_material(scene, fitted, out);
   out["ellipticity"] = lost_ellipticity(scene, fitted);
   if (json additive = additive_metrics(fitted); !additive.is_null())
     out["additive"] = std::move(additive);
@@ -235,7 +237,7 @@ json diagnosis_json(const Step& step) {
   json out = to_json(step.diagnosis);
   out["parameters"] =
       parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high);
-  out["energy"] = energy(*fitted.form.scene, fitted);
+  tell_material(*fitted.form.scene, fitted, out);
   return out;
 }
 

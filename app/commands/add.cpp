@@ -22,16 +22,17 @@ struct AddArguments {
   AddRequest request;
 };
 
-/// "removed 83 % on the fitted photos (chi 5.1 -> 1.3)", or how much came back.
+/// "removed 83 % of the excess misfit on the fitted photos (residual 5.1 -> 1.3)", or how much came
+/// back.
 std::string outcome(const Step& before, const Step& after, const Floor& floor, bool held_out) {
   const double was = before.fitted.evaluation.chi(held_out);
   const double is = after.fitted.evaluation.chi(held_out);
   const double f2 = floor.chi * floor.chi;
   const double share =
       was * was > f2 ? (was * was - std::max(is * is, f2)) / (was * was - f2) : 0.0;
-  return fmt::format("{} on the {} photos (chi {:.3f} -> {:.3f})",
+  return fmt::format("{} on the {} photos (residual {:.3f} -> {:.3f})",
                      was * was <= f2 ? std::string("nothing to remove")
-                     : share >= 0.0  ? fmt::format("removed {:.{}f} % of what was over the floor",
+                     : share >= 0.0  ? fmt::format("removed {:.{}f} % of the excess misfit",
                                                    100.0 * share, share > 0.99 ? 1 : 0)
                                      : fmt::format("misfit {:.2g} times as large", 1.0 - share),
                      held_out ? "held-out" : "fitted", was, is);
@@ -71,10 +72,11 @@ void run_add(const AddArguments& arguments, Session& session) {
   Step step = next_step(bench, current, arguments.request, options);
   const auto folder = record(run, step);
   const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
-  say_outcome(current, step, floor, arguments.request.take_back, session);
   spdlog::info("diagnosing the new step");
   diagnose_newest(run, bench, step, options.diagnosis);
   session.document = run.timeline()["steps"].back();
+  say_answer(run, session);
+  say_outcome(current, step, floor, arguments.request.take_back, session);
   if (const auto said = not_converged(step.fitted.converged, step.fitted.iterations); !said.empty())
     session.warn(said);
   session.say("{}{}", parameter_table(step.fitted), wrapped(conclusion(step.diagnosis)));

@@ -16,8 +16,8 @@ void run_diagnose(const std::string& folder, Session& session) {
   Step step = newest_step(run, bench);
   diagnose_newest(run, bench, step, diagnosis_options());
   session.document = to_json(step.diagnosis);
-  session.say("step {}: chi {:.3f}, floor {:.3f}\n", step.name, step.fitted.evaluation.chi(false),
-              step.diagnosis.floor.chi);
+  session.say("step {}: normalised residual {:.3f}, noise floor {:.3f}\n", step.name,
+              step.fitted.evaluation.chi(false), step.diagnosis.floor.chi);
   session.say("{}", diagnosis_table(step.diagnosis));
   session.say("{}", wrapped(conclusion(step.diagnosis)));
   if (const auto& note = step.diagnosis.mesh_note; !note.empty()) session.say("{}", wrapped(note));

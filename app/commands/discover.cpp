@@ -166,17 +166,20 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   });
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
-  session.say("{}", steps_table(run.timeline()));
+  say_answer(run, session);
+  session.say("\n{}", steps_table(run.timeline()));
   for (size_t i = 1; i < steps.size(); ++i)
     session.say("{}", choice_table(steps[i - 1], steps[i],
                                    run.timeline().at("floor").at("chi").get<double>()));
   const Fitted& last = found.steps.back().fitted;
-  session.say("\n{}", parameter_table(last));
+  if (const std::string others = parameter_table(last); !others.empty())
+    session.say("\n{}", others);
   if (const auto said = not_converged(last.converged, last.iterations); !said.empty())
     session.warn(said);
   if (const auto& note = found.steps.back().diagnosis.mesh_note; !note.empty())
     session.say("{}", wrapped(note));
-  session.say("\n{}", wrapped(fmt::format("{}: {}", to_string(found.verdict), found.sentence)));
+  session.say("\n{}",
+              wrapped(fmt::format("in detail, {}: {}", to_string(found.verdict), found.sentence)));
   if (!hint.empty()) session.say("{}", wrapped(hint));
   if (found.verdict == Verdict::unexplained)
     tell_free_form(run, bench, found.steps.back(), session);

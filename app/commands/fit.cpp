@@ -1,4 +1,6 @@
 // hookeye fit: the base model, step 0 of a run.
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
@@ -25,12 +27,14 @@ struct FitArguments {
 
 /// The textbook law first, where it can move; then the same energy told additively, refined.
 Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p,
-                    const FitOptions& fit_options, Session& session) {
+                    const FitOptions& fit_options) {
   const bool own = has_additive(form);
   std::vector<AdditiveStart> starts = {own ? AdditiveStart(form, p) : to_additive(form, p)};
   if (!own && form.size() > 0) {
     const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options));
-    session.say("{}", parameter_table(base));
+    for (int i = 0; i < base.p.size(); ++i)
+      spdlog::info("the law by itself: {} {:.5g} {}", form.parameters()[i].name, base.p[i],
+                   form.parameters()[i].unit);
     starts.insert(starts.begin(), to_additive(form, base.p));
   }
   ProgressiveOptions options;
@@ -40,7 +44,7 @@ Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p,
 
 void say_refinements(const Fitted& fitted, const Session& session) {
   std::vector<std::vector<std::string>> rows = {
-      {"refinement", "values", "evidence", "misfit", "held out", ""}};
+      {"refinement", "values", "log BF", "misfit", "held out", ""}};
   for (const RefinementStage& stage : fitted.refinements)
     rows.push_back({stage.what, std::to_string(stage.values), fmt::format("{:.1f}", stage.evidence),
                     fmt::format("{:.6g}", stage.misfit_fit),
@@ -79,18 +83,16 @@ void run_fit(const FitArguments& arguments, Session& session) {
   step.name = "base";
   const bool additive = arguments.material == "additive" || has_additive(form);
   const FitOptions options = arguments.options();
-  step.fitted = additive ? fit_additive(bench, form, start, options, session)
+  step.fitted = additive ? fit_additive(bench, form, start, options)
                          : value_or_fail(fit(bench.workspace, form, start, options));
   const auto folder = record(run, step);
   const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
   session.document = run.timeline();
   warn_of_lost_ellipticity(folder, session);
+  say_answer(run, session);
   session.say("{}", parameter_table(step.fitted));
   if (additive) say_refinements(step.fitted, session);
-  session.say("chi {} on the fitted photos, {} on the held-out ones; floor {:.3f} ({})\n",
-              chi_text(step.fitted.evaluation.chi(false)),
-              chi_text(step.fitted.evaluation.chi(true)), floor.chi, floor.source);
   session.say("written to {}\n", folder.string());
   const std::string unfinished = not_converged(step.fitted.converged, step.fitted.iterations);
   if (!unfinished.empty())

@@ -9,6 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/report/answer.h"
 #include "app/report/page.h"
 #include "capture_io/run.h"
 
@@ -133,9 +134,11 @@ void run_report(const std::string& folder, const std::string& out, Session& sess
                         {"report", out},
                         {"bytes", page.size()},
                         {"reduction", reduced},
-                        {"faults", document["faults"]}};
+                        {"faults", document["faults"]},
+                        {"answer", document["answer"]}};
     for (const auto& fault : document["faults"]) session.warn(fault.get<std::string>());
     if (!reduced.empty()) session.warn(reduced);
+    session.say("{}", answer_text(document["answer"]));
     session.say("written to {} ({:.1f} MB)\n", out, 1e-6 * static_cast<double>(page.size()));
     return;
   }

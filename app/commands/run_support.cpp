@@ -8,6 +8,7 @@
 #include "app/commands/tables.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/report/answer.h"
 #include "capture_io/json_file.h"
 #include "estimation/contest.h"
 #include "estimation/doubts.h"
@@ -259,6 +260,12 @@ void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& ses
                             "show where to look, whatever they stand for:"));
   for (const FreeForm& field : fields) session.say("{}", wrapped("- " + field.sentence));
   session.say("for ParaView: {}\n", (folder / "free_form.vtu").string());
+}
+
+void say_answer(const Run& run, Session& session) {
+  const nlohmann::json answer = answer_of(run.folder(), run.timeline());
+  session.document["answer"] = answer;
+  session.say("{}", answer_text(answer));
 }
 
 void say_pictures(const std::filesystem::path& step, const Session& session) {

@@ -73,6 +73,10 @@ void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions&
 /// written beside the newest step's diagnosis. For when no effect of the catalogue is left to try.
 void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& session);
 
+/// The answer first (app/report/answer.h): said, and `answer` of the document, which is the run's
+/// timeline or what the command put there before.
+void say_answer(const Run& run, Session& session);
+
 /// Names the folders of a step's pictures.
 void say_pictures(const std::filesystem::path& step, const Session& session);
 

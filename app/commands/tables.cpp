@@ -8,6 +8,7 @@
 
 #include "app/text.h"
 #include "estimation/contest.h"
+#include "estimation/step_json.h"
 #include "estimation/verdict.h"
 
 namespace hookeye {
@@ -43,12 +44,16 @@ double number_in(const nlohmann::json& object, const char* key) {
 std::string parameter_table(const Fitted& fitted) {
   std::vector<std::vector<std::string>> rows = {
       {"parameter", "value", "95 % interval", "unit", ""}};
-  const auto parameters = fitted.form.parameters();
-  for (size_t i = 0; i < parameters.size(); ++i)
-    rows.push_back({parameters[i].name, fmt::format("{:.5g}", fitted.p[i]),
-                    fmt::format("{:.5g} .. {:.5g}", fitted.low[i], fitted.high[i]),
-                    parameters[i].unit, parameters[i].long_name});
-  std::string text = table(rows);
+  Eigen::Index i = 0;
+  for (const auto& ingredient : fitted.form.ingredients)
+    for (const Parameter& parameter : ingredient->parameters()) {
+      const Eigen::Index own = i++;
+      if (ingredient->name() == "material") continue;
+      rows.push_back({parameter.name, fmt::format("{:.5g}", fitted.p[own]),
+                      fmt::format("{:.5g} .. {:.5g}", fitted.low[own], fitted.high[own]),
+                      parameter.unit, parameter.long_name});
+    }
+  std::string text = rows.size() > 1 ? table(rows) : "";
   for (const auto& sentence : effects_in_words(fitted)) text += wrapped(sentence, 2);
   for (const auto& sentence : fitted.undetermined) text += wrapped(sentence, 2);
   return text;
@@ -56,7 +61,7 @@ std::string parameter_table(const Fitted& fitted) {
 
 std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
   std::vector<std::vector<std::string>> rows = {
-      {"effect", "would remove", "evidence", "p", "dof", "easily taken for"}};
+      {"effect", "would remove", "log BF", "p", "dof", "confused with"}};
   std::string sentences, untestable;
   for (const auto& effect : diagnosis.effects) {
     if (!effect.testable) {
@@ -68,12 +73,16 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
                     p_text(effect.p_value), fmt::format("{}", effect.dof),
                     few(effect.confused_with)});
     if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += wrapped(effect.why, 2);
+    // Why the leader is not named where its figure alone would do.
+    if (rows.size() == 2 && effect.evidence >= std::max(diagnosis.gate, kNameable))
+      if (const auto why = not_named_because(effect, diagnosis); !why.empty())
+        sentences += wrapped(fmt::format("{} is not named: {}", effect.effect, why), 2);
   }
   return table(rows) +
          fmt::format(
-             "  evidence: log odds of the effect against chance in what this step leaves (5: 150 "
-             "to 1)\n"
-             "  named only above evidence {:.1f} (chance alone reaches it in 5 % of runs)\n",
+             "  would remove: share of the excess misfit; log BF: log Bayes factor against no "
+             "effect (5: 150 to 1)\n"
+             "  named only above {:.1f}, the 95 % critical value over all effects (chance alone)\n",
              std::max(diagnosis.gate, kNameable)) +
          (diagnosis.held_out_missed && diagnosis.gate < kNameable
               ? wrapped(
@@ -94,10 +103,10 @@ std::string times_floor(double chi, double floor) {
 
 namespace {
 
-/// "creep", "creep, other form" where it took its own place, "creep, without softening".
+/// "creep", "creep, other parametrisation" where it took its own place, "creep, without softening".
 std::string with_dropped(const std::string& name, std::vector<std::string> dropped) {
   const bool itself = std::erase(dropped, name) > 0;
-  if (dropped.empty()) return itself ? name + ", other form" : name;
+  if (dropped.empty()) return itself ? name + ", other parametrisation" : name;
   return fmt::format("{}, without {}", name, fmt::join(dropped, ", "));
 }
 
@@ -107,7 +116,7 @@ std::string name_of(const Step& step) { return with_dropped(step.name, step.drop
 
 std::string steps_table(const nlohmann::json& timeline) {
   std::vector<std::vector<std::string>> rows = {
-      {"step", "chi fitted", "chi held out", "rms px", "chi / floor"}};
+      {"step", "residual", "held out", "rms px", "over noise floor"}};
   const auto& steps = timeline.at("steps");
   const double floor = timeline.at("floor").at("chi");
   const double top = steps.front().at("chi_fit").get<double>() / floor;
@@ -142,7 +151,7 @@ std::string choice_rows(const json& before, const json& step, double floor) {
   const std::string added = step.at("added");
   const auto rivals = step.value("rivals", none), scores = before.value("diagnosis", none);
   std::vector<std::vector<std::string>> rows = {
-      {"effect", "evidence", "trial fitted", "held out", "refit fitted", "held out", "behind"}};
+      {"effect", "log BF", "screening", "held out", "refit", "held out", "behind"}};
   const auto over = [](const json& one, const char* key, double least) {
     return times_floor(number_in(one, key), least);
   };
@@ -177,9 +186,9 @@ std::string choice_rows(const json& before, const json& step, double floor) {
           {effect, fmt::format("{:.1f}", number_in(score, "evidence")), "-", "", "", "", ""});
   }
   std::string text = table(rows);
-  if (left_out) text += fmt::format("  and {} more tried, not refitted\n", left_out);
+  if (left_out) text += fmt::format("  and {} more screened, not refitted\n", left_out);
   if (const size_t more = untried - (rows.size() - tried))
-    text += fmt::format("  and {} of less evidence, not tried\n", more);
+    text += fmt::format("  and {} of a smaller log BF, not screened\n", more);
   return text;
 }
 
@@ -193,7 +202,7 @@ std::string sureness(const json& step, double floor) {
     if (rival.at("effect") == added || (!nearest.empty() && by >= behind)) continue;
     nearest = rival.at("effect"), behind = by;
   }
-  if (nearest.empty()) return "how sure: no other was refitted, all fell behind in the trial";
+  if (nearest.empty()) return "how sure: no other was refitted, all fell behind in the screening";
   if (behind < -kTie)
     return fmt::format("how sure: alone {} does better; {} was chosen with what the next step has",
                        nearest, added);
@@ -206,7 +215,7 @@ std::string sureness(const json& step, double floor) {
   if (left > kAtFloor)
     return fmt::format(
         "how sure: {}, the next, is behind by {:.1f}; alone it leaves {:.2f} times "
-        "the floor, more is missing",
+        "the noise floor, more is missing",
         nearest, behind, left);
   // Tails of a likelihood are trusted as little as anyone's: beyond a million the number says
   // nothing.
@@ -251,8 +260,9 @@ std::string other_form(const json& before, const json& step, double floor) {
     return fmt::format("{} fitted, {} held out", times_floor(number_in(of, "chi_fit"), floor),
                        times_floor(number_in(of, "chi_validate"), floor));
   };
-  return "\n" + wrapped(fmt::format("why {}, other form: {} (chi over the floor: {}; before: {})",
-                                    added, form, left(step), left(before)));
+  return "\n" + wrapped(fmt::format(
+                    "why {}, other parametrisation: {} (residual over noise floor: {}; before: {})",
+                    added, form, left(step), left(before)));
 }
 
 bool by_hand(const json& step) {
@@ -273,10 +283,10 @@ std::string high_floor(const Floor& floor) {
     if (own > std::max(chi, kUsual)) of = fmt::format(" of camera '{}'", camera), chi = own;
   if (chi < kUsual) return "";
   return fmt::format(
-      "the floor{0} itself is {1:.2f} times the told noise: the rest photos{0} are missed by "
-      "something that no smooth motion or brightness explains, as blur, gloss, a texture that is "
-      "off or noise that was told too low. What is as large as that in every photo passes for "
-      "noise here",
+      "the noise floor{0} itself is {1:.2f} times the specified noise: the reference images{0} are "
+      "missed by something that no smooth motion or brightness explains, as blur, gloss, a texture "
+      "that is off or noise that was specified too low. What is as large as that in every photo "
+      "passes for noise here",
       of, chi);
 }
 
@@ -285,7 +295,7 @@ std::string choice_table(const json& before, const json& step, double floor) {
   const std::string added = step.at("added");
   if (by_hand(step))
     return "\n" + wrapped(fmt::format(
-                      "{} was added by hand and not raced against others: `hookeye discover "
+                      "{} was added by hand and not screened against others: `hookeye discover "
                       "CAPTURE -o NEW_RUN` tells what else it could have been{}",
                       added, resemblance(before, added)));
   if (const std::string form = other_form(before, step, floor); !form.empty()) return form;
@@ -294,11 +304,11 @@ std::string choice_table(const json& before, const json& step, double floor) {
   if (raced.empty() || (raced.size() == 1 && numerical(added))) return "";
   return "\n" +
          wrapped(fmt::format(
-             "why {}: chi over the floor that the effects that stood out leave (trial: after one "
-             "or two steps of the refit, in half-size photos, whose floor is another; -: not "
-             "tried, "
-             "as it promised too little or had no equilibrium; blank: not refitted; behind: in the "
-             "refits' log likelihood less the price of their parameters, below {:.0f} is a tie)",
+             "why {}: normalised residual over the noise floor with each effect that stood out "
+             "(screening: after one or two steps of a refit, on half-size photos, whose floor is "
+             "another; -: not screened, as it promised too little or had no equilibrium; blank: "
+             "not "
+             "refitted; behind: in the refits' penalised log likelihood, below {:.0f} is a tie)",
              added, kTie)) +
          choice_rows(before, step, floor) +
          wrapped(sureness(step, floor) + resemblance(before, added), 2);

@@ -8,6 +8,8 @@
 
 namespace hookeye {
 
+/// All but the material's, which stand in the answer (app/report/answer.h); effects in words; what
+/// is not identifiable.
 std::string parameter_table(const Fitted& fitted);
 /// The leading `most` effects, one sentence on those that may be named, and why others were not
 /// tested.
@@ -18,7 +20,7 @@ std::string steps_table(const nlohmann::json& timeline);
 /// floor, and how sure the choice is. Empty: nothing else stood out.
 std::string choice_table(const nlohmann::json& before, const nlohmann::json& step, double floor);
 
-/// That the rest photos are missed by far more than their told noise, which hides what is wrong
+/// That the reference images are missed by far more than their noise, which hides what is wrong
 /// with all photos alike; "" where they are not.
 std::string high_floor(const Floor& floor);
 

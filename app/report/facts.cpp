@@ -66,16 +66,40 @@ std::string noise_text(const Capture& capture) {
   return "no photos";
 }
 
+/// What acts on the body where, to be drawn on it: `fixed`, the components that stand still;
+/// `move`, `force`: vectors; `pressure`.
+json support_act(const SupportSpec& support, const Units& units) {
+  json out = {{"region", support.region}, {"text", support_text(support, units)}};
+  const Vector3d move =
+      support.kind == SupportSpec::Kind::components
+          ? Vector3d(support.displacement[0].value_or(0.0), support.displacement[1].value_or(0.0),
+                     support.displacement[2].value_or(0.0))
+          : Vector3d(support.rigid.move);
+  const bool told = support.kind != SupportSpec::Kind::rigid_fit;
+  if (told && !move.isZero(0.0)) out["move"] = {move.x(), move.y(), move.z()};
+  return out;
+}
+
+json load_act(const LoadSpec& load, const Units& units) {
+  json out = {{"region", load.region}, {"text", load_text(load, units)}};
+  if (load.force) out["force"] = {load.force->x(), load.force->y(), load.force->z()};
+  if (load.pressure) out["pressure"] = *load.pressure;
+  return out;
+}
+
 json example_facts(const ExampleSpec& example, const Units& units) {
   json out = {{"name", example.name},
               {"use", example.validate ? "validate" : "fit"},
               {"supports", json::array()},
               {"loads", json::array()},
+              {"acts", json::array()},
               {"photos", example.photos.size()},
               {"measured", example.measured.size()}};
   for (const auto& support : example.supports)
     out["supports"].push_back(support_text(support, units));
   for (const auto& load : example.loads) out["loads"].push_back(load_text(load, units));
+  for (const auto& support : example.supports) out["acts"].push_back(support_act(support, units));
+  for (const auto& load : example.loads) out["acts"].push_back(load_act(load, units));
   return out;
 }
 

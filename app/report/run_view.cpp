@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "app/report/answer.h"
 #include "app/report/encode_png.h"
 #include "app/report/facts.h"
 #include "app/report/inside.h"
@@ -239,6 +240,10 @@ json RunView::document(int shrink_old, int shrink_new) {
               {"capture", capture_ ? capture_facts(*capture_) : json()},
               {"practice", capture_ ? reporting_table(*capture_) : json::array()}};
   out["faults"] = std::move(faults);
+  const json none;
+  out["answer"] = answer_of(timeline, out["steps"].empty() ? none : out["steps"].back()["metrics"],
+                            out["steps"].empty() ? none : out["steps"].back()["diagnosis"]);
+  out["answer"]["text"] = material_text(out["answer"]["material"]);
   return out;
 }
 

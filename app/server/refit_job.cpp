@@ -1,11 +1,29 @@
 #include "app/server/refit_job.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "app/commands/kept_work.h"
 #include "app/interrupt.h"
 
 namespace hookeye {
 
 using nlohmann::json;
+
+namespace {
+
+/// Where a stage ends, of the whole: a rough guess, not measured. The time left follows from it.
+struct StageEnd {
+  std::string_view begins;
+  double share;
+};
+constexpr StageEnd kStages[] = {
+    {"reading", 0.05},   {"evaluating", 0.15}, {"diagnosing the newest", 0.35}, {"refitting", 0.65},
+    {"computing", 0.72}, {"writing", 0.78},    {"diagnosing the new step", 1.0}};
+/// Of a refit, what is done before it comes to full size.
+constexpr double kCoarse = 0.4;
+
+}  // namespace
 
 RefitJob::~RefitJob() {
   stop();
@@ -18,7 +36,9 @@ bool RefitJob::start(const AddRequest& request) {
   if (thread_.joinable()) thread_.join();
   running_ = true;
   cancel_ = false;
-  started_ = stage_started_ = Clock::now();
+  started_ = Clock::now();
+  share_ = from_ = 0.0;
+  to_ = kStages[0].share;
   state_ = {{"state", "running"},
             {"effect", request.effect},
             {"take_back", request.take_back},
@@ -31,12 +51,12 @@ json RefitJob::state() {
   const std::lock_guard lock(mutex_);
   json out = state_;
   if (!running_) return out;
-  const auto now = Clock::now();
-  out["seconds"] = std::chrono::duration<double>(now - started_).count();
-  const int done = out.value("iteration", 0), of = out.value("of", 0);
-  if (done > first_iteration_ && of > done)
-    out["seconds_left"] = std::chrono::duration<double>(now - stage_started_).count() /
-                          (done - first_iteration_) * (of - done);
+  if (cancel_) out["state"] = "stopping";
+  const double seconds = std::chrono::duration<double>(Clock::now() - started_).count();
+  out["seconds"] = seconds;
+  out["share"] = share_;
+  constexpr double kTold = 0.1;  // before that its pace says nothing
+  if (share_ > kTold) out["seconds_left"] = seconds * (1.0 - share_) / share_;
   return out;
 }
 
@@ -47,21 +67,35 @@ void RefitJob::stage(const std::string& name) {
 
 void RefitJob::begin_stage(const std::string& name) {
   state_["stage"] = name;
-  state_["iteration"] = state_["of"] = first_iteration_ = 0;
-  stage_started_ = Clock::now();
+  state_["iteration"] = state_["of"] = 0;
+  const auto* own = std::find_if(std::begin(kStages), std::end(kStages),
+                                 [&](const StageEnd& one) { return name.starts_with(one.begins); });
+  if (own == std::end(kStages)) return;
+  from_ = own == std::begin(kStages) ? 0.0 : std::prev(own)->share;
+  to_ = own->share;
+  reach(from_);
 }
+
+void RefitJob::reach(double share) { share_ = std::max(share_, share); }
 
 void RefitJob::told(const FitProgress& progress) {
   const std::lock_guard lock(mutex_);
   const std::string name = progress.stage == "final" ? "computing the final pictures and intervals"
                                                      : "refitting, " + progress.stage;
-  if (state_.value("stage", "") != name || progress.iteration < state_.value("iteration", 0)) {
+  if (state_.value("stage", "") != name || progress.iteration < state_.value("iteration", 0))
     begin_stage(name);
-    first_iteration_ = progress.iteration;
-  }
   state_["iteration"] = progress.iteration;
   state_["of"] = progress.of;
   if (progress.chi > 0.0) state_["chi"] = progress.chi;
+  const double within =
+      progress.of > 0 ? std::min(1.0, double(progress.iteration) / progress.of) : 0.0;
+  const bool full = progress.stage == "full size";
+  reach(from_ + (to_ - from_) * (full ? kCoarse + (1.0 - kCoarse) * within : kCoarse * within));
+}
+
+void RefitJob::told_diagnosis(int done, int of) {
+  const std::lock_guard lock(mutex_);
+  if (of > 0) reach(from_ + (to_ - from_) * done / of);
 }
 
 void RefitJob::finish(const std::string& state, const std::string& message) {
@@ -75,6 +109,7 @@ AddOptions RefitJob::options() {
   AddOptions out;
   out.fit.cancel = out.diagnosis.cancel = &cancel_;
   out.fit.progress = [this](const FitProgress& progress) { told(progress); };
+  out.diagnosis.progress = [this](int done, int of) { told_diagnosis(done, of); };
   out.doing = [this](const std::string& work) { stage(work); };
   return out;
 }
@@ -102,8 +137,8 @@ void RefitJob::refit(const AddRequest& request) {
   stage("diagnosing the new step");
   diagnose_newest(run, *bench_, step, wanted.diagnosis);
   finish("done",
-         fmt::format("χ {:.4g} → {:.4g} on the fitted photos", current.fitted.evaluation.chi(false),
-                     step.fitted.evaluation.chi(false)));
+         fmt::format("Normalised residual {:.4g} → {:.4g} on the fitted photos.",
+                     current.fitted.evaluation.chi(false), step.fitted.evaluation.chi(false)));
 }
 
 void RefitJob::work(const AddRequest& request) {

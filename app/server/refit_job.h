@@ -22,9 +22,9 @@ class RefitJob {
   /// False: another one is running.
   bool start(const AddRequest& request);
   void stop() { cancel_ = true; }
-  /// {state: idle | running | done | failed | stopped, effect, take_back, stage, iteration, of,
-  /// chi,
-  ///  seconds, seconds_left, message}
+  /// {state: idle | running | stopping | done | failed | stopped, effect, take_back, stage,
+  ///  iteration, of, chi, seconds, share, seconds_left, message}; `share` of the whole work, and
+  ///  the seconds that the rest would take at its pace.
   nlohmann::json state();
 
  private:
@@ -32,6 +32,8 @@ class RefitJob {
   void work(const AddRequest& request);
   void refit(const AddRequest& request);
   void told(const FitProgress& progress);
+  void told_diagnosis(int done, int of);
+  void reach(double share);  ///< mutex_ is held
   void stage(const std::string& name);
   void begin_stage(const std::string& name);  ///< mutex_ is held
   void finish(const std::string& state, const std::string& message);
@@ -43,8 +45,9 @@ class RefitJob {
   std::mutex mutex_;  ///< of what follows
   bool running_ = false;
   nlohmann::json state_ = {{"state", "idle"}};
-  Clock::time_point started_, stage_started_;
-  int first_iteration_ = 0;  ///< of the stage, as the fit counts
+  Clock::time_point started_;
+  double share_ = 0.0;            ///< of the work that is done; never falls
+  double from_ = 0.0, to_ = 0.0;  ///< what the present stage is of it
   // Used by the thread alone: the capture stays open between refits.
   Session session_;
   std::optional<Bench> bench_;

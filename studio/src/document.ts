@@ -37,6 +37,8 @@ export interface EffectScore {
   /** Whether the program would name it; runs of older versions do not tell. */
   named?: boolean;
   why_not?: string;
+  /** Which guard keeps it from being named, with its figures. */
+  why_not_named?: string;
   variant?: string;
   explains?: number;
   explains_held_out?: number;
@@ -73,15 +75,7 @@ export interface Metrics {
   /** The camera that keeps most over the floor of its own rest photos; whether it alone keeps the photos from being
    *  explained. */
   most_over_floor?: {camera: string; times: number; use: string; its_own?: boolean};
-  measured: {
-    example: string;
-    kind: string;
-    region: string;
-    measured: number[];
-    predicted: number[];
-    sigma: number;
-    over_sigma: number[];
-  }[];
+  measured: Measured[];
   undetermined: string[];
   converged: boolean;
   iterations: number;
@@ -89,6 +83,55 @@ export interface Metrics {
   energy?: EnergyCurve[];
   ellipticity?: {smallest: number; elements_lost: number; example: string} | null;
   additive?: unknown;  // there: `energy` has the addends of an additive material
+}
+export interface Measured {
+  example: string;
+  kind: string;
+  region: string;
+  measured: number[];
+  predicted: number[];
+  unit?: string;
+  sigma: number;
+  over_sigma: number[];
+}
+/** A value of the material; an interval where it was fitted. */
+export interface MaterialValue extends ParameterValue {
+  known: 'fitted' | 'given' | 'open';
+}
+/** Nominal stress of a bar over its stretch; null where it has none, a band where the data hold it. */
+export interface StressCurve {
+  name: string;
+  axis: string;
+  unit: string;
+  stretch: number[];
+  value: (number | null)[];
+  low: (number | null)[];
+  high: (number | null)[];
+  visited: [number, number];
+}
+/** What the fit makes of the material (estimation/material_card.h). */
+export interface Material {
+  cards: {
+    region: string;
+    law: string;
+    parameters: MaterialValue[];
+    /** Left out of the second and later ones where laws are blended over the body. */
+    small_strain?: MaterialValue[];
+    curves?: StressCurve[];
+  }[];
+  blended: boolean;
+  beside: string[];
+  depends: string[];
+  yaml: string;
+}
+/** What a run has found (app/report/answer.h). */
+export interface Answer {
+  material: Material | null;
+  headline: string;
+  sentence: string;
+  misfit: string;
+  /** The material as plain text. */
+  text: string;
 }
 export interface EnergyCurve {
   name: string;
@@ -138,6 +181,14 @@ export interface StepEntry {
   deformed: {name: string; blob: string}[];
   files: string[];
 }
+export interface Act {
+  region: string;
+  text: string;
+  /** A support that moves, a force, a pressure; none of them: a support that stands. */
+  move?: number[];
+  force?: number[];
+  pressure?: number;
+}
 export interface CaptureFacts {
   title: string;
   file: string;
@@ -151,6 +202,8 @@ export interface CaptureFacts {
     use: string;
     supports: string[];
     loads: string[];
+    /** The same, to be drawn on the body. */
+    acts?: Act[];
     photos: number;
     measured: number;
   }[];
@@ -161,6 +214,7 @@ export interface PageDocument {
   version: string;
   run: string;
   live?: boolean;
+  answer: Answer;
   timeline: {
     verdict?: string;
     sentence?: string;
@@ -178,7 +232,7 @@ export interface PageDocument {
 }
 
 export interface JobState {
-  state: 'idle' | 'running' | 'done' | 'failed' | 'stopped';
+  state: 'idle' | 'running' | 'stopping' | 'done' | 'failed' | 'stopped';
   effect?: string;
   take_back?: boolean;
   stage?: string;
@@ -186,6 +240,8 @@ export interface JobState {
   of?: number;
   chi?: number;
   seconds?: number;
+  /** Of the whole work. */
+  share?: number;
   seconds_left?: number | null;
   message?: string;
   steps: number;

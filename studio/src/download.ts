@@ -26,8 +26,9 @@ export async function drawnSvg(svg: SVGSVGElement): Promise<HTMLCanvasElement> {
   const to = [copy, ...copy.querySelectorAll('*')];
   from.forEach((node, i) => {
     const style = getComputedStyle(node);
-    for (const key of ['fill', 'stroke', 'stroke-width', 'font', 'opacity'])
-      (to[i] as SVGElement).style.setProperty(key, style.getPropertyValue(key));
+    // Attributes, not styles: a picture may be under the page's policy, which allows no inline style.
+    for (const key of ['fill', 'stroke', 'stroke-width', 'font-family', 'font-size', 'font-weight', 'opacity'])
+      to[i].setAttribute(key, style.getPropertyValue(key));
   });
   const box = svg.getBoundingClientRect();
   copy.setAttribute('width', String(box.width));

@@ -1,8 +1,9 @@
-// The page: verdict on top, the five verbs as tabs, one at a time.
+// The page: the verdict on top; the answer, the five verbs and the facts as tabs, one at a time.
 import {render} from 'preact';
 import {useEffect, useRef} from 'preact/hooks';
 import {Add, JobLine} from './add/add';
 import {follow} from './add/job';
+import {Answer} from './answer/answer';
 import {Compare} from './compare/compare';
 import {Facts} from './facts/facts';
 import {Fails} from './fails/fails';
@@ -10,23 +11,28 @@ import {Falls} from './falls/falls';
 import {Missing} from './missing/missing';
 import {setLive} from './parts';
 import {chosenPhoto, help, otherStep, run, showStep, stepIndex, theme, verb, verbs, type Verb} from './state';
-import {provisional} from './story';
 import {Tabs} from './tabs';
+import {Said} from './widgets';
 import './style.css';
 
 const views: Record<Verb, () => preact.JSX.Element> = {
-  compare: Compare, fails: Fails, missing: Missing, add: Add, falls: Falls, facts: Facts,
+  answer: Answer, compare: Compare, fails: Fails, missing: Missing, add: Add, falls: Falls, facts: Facts,
 };
 
 function Verdict() {
-  const {verdict, sentence} = run.value.timeline;
-  const judged = sentence !== undefined;
-  const now = provisional();
+  const {headline, sentence} = run.value.answer;
+  const judged = run.value.timeline.sentence !== undefined;
+  return <p class="verdict" title={sentence}><b class={judged ? headline : 'open'}>{headline}</b> <Said text={sentence} />.</p>;
+}
+
+/** What is not here, or was left out to keep the file small. */
+function Notes() {
+  const {faults, reduction} = run.value;
+  if (!faults.length && !reduction) return null;
+  const said = faults.length ? `${faults.length} thing${faults.length > 1 ? 's' : ''} of this run ${faults.length > 1 ? 'are' : 'is'} not here` : 'Reduced';
   return (
-    <p class="verdict">
-      <b class={judged ? verdict : 'open'}>{judged ? verdict : now.headline}</b>{' '}
-      {judged ? sentence : now.sentence}
-    </p>
+    <details class="faults"><summary>{said}</summary>
+      <ul>{faults.map((f) => <li key={f}>{f}</li>)}{reduction && <li>{reduction}</li>}</ul></details>
   );
 }
 
@@ -45,6 +51,7 @@ function StepChoice() {
 }
 
 const keyTable: [string, string][] = [
+  ['a', 'the answer'],
   ['1 … 6', 'the five verbs, and the facts'],
   ['← → ↑ ↓', 'photos: next and previous; pictures: move the cross (Shift: by ten); body: turn'],
   ['+ − 0', 'zoom in, out, fit'],
@@ -82,8 +89,9 @@ function keys(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   const typed = target instanceof HTMLInputElement ? !/checkbox|radio/.test(target.type) : /SELECT|TEXTAREA/.test(target.tagName);
   if (event.ctrlKey || event.metaKey || event.altKey || typed) return;
-  const index = Number(event.key) - 1;
-  if (verbs[index]) verb.value = verbs[index];
+  const index = Number(event.key);
+  if (index > 0 && verbs[index]) verb.value = verbs[index];
+  else if (event.key === 'a') verb.value = 'answer';
   else if (event.key === 't') turnTheme();
   else if (event.key === '?') help.value = !help.value;
   else if (event.key === '[' && stepIndex.value > 0) showStep(stepIndex.value - 1);
@@ -100,25 +108,21 @@ function Page() {
   useEffect(() => {
     history.replaceState(null, '', '#' + verb.value);
   }, [verb.value]);
-  const {faults, reduction, capture} = run.value;
-  const title = capture?.title ?? run.value.run.split('/').pop();
+  const title = run.value.capture?.title ?? run.value.run.split('/').pop();
   return (
     <>
       <header>
         <h1 title={title}>Hookeye <small>{title}</small></h1>
         <Verdict />
-        <StepChoice />
+        {verb.value !== 'answer' && <StepChoice />}
+        <Notes />
         <span class="tools">
           <button title="Dark or light (t)" aria-label="Dark or light" onClick={turnTheme}>◐</button>
           <button title="Keys (?)" aria-label="Keys" onClick={() => (help.value = !help.value)}>?</button>
         </span>
       </header>
-      <JobLine />
-      {(faults.length > 0 || reduction) && (
-        <details class="faults"><summary>{faults.length ? `${faults.length} thing${faults.length > 1 ? 's' : ''} of this run ${faults.length > 1 ? 'are' : 'is'} not here` : 'Reduced'}</summary>
-          <ul>{faults.map((f) => <li key={f}>{f}</li>)}{reduction && <li>{reduction}</li>}</ul></details>
-      )}
       <Tabs />
+      <JobLine />
       <main id="view" role="tabpanel" aria-labelledby={'tab-' + verb.value}><View /></main>
       <Help />
     </>

@@ -45,6 +45,44 @@ export function saveBars(name: string, title: string, rows: {name: string; value
   saveCanvas(name, canvas);
 }
 
+/** Measured values with their 95 % and the model's, on one scale. */
+export function savePairs(name: string, title: string, pairs: {name: string; measured: number; half: number; model: number}[]): void {
+  const {canvas, context, ink} = sheet(560, 62 + 22 * pairs.length);
+  const style = getComputedStyle(document.body);
+  const [bar, mark, line] = ['--bar', '--mark', '--line'].map((c) => style.getPropertyValue(c));
+  const ends = pairs.flatMap((p) => [p.measured - p.half, p.measured + p.half, p.model, 0]);
+  const [low, high] = [Math.min(...ends), Math.max(...ends)];
+  const at = (v: number): number => 170 + (230 * (v - low)) / (high - low || 1);
+  const dot = (x: number, y: number, colour: string, hollow: boolean): void => {
+    context.strokeStyle = context.fillStyle = colour;
+    context.lineWidth = 2;
+    context.beginPath();
+    context.arc(x, y, hollow ? 5 : 4, 0, 7);
+    if (hollow) context.stroke();
+    else context.fill();
+  };
+  context.fillText(title, 10, 15);
+  context.fillStyle = line;
+  context.fillRect(at(0), 28, 1, 22 * pairs.length);
+  pairs.forEach((p, i) => {
+    const y = 40 + 22 * i;
+    context.fillStyle = ink;
+    context.fillText(p.name, 10, y, 150);
+    context.fillText(`${p.measured.toPrecision(3)} / ${p.model.toPrecision(3)}`, 420, y);
+    context.fillStyle = bar;
+    context.fillRect(at(p.measured - p.half), y - 1, at(p.measured + p.half) - at(p.measured - p.half), 2);
+    dot(at(p.measured), y, bar, false);
+    dot(at(p.model), y, mark, true);
+  });
+  const y = 46 + 22 * pairs.length;
+  dot(20, y, bar, false);
+  dot(220, y, mark, true);
+  context.fillStyle = ink;
+  context.fillText('measured, with ± 1.96 σ', 30, y);
+  context.fillText('model', 230, y);
+  saveCanvas(name, canvas);
+}
+
 /** A chart with its title above and what its lines are below. */
 export function saveChart(name: string, title: string, chart: HTMLCanvasElement,
                           lines: {label: string; colour: string}[]): void {

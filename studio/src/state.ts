@@ -21,18 +21,19 @@ export const run = signal<PageDocument>(
 export const job = signal<JobState | null>(null);
 
 export const verbNames = {
+  answer: 'Answer',
   compare: 'Compare',
   fails: 'Where it fails',
   missing: 'What is missing',
   add: 'Add',
-  falls: 'The error falls',
+  falls: 'Error falls',
   facts: 'Facts',
 };
 export type Verb = keyof typeof verbNames;
 export const verbs = keysOf(verbNames);
 
 const fromAddress = location.hash.slice(1) as Verb;
-export const verb = signal<Verb>(verbs.includes(fromAddress) ? fromAddress : 'compare');
+export const verb = signal<Verb>(verbs.includes(fromAddress) ? fromAddress : 'answer');
 
 // A report is read by someone who was not there: it opens where the run began, against where it
 // ended. In the studio one works on the newest step.
@@ -75,7 +76,7 @@ export function effectsOf(entry: StepEntry | undefined): EffectScore[] {
 export function wasTested(effect: EffectScore): boolean {
   return effect.testable !== false && effect.evidence !== undefined;
 }
-/** Evidence below which no effect is named (estimation/diagnosis.h: kNameable). */
+/** Log Bayes factor below which no effect is named (estimation/diagnosis.h: kNameable). */
 export function gateOf(entry: StepEntry | undefined): number {
   return Math.max(5, entry?.diagnosis?.gate ?? timelineOf(entry)?.gate ?? 0);
 }
@@ -115,6 +116,8 @@ export const chosenPhoto = signal(worstPhoto(step.value));
 export const floor = computed(
   () => run.value.timeline.floor ?? step.value?.metrics?.floor ?? {chi: 1, source: 'noise model'},
 );
+/** In the field's words. */
+export const floorSource = (source: string): string => (source === 'rest photos' ? 'the reference images' : `the ${source}`);
 export const units = computed(
   () => run.value.capture?.units ?? {length: 'length', force: 'force', stress: 'stress'},
 );

@@ -1,4 +1,4 @@
-// The run in six short sentences with figures, for someone who has never seen it.
+// The run in seven short sentences with figures, for someone who has never seen it.
 import type {EffectScore, ParameterValue, StepEntry} from './document';
 import {around, figure, listed, logEvidence, percent, spaced} from './format';
 import {decisionAfter, effectsOf, figuresOf, floor, gateOf, isNamed, isNumerical, run, timelineOf, units, wasTested, worstPhoto, type Decision, type Verb} from './state';
@@ -18,6 +18,17 @@ function law(): string {
   if (addends.length) return ` whose energy is a sum over ${listed(addends)}`;
   const laws = [...new Set(run.value.capture?.laws ?? [])];
   return laws.length ? ` of ${listed(laws)} law` : '';
+}
+
+/** The material's first modulus, and what the run has come to. */
+function answered(): Told {
+  const {material, headline, sentence} = run.value.answer;
+  const card = material?.cards[0];
+  const first = card && [...card.parameters, ...(card.small_strain ?? [])].find((v) => v.known === 'fitted' && v.unit);
+  return {
+    headline: first ? `${first.name} ${around(first.value, first.low, first.high).value} ${first.unit}` : headline,
+    sentence: first ? `${headline}. ${sentence}` : sentence,
+  };
 }
 
 function compared(): Told {
@@ -44,12 +55,18 @@ function failed(base: StepEntry, lengthPerPx: number): Told {
   const where = there ? `, most in ${worst.example} by ${worst.camera}: surface off there by ${figure(there.rms_px, 2)} px${length}` : '';
   return {
     headline: `${figure(over, 2)} × noise floor`,
-    sentence: `is the misfit of the base model (χ ${figure(told.chi_fit)}, floor ${figure(floor.value.chi)})${where}`,
+    sentence: `is the residual of the base model (normalised RMS ${figure(told.chi_fit)}, noise floor ${figure(floor.value.chi)})${where}`,
   };
 }
 
-/** Above the gate and still not named: no null of independent noise knows of a renderer's errors. */
-export const tooLittle = 'so small a part of the misfit may be the renderer’s or the mesh’s own error, so it is not named';
+/** Which guard keeps an effect from being named, in the program's own words; runs of older versions do not tell. */
+export function whyNotNamed(effect: EffectScore, entry: StepEntry | undefined): string {
+  if (effect.why_not_named) return effect.why_not_named;
+  const gate = gateOf(entry);
+  return (effect.evidence ?? 0) < gate
+    ? `its log Bayes factor ${logEvidence(effect.evidence)} is below ${figure(gate)}, the 95 % critical value over all effects`
+    : 'so small a part of the misfit may be the renderer’s or the mesh’s own error';
+}
 
 /** What the refits of the leading effects came to. */
 export function decidedBy(added: string, others: string[], margin: number): string {
@@ -67,7 +84,7 @@ export function triedBy({added, tried}: Decision): string {
   const own = tried.find((t) => t.effect === added);
   const next = tried.find((t) => t.effect !== added);
   return own && next
-    ? `tried for two steps on half-size photos it leaves χ ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)}` : '';
+    ? `in the screening it leaves ${bothOf(own)} times the noise floor, ${spaced(next.effect)} ${bothOf(next)}` : '';
 }
 
 function sureness(effect: EffectScore, before: StepEntry): string {
@@ -78,15 +95,15 @@ function sureness(effect: EffectScore, before: StepEntry): string {
   const own = decision?.added === effect.effect ? decision : undefined;
   const rest = own?.margin !== undefined ? decidedBy(own.added, own.refitted, own.margin)
     : (own && leads !== effect.effect && triedBy(own)) || next && `next: ${spaced(next.effect)}, ${logEvidence(next.evidence)}`;
-  return `would remove ${percent(effect.explains)} of the misfit; log evidence ${logEvidence(effect.evidence)} ` +
-    `where ${figure(gateOf(before), 2)} is enough` + (rest ? `; ${rest}` : '');
+  return `would remove ${percent(effect.explains)} of the excess misfit; log Bayes factor ${logEvidence(effect.evidence)}, ` +
+    `critical value ${figure(gateOf(before), 2)}` + (rest ? `; ${rest}` : '');
 }
 
 /** Share and choice of an effect that was not the only one. */
 function chapter(effect: EffectScore, before: StepEntry, index: number): string {
   const decision = decisionAfter(before);
   const share = effect.explains === undefined ? ''
-    : index === 0 ? ` ${percent(effect.explains)} of the misfit` : ` ${percent(effect.explains)} of the rest`;
+    : index === 0 ? ` ${percent(effect.explains)} of the excess misfit` : ` ${percent(effect.explains)} of the rest`;
   const chosen = decision?.added === effect.effect && decision.margin !== undefined
     ? ` (refits decided, by ${figure(decision.margin, 4)})` : '';
   const mesh = isNumerical(effect.effect) ? ' (the mesh, not the material)' : '';
@@ -115,9 +132,8 @@ function missing(): Told {
   if (!first) return {headline: 'not tested', sentence: 'this run has not been diagnosed'};
   if (isNamed(first, now))
     return {headline: `${spaced(first.effect)}?`, sentence: `leads, not added yet: ${sureness(first, now)}`};
-  const why = (first.evidence ?? 0) < gateOf(now) ? `below the ${figure(gateOf(now), 2)} of chance` : tooLittle;
-  return {headline: 'nothing', sentence: `of ${effectsOf(now).length} effects stands out: the best, ${spaced(first.effect)}, ` +
-    `has log evidence ${logEvidence(first.evidence)}, ${why}`};
+  return {headline: 'nothing', sentence: `of ${effectsOf(now).length} effects stands out. The best, ${spaced(first.effect)}, ` +
+    `is not named: ${whyNotNamed(first, now)}`};
 }
 
 /** An effect's own parameters: the largest with its interval, of the others as many as a tab has room for
@@ -151,37 +167,14 @@ function refitted(newest: StepEntry): Told {
 function fell(base: StepEntry, newest: StepEntry): Told {
   const [a, b] = [timelineOf(base), timelineOf(newest)];
   if (!a || !b) return {headline: '–', sentence: 'run.json does not tell of every step'};
-  if (base === newest) return {headline: `χ ${figure(b.chi_fit)}`, sentence: `with one step; the noise floor is ${figure(floor.value.chi)}`};
+  if (base === newest)
+    return {headline: `residual ${figure(b.chi_fit)}`, sentence: `normalised, with one step; the noise floor is ${figure(floor.value.chi)}`};
   const heldOut = a.chi_validate !== null && b.chi_validate !== null
     ? `; held-out photos ${figure(a.chi_validate)} → ${figure(b.chi_validate)}` : '';
   return {
-    headline: `χ ${figure(a.chi_fit)} → ${figure(b.chi_fit)}`,
-    sentence: `${figure(b.chi_fit / floor.value.chi)} times the floor${heldOut}; surface off in all fitted photos by ${figure(a.rms_px_fit, 2)} → ${figure(b.rms_px_fit, 2)} px`,
+    headline: `residual ${figure(a.chi_fit)} → ${figure(b.chi_fit)}`,
+    sentence: `normalised; ${figure(b.chi_fit / floor.value.chi)} times the noise floor${heldOut}; surface off in all fitted photos by ${figure(a.rms_px_fit, 2)} → ${figure(b.rms_px_fit, 2)} px`,
   };
-}
-
-/** The newest step's state where no `discover` has judged it (estimation/floor.h: kAtFloor). */
-export function provisional(): Told {
-  const atFloor = 1.3;
-  const newest = run.value.steps[run.value.steps.length - 1];
-  const now = timelineOf(newest);
-  if (!now) return {headline: 'not judged yet', sentence: 'no step is finished'};
-  const over = (chi: number): string => figure(chi / floor.value.chi);
-  const heldOut = now.chi_validate === null ? '' : ` (${over(now.chi_validate)} on held-out photos)`;
-  const all = Math.max(now.chi_fit, now.chi_validate ?? 0) <= atFloor * floor.value.chi;
-  const most = newest.metrics?.most_over_floor;
-  const alone = all && most?.its_own
-    ? `, but ${figure(most.times)} times its own in the ${most.use === 'fit' ? 'fitted' : 'held-out'} photos of camera '${most.camera}'` : '';
-  const left = `what is left is ${over(now.chi_fit)} times the noise floor${heldOut}${alone}`;
-  const effects = now.effects?.length ? `with ${listed(now.effects.map(spaced))}, ` : '';
-  const tested = effectsOf(newest).filter(wasTested);
-  if (!tested.length) return {headline: 'not judged yet', sentence: effects + left};
-  const named = tested.filter((e) => isNamed(e, newest));
-  const standing = named.filter((e) => !isNumerical(e.effect)).map((e) => spaced(e.effect));
-  const rest = named.length > 0 && isNumerical(named[0].effect) ? `${spaced(named[0].effect)} leads: a finer mesh comes before any other effect`
-    : standing.length === 0 ? 'nothing else stands out'
-    : `${listed(standing.slice(0, 2))}${standing.length > 2 ? ` and ${standing.length - 2} more` : ''} stand${standing.length === 1 ? 's' : ''} out`;
-  return {headline: all && !alone ? 'at the floor' : 'above the floor', sentence: `${effects}${left}; ${rest}`};
 }
 
 export function story(lengthPerPx: number): Record<Verb, Told> {
@@ -189,6 +182,7 @@ export function story(lengthPerPx: number): Record<Verb, Told> {
   const [base, newest] = [steps[0], steps[steps.length - 1]];
   const none = {headline: '–', sentence: 'no step is finished'};
   return {
+    answer: answered(),
     compare: compared(),
     fails: base ? failed(base, lengthPerPx) : none,
     missing: base ? missing() : none,

@@ -1,7 +1,7 @@
 // Small parts of every view.
 import type {Signal} from '@preact/signals';
 import type {ComponentChildren} from 'preact';
-import {useEffect, useRef} from 'preact/hooks';
+import {useEffect, useRef, useState} from 'preact/hooks';
 import {gradient, type Ramp} from './colours';
 import {saveCsv} from './download';
 import {saveBars} from './pictures';
@@ -30,6 +30,27 @@ export function Wide(props: {label: string; class?: string; children: ComponentC
 /** A bar for a share of one. */
 export function Share(props: {of: number | undefined}) {
   return <span class="track"><span class="fill" style={{width: `${100 * Math.min(1, Math.max(0, props.of ?? 0))}%`}} /></span>;
+}
+
+/** A sentence of the program, whose commands stand in backticks. */
+export function Said(props: {text: string}) {
+  return <>{props.text.split('`').map((part, i) => (i % 2 ? <code key={i}>{part}</code> : part))}</>;
+}
+
+/** Says what became of the click; where there is no clipboard, the text itself to copy by hand. */
+export function Copy(props: {text: string; label: string}) {
+  const [outcome, setOutcome] = useState<'' | 'copied' | 'refused'>('');
+  const copy = async (): Promise<void> => {
+    try {
+      await navigator.clipboard.writeText(props.text);
+      setOutcome('copied');
+      setTimeout(() => setOutcome(''), 2500);
+    } catch {
+      setOutcome('refused');
+    }
+  };
+  if (outcome === 'refused') return <code class="copied" role="status">{props.text}</code>;
+  return <button class="quiet" aria-live="polite" onClick={() => void copy()}>{outcome === 'copied' ? 'Copied' : props.label}</button>;
 }
 
 /** One of several, as a row of buttons. */

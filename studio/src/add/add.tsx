@@ -1,18 +1,16 @@
 // Verb 4: add an effect, watch the refit, take it back; steps side by side.
-import {useState} from 'preact/hooks';
-import {figure, duration, forShell, listed, logEvidence, spaced} from '../format';
+import {figure, duration, forShell, listed, logEvidence, percent, spaced} from '../format';
 import {effectsOf, gateOf, isNamed, job, other, otherStep, run, showStep, step, stepIndex, timelineOf, wasTested} from '../state';
 import {Ask} from '../facts/glossary';
-import {Share, Wide} from '../widgets';
-import {tooLittle} from '../story';
-import {add, stop} from './job';
+import {Copy, Share, Wide} from '../widgets';
+import {whyNotNamed} from '../story';
+import {add, busy, stop} from './job';
 
 /** `named`: where it may stand beside another effect's name. */
 export function AddButton(props: {effect: string; named?: boolean}) {
   if (!run.value.live) return null;
-  const busy = job.value?.state === 'running';
   return (
-    <button class="primary" disabled={busy} data-add={props.effect}
+    <button class="primary" disabled={busy()} data-add={props.effect}
             onClick={() => void add(props.effect)}>Add{props.named && ` ${spaced(props.effect)}`}</button>
   );
 }
@@ -22,22 +20,24 @@ export function JobLine() {
   const now = job.value;
   if (!now || now.state === 'idle') return null;
   const what = now.effect ? `${now.take_back ? 'Taking back' : 'Adding'} ${spaced(now.effect)}` : 'Refit';
-  if (now.state !== 'running')
+  if (!busy())
     return (
       <p class={`job ${now.state}`} role="status">
         {now.state === 'done' ? `${what}: done. ${now.message ?? ''}` : now.state === 'stopped' ? `${what}: stopped; nothing was changed.` : now.message}
       </p>
     );
+  const stopping = now.state === 'stopping';
   return (
-    <div class="job running" role="status">
-      <progress max={now.of || undefined} value={now.of ? now.iteration : undefined} aria-label={what} />
-      <span>{what}: {now.stage ?? 'starting'}
-        {now.of ? `, iteration ${now.iteration} of at most ${now.of}` : ''}
-        {now.chi ? `, χ ${figure(now.chi, 4)}` : ''}
-        {now.seconds !== undefined ? `, ${duration(now.seconds)}` : ''}
-        {now.seconds_left ? `, at most ${duration(now.seconds_left)} left` : ''}
+    <div class={`job ${now.state}`} role="status">
+      <progress max={1} value={stopping ? undefined : now.share ?? 0} aria-label={what} />
+      <span>{stopping ? `Stopping: ${what.toLowerCase()}, ${now.stage ?? 'starting'}; nothing will be changed`
+        : <>{what}: <b>{percent(now.share ?? 0)}</b>{now.seconds_left ? `, about ${duration(now.seconds_left)} left` : ''}
+          {' · '}{now.stage ?? 'starting'}
+          {now.of ? `, iteration ${now.iteration} of at most ${now.of}` : ''}
+          {now.chi ? `, residual ${figure(now.chi, 4)}` : ''}
+          {now.seconds !== undefined ? `, ${duration(now.seconds)} so far` : ''}</>}
       </span>
-      <button onClick={() => void stop()}>Stop</button>
+      <button disabled={stopping} onClick={() => void stop()}>{stopping ? 'Stopping …' : 'Stop'}</button>
     </div>
   );
 }
@@ -49,7 +49,7 @@ function Steps() {
   const newest = new Map(run.value.steps.map((entry) => [timelineOf(entry)?.added, entry.folder]));
   return (
     <Wide label="Steps of the run" class="steps">
-      <thead><tr><th>step</th><th>χ fitted<Ask word="chi" /></th><th>χ held out<Ask word="heldOut" /></th><th>rms [px]</th><th>show</th><th>against</th><th /></tr></thead>
+      <thead><tr><th>step</th><th>residual<Ask word="chi" /></th><th>held out<Ask word="heldOut" /></th><th>off by [px]</th><th>show</th><th>against</th><th /></tr></thead>
       <tbody>
         {run.value.steps.map((entry, i) => {
           const t = timelineOf(entry);
@@ -63,7 +63,7 @@ function Steps() {
               <td><input type="radio" name="against" aria-label={`compare with ${entry.folder}`} checked={i === otherStep.value}
                 onClick={() => (otherStep.value = otherStep.value === i ? -1 : i)} onChange={() => undefined} /></td>
               <td>{run.value.live && t?.added && stands.has(t.added) && newest.get(t.added) === entry.folder && (
-                <button disabled={job.value?.state === 'running'} onClick={() => void add(t.added!, true)}>Take back</button>
+                <button disabled={busy()} onClick={() => void add(t.added!, true)}>Take back</button>
               )}</td>
             </tr>
           );
@@ -91,22 +91,6 @@ function Difference() {
   );
 }
 
-/** Says what became of the click; where there is no clipboard, the command itself to copy by hand. */
-function CopyCommand(props: {text: string}) {
-  const [outcome, setOutcome] = useState<'' | 'copied' | 'refused'>('');
-  const copy = async (): Promise<void> => {
-    try {
-      await navigator.clipboard.writeText(props.text);
-      setOutcome('copied');
-      setTimeout(() => setOutcome(''), 2500);
-    } catch {
-      setOutcome('refused');
-    }
-  };
-  if (outcome === 'refused') return <code role="status">{props.text}</code>;
-  return <button aria-live="polite" onClick={() => void copy()}>{outcome === 'copied' ? 'Copied' : 'Copy command'}</button>;
-}
-
 export function Add() {
   // An effect is always added to the newest step, whichever is looked at.
   const newest = run.value.steps[run.value.steps.length - 1];
@@ -118,18 +102,18 @@ export function Add() {
         <h3>Add an effect to {newest?.folder ?? 'the newest step'}</h3>
         {!run.value.live && <p class="note">This is a report. To add with one click, run <code>hookeye studio {forShell(run.value.run)}</code>; or copy a command.</p>}
         {offered.length === 0 && <p class="empty">The newest step has not been diagnosed yet.</p>}
-        {standsOut && <p class="note">Named only above log evidence {figure(gateOf(newest))}{
-          offered.some((e) => !isNamed(e, newest)) && '; what is grey does not stand out'}<Ask word="gate" />.</p>}
-        {offered.length > 0 && !standsOut && <p>Nothing stands out any more: {(offered[0].evidence ?? 0) < gateOf(newest)
-          ? 'chance alone would do as well as any of these' : tooLittle}.</p>}
+        {standsOut && <p class="note">Named only above a log Bayes factor of {figure(gateOf(newest))}<Ask word="gate" />{
+          offered.some((e) => !isNamed(e, newest)) && '; what is grey is not named'}.</p>}
+        {offered.length > 0 && !standsOut && <p>Nothing stands out any more. {spaced(offered[0].effect)} leads, and is not
+          named: {whyNotNamed(offered[0], newest)}<Ask word="gate" />.</p>}
         <ul class="offers">
           {offered.map((e) => (
             <li key={e.effect} class={isNamed(e, newest) ? '' : 'below'}>
               <span class="name">{spaced(e.effect)}</span>
               <Share of={e.explains} />
-              <span class="value">evidence {logEvidence(e.evidence)}</span>
+              <span class="value" title={isNamed(e, newest) ? undefined : whyNotNamed(e, newest)}>log BF {logEvidence(e.evidence)}</span>
               {run.value.live ? <AddButton effect={e.effect} /> : (
-                <CopyCommand text={`hookeye add ${forShell(run.value.run)} ${e.effect}`} />
+                <Copy text={`hookeye add ${forShell(run.value.run)} ${e.effect}`} label="Copy command" />
               )}
             </li>
           ))}

@@ -3,7 +3,8 @@ import {effect} from '@preact/signals';
 import type {JobState, PageDocument} from '../document';
 import {chosenStep, job, run, withPhotos} from '../state';
 
-export const lost = {value: false};
+/** Something is going on, be it only to its end. */
+export const busy = (): boolean => job.value?.state === 'running' || job.value?.state === 'stopping';
 
 async function ask<T>(path: string, body?: unknown): Promise<T> {
   const reply = await fetch(path, body === undefined ? {} : {
@@ -26,15 +27,17 @@ export async function add(name: string, takeBack = false): Promise<void> {
     job.value = {state: 'failed', message: (error as Error).message, steps: run.value.steps.length};
   }
 }
+/** Says so at once: the program comes to its end in its own time. */
 export async function stop(): Promise<void> {
+  if (job.value) job.value = {...job.value, state: 'stopping'};
   job.value = await ask<JobState>('stop', {});
 }
 
 async function look(): Promise<void> {
   const now = await ask<JobState>('job');
-  const before = job.value;
+  const was = busy();
   job.value = now;
-  const settled = before?.state === 'running' && now.state !== 'running';
+  const settled = was && !busy();
   if (now.steps !== run.value.steps.length || settled) {
     const more = now.steps > run.value.steps.length;
     await reload();
@@ -54,12 +57,13 @@ export function follow(): void {
             message: 'hookeye studio does not answer any more; what is shown is kept in the run folder.'};
         })
         .finally(next);
-    }, job.value?.state === 'running' ? 700 : 4000);
+    }, busy() ? 700 : 4000);
   };
   void look().catch(() => undefined).finally(next);
-  let was = job.value?.state;
+  let was = busy();
   effect(() => {
-    if (job.value?.state === 'running' && was !== 'running') next();
-    was = job.value?.state;
+    const now = busy();
+    if (now && !was) next();
+    was = now;
   });
 }

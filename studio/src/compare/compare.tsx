@@ -127,9 +127,9 @@ function SideBySide(props: {entry: PhotoEntry; shown: Shown | null; second: Show
   return <>
     <Panel title={`photo · ${entry.example} ${entry.camera}`} {...layer(shown, 'photo')} {...common} />
     <Panel title="model" {...layer(shown, 'model')} {...common} />
-    <Panel title={`residual${other.value ? ' of ' + step.value!.folder : ''} · χ ${chi(step.value)}`} {...layer(shown, 'residual')}
+    <Panel title={`residual${other.value ? ' of ' + step.value!.folder : ''}, RMS ${chi(step.value)}`} {...layer(shown, 'residual')}
            arrows={showArrows.value ? shown?.arrows : undefined} {...common} />
-    {other.value && <Panel title={`residual of ${other.value.folder} · χ ${chi(other.value)}`} {...layer(second, 'residual')}
+    {other.value && <Panel title={`residual of ${other.value.folder}, RMS ${chi(other.value)}`} {...layer(second, 'residual')}
                            arrows={showArrows.value ? second?.arrows : undefined} {...common} />}
   </>;
 }

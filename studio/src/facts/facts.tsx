@@ -3,7 +3,7 @@ import {save, saveCsv} from '../download';
 import {figure} from '../format';
 import {useLengthPerPx} from '../length_per_px';
 import {bytesOf} from '../parts';
-import {floor, run, step, stepIndex, timelineOf, units} from '../state';
+import {floor, floorSource, run, step, stepIndex, timelineOf, units} from '../state';
 import {Wide} from '../widgets';
 import {Glossary} from './glossary';
 
@@ -20,7 +20,7 @@ function displacementResolution(perPx: number): [string, string][] {
 function practiceRows(perPx: number): [string, string][] {
   const metrics = step.value?.metrics;
   const rows: [string, string][] = [
-    ['Noise floor', `χ = ${figure(floor.value.chi, 4)}, from ${floor.value.source}`],
+    ['Noise floor', `normalised residual ${figure(floor.value.chi, 4)}, from ${floorSource(floor.value.source)}`],
     ...run.value.practice.map((r): [string, string] => [r.name, r.value]),
     ...displacementResolution(perPx),
   ];
@@ -81,7 +81,7 @@ export function Facts() {
       <section>
         <h3>The capture{capture?.title ? `: ${capture.title}` : ''}</h3>
         {capture ? <>
-          <Wide label="Load cases of the capture"><thead><tr><th>example</th><th>use</th><th>supports and loads</th></tr></thead>
+          <Wide label="Load cases of the capture"><thead><tr><th>load case</th><th>use</th><th>supports and loads</th></tr></thead>
             <tbody>{capture.examples.map((e) => (
               <tr key={e.name}><td>{e.name}</td><td>{e.use === 'fit' ? 'fitted' : 'held out'}</td><td>{[...e.supports, ...e.loads].join('; ') || 'none'}</td></tr>
             ))}</tbody></Wide>

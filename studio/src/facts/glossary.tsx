@@ -1,18 +1,19 @@
-// The words that the page cannot do without, one line each; a "?" beside a word leads here.
+// The words that the page cannot do without, a sentence each; a "?" beside a word leads here.
 import {useEffect} from 'preact/hooks';
 import {signal} from '@preact/signals';
 import {verb} from '../state';
 
 const words = {
-  chi: ['χ', 'residual over noise, as a root mean square: 1 is noise alone, 10 is ten times the noise'],
+  chi: ['residual', 'normalised residual: model minus photo over noise, as a root mean square (χ in files). 1 is noise alone, 10 ten times the noise'],
   sigma: ['σ', 'standard deviation of the noise of a pixel, or of a measured force: the unit of residuals'],
-  floor: ['floor', 'the χ that the rest photos keep once motion that is smooth over a photo is taken out: noise, and what the renderer gets wrong'],
-  evidence: ['evidence', 'logarithm of the odds that the effect is there against that it is not: 5 is 150 to 1, a tenth more or less is 10 %'],
-  gate: ['gate', 'evidence that chance alone reaches in less than 5 % of simulated runs, at least 5: nothing below it is named'],
+  floor: ['noise floor', 'the normalised residual that the reference images (photos at rest) keep once motion that is smooth over a photo is taken out: noise, and what the renderer gets wrong'],
+  evidence: ['log BF', 'log Bayes factor of the effect against no effect (evidence in files): 5 is odds of 150 to 1, a tenth more or less is 10 %'],
+  gate: ['critical value', 'the log Bayes factor that chance alone exceeds in 5 % of simulated runs, over all effects (gate in files), at least 5. It knows of noise alone: an effect above it is still not named where what it would remove is less than a renderer, a lens or the mesh may err by'],
+  explains: ['would remove', 'share of the excess misfit (what the photos have over the noise floor) that the effect would remove, to first order'],
   weight: ['weight', 'share of an effect when one of those listed must be the cause; refits decide between close ones'],
   dof: ['dof', 'how many numbers the effect could choose freely; more fit more of the noise, which its evidence pays for'],
   heldOut: ['held out', 'photos that no fit has seen: an effect that is real helps there too'],
-  tried: ['tried χ', 'misfit of fitted / held-out photos over the floor, at half size, after two steps of a refit with the effect: those that get farthest are refitted to the end'],
+  tried: ['screening', 'normalised residual over the noise floor, fitted / held-out photos, at half size, after two steps of a refit with the effect: those that get farthest are refitted to the end'],
   refit: ['refit', 'the whole model fitted again with the effect in it; its score, not the estimate, decides'],
 } satisfies Record<string, [string, string]>;
 export type Word = keyof typeof words;

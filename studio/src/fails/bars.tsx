@@ -2,7 +2,7 @@
 import {useEffect, useState} from 'preact/hooks';
 import type {StepEntry} from '../document';
 import {Ask} from '../facts/glossary';
-import {floor} from '../state';
+import {floor, floorSource} from '../state';
 import {Bars, type Row} from '../widgets';
 import {examplesOf, readable} from './surface';
 
@@ -66,10 +66,10 @@ export function FailureBars(props: {step: StepEntry}) {
   const rows = (table: Record<string, number> | undefined): Row[] =>
     Object.entries(table ?? {}).map(([name, value]) => ({name, value}));
   const all: [string, Row[]][] = [
-    ['χ by load case', rows(metrics?.chi_by_example)],
-    ['χ by camera', rows(metrics?.chi_by_camera)],
+    ['residual by load case', rows(metrics?.chi_by_example)],
+    ['residual by camera', rows(metrics?.chi_by_camera)],
     metrics?.chi_by_region
-      ? ['χ by region of the surface', rows(metrics.chi_by_region)]
+      ? ['residual by region of the surface', rows(metrics.chi_by_region)]
       : ['residual [σ] by region', fields?.regions ?? []],
     ['residual [σ] by strain level', fields?.strains ?? []],
   ];
@@ -78,7 +78,7 @@ export function FailureBars(props: {step: StepEntry}) {
       {all.map(([title, list]) => list.length > 0 && (
         <Bars key={title} title={title} rows={list} mark={floor.value.chi} />
       ))}
-      <p class="note">The line is the noise floor, χ = {floor.value.chi.toFixed(2)} ({floor.value.source})<Ask word="floor" />.</p>
+      <p class="note">Normalised residuals<Ask word="chi" />. The line is the noise floor, {floor.value.chi.toFixed(2)}, from {floorSource(floor.value.source)}<Ask word="floor" />.</p>
     </div>
   );
 }

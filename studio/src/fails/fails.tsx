@@ -2,7 +2,7 @@
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {diverging, notCounted, sequential, type Ramp} from '../colours';
-import type {StepEntry} from '../document';
+import type {Act, StepEntry} from '../document';
 import {saveCsv, saveText} from '../download';
 import {figure, listed} from '../format';
 import {savePictures} from '../pictures';
@@ -19,6 +19,9 @@ const quantity = signal<Quantity>('residual');
 const amount = signal(1);
 const chosenExample = signal('');
 
+const showActs = signal(true);
+const actsIn = (example: string): Act[] => run.value.capture?.examples.find((e) => e.name === example)?.acts ?? [];
+
 const titles: Partial<Record<Quantity, string>> = {
   strain: 'strain: largest principal one of Green’s, no unit',
   stiffness: 'fitted stiffness: factor over the material’s, minus 1',
@@ -33,12 +36,13 @@ function rampOf(q: Quantity, most: number): Ramp {
     : {title, ends: ['0', '', `${figure(most)} or more`], scale: sequential, from: 0};
 }
 
-function lookOf(s: Surface, q: Quantity, most: number, ghost: boolean): Look {
+function lookOf(s: Surface, q: Quantity, most: number, ghost: boolean, acts?: Act[]): Look {
   const {scale} = rampOf(q, most);
   const values = s.scalars[q];
   return {
     amount: amount.value,
     ghost,
+    acts,
     colour: (i) => (Number.isFinite(values[i]) ? scale(values[i] / most) : notCounted),
   };
 }
@@ -122,18 +126,20 @@ function Tools(props: {scene: BodyScene | null; shown: Surface | undefined; ramp
       <Buttons label="Colour by" values={quantitiesOf(shown)} chosen={quantity} names={quantityNames} />
       <label>deformed × {amount.value.toFixed(1)} <input type="range" min="0" max="5" step="0.1" value={amount.value}
         onInput={(e) => (amount.value = Number(e.currentTarget.value))} /></label>
+      <label><input type="checkbox" checked={showActs.value}
+        onChange={(e) => (showActs.value = e.currentTarget.checked)} /> supports and loads</label>
       <button onClick={() => scene?.frame()}>Fit</button>
       <span class="push" />
       <button class="quiet" onClick={() => shown && fieldsCsv(shown, chosenExample.value)}>CSV</button>
-      <button class="quiet" onClick={() => scene && savePictures(`${chosenExample.value}-body.png`, [{canvas: scene.canvas, says: chosenExample.value}], [props.ramp])}>PNG</button>
+      <button class="quiet" onClick={() => scene && savePictures(`${chosenExample.value}-body.png`, [{canvas: scene.picture(), says: chosenExample.value}], [props.ramp])}>PNG</button>
       <button class="quiet" onClick={() => shown && saveText(`${chosenExample.value}-surface.vtu`, surfaceVtu(shown), 'application/xml')}>VTU</button>
     </Toolbar>
   );
 }
 
 export function Fails() {
-  const canvas = useRef<HTMLCanvasElement>(null);
-  const {scene, fault: sceneFault} = useScene(canvas);
+  const canvas = useRef<HTMLCanvasElement>(null), overlay = useRef<HTMLCanvasElement>(null);
+  const {scene, fault: sceneFault} = useScene(canvas, overlay);
   const notHere = examplesOf(step.value).length ? '' : `The body of this step is not here. ${run.value.reduction ?? ''}`;
   const now = step.value;
   const {surfaces, fault} = useSurfaces(now);
@@ -144,9 +150,9 @@ export function Fails() {
   useEffect(() => {
     if (!scene || !shown) return;
     scene.setBackground(getComputedStyle(document.body).getPropertyValue('--stage').trim() || '#ffffff');
-    scene.show(shown, lookOf(shown, q, most, amount.value > 0));
+    scene.show(shown, lookOf(shown, q, most, amount.value > 0, showActs.value ? actsIn(chosenExample.value) : []));
     scene.mark(picked.value);
-  }, [scene, shown, q, most, amount.value, theme.value]);
+  }, [scene, shown, q, most, amount.value, showActs.value, theme.value]);
   useEffect(() => scene?.mark(picked.value), [scene, picked.value]);
 
   if (!now) return <p class="empty">No step is finished yet.</p>;
@@ -163,8 +169,9 @@ export function Fails() {
         <div class="body3d">
           {(sceneFault || fault || notHere) && <p class="empty">{sceneFault || fault || notHere}</p>}
           <canvas ref={canvas} tabIndex={0} role="img" onKeyDown={keys}
-            aria-label={`The body in example ${chosenExample.value}, coloured by ${quantityNames[q]}; arrow keys turn it, + and - zoom, Enter picks the middle`}
+            aria-label={`The body in load case ${chosenExample.value}, coloured by ${quantityNames[q]}; arrow keys turn it, + and - zoom, Enter picks the middle`}
             onClick={(e) => scene && (picked.value = scene.pick(e.offsetX, e.offsetY))} />
+          <canvas ref={overlay} class="overlay" aria-hidden="true" />
           <Legend ramp={ramp} />
         </div>
         <Thumbnails scene={scene} surfaces={surfaces} most={most} />

@@ -1,11 +1,15 @@
 // Draws surfaces with three.js: one renderer for the large view and for the small multiples.
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group,
+  AmbientLight, Box3, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, Group,
   LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PerspectiveCamera,
-  Raycaster, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer, WireframeGeometry,
+  Raycaster, Scene, SphereGeometry, Vector2, Vector3, WebGLRenderer, WireframeGeometry, type Object3D,
 } from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import type {Rgb} from '../colours';
+import type {Act} from '../document';
+import {units} from '../state';
+import {marksOf, type Marks} from './marks';
+import {drawOverlay} from './overlay';
 import {norms, type Surface} from './surface';
 
 export interface Look {
@@ -15,6 +19,8 @@ export interface Look {
   ghost: boolean;
   /** Vectors at the nodes, of which arrows show some; the longest is a fifth of the body's size. */
   arrows?: Float32Array;
+  /** Supports and loads to be drawn on it. */
+  acts?: Act[];
 }
 
 /** Arrows at nodes that lie apart, outside the body: those that point into it end at their node. */
@@ -44,6 +50,17 @@ function arrows(body: BufferGeometry, vectors: Float32Array): LineSegments {
   return new LineSegments(geometry, new LineBasicMaterial({color: 0xc2410c}));
 }
 
+/** Points of the body and of the boxes of all that is drawn on it. */
+function cloudOf(body: BufferGeometry, drawn: Object3D[]): Float32Array {
+  const all = [...(body.getAttribute('position').array as Float32Array)];
+  for (const one of drawn) {
+    const {min, max} = new Box3().setFromObject(one);
+    if (min.x > max.x) continue;
+    for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z]) all.push(x, y, z);
+  }
+  return new Float32Array(all);
+}
+
 export class BodyScene {
   readonly camera = new PerspectiveCamera(35, 1, 0.1, 1e5);
   private renderer: WebGLRenderer;
@@ -53,11 +70,18 @@ export class BodyScene {
   private marker = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({color: 0xffd400, depthTest: false}));
   private controls: OrbitControls;
   private shown: Surface | null = null;
+  private marks: Marks = {group: new Group(), labels: []};
+  /** All that is drawn of it: points, three numbers each. */
+  private cloud = new Float32Array();
+  private middle = new Vector3();
   private radius = 1;
   private waiting = false;
+  /** Until somebody moves it the camera sees the whole body, whatever the canvas's size. */
+  private fitting = true;
   onMove: () => void = () => undefined;
 
-  constructor(readonly canvas: HTMLCanvasElement) {
+  /** `overlay`: a canvas above this one, for letters. */
+  constructor(readonly canvas: HTMLCanvasElement, private overlay?: HTMLCanvasElement | null) {
     this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     const sun = new DirectionalLight(0xffffff, 0.3);
@@ -69,6 +93,7 @@ export class BodyScene {
     this.marker.renderOrder = 2;
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('start', () => (this.fitting = false));
     this.controls.addEventListener('change', () => {
       this.draw();
       this.onMove();
@@ -101,10 +126,8 @@ export class BodyScene {
   }
 
   private fill(surface: Surface, look: Look): void {
-    for (const child of [...this.group.children]) {
-      this.group.remove(child);
-      (child as Mesh).geometry.dispose();
-    }
+    this.group.traverse((child) => (child as Mesh).geometry?.dispose());
+    this.group.clear();
     this.mesh = this.build(surface, look);
     this.group.add(this.mesh);
     if (!look.ghost) return;
@@ -121,34 +144,59 @@ export class BodyScene {
     const first = !this.shown;
     this.shown = surface;
     this.fill(surface, look);
-    if (look.arrows) this.group.add(arrows(this.mesh!.geometry, look.arrows));
+    const body = this.mesh!.geometry;
+    this.measure(surface, body);
+    const drawn: Object3D[] = [];
+    if (look.arrows) drawn.push(arrows(body, look.arrows));
+    this.marks = marksOf(body, surface.regions, look.acts ?? [], this.radius);
+    drawn.push(this.marks.group);
+    this.group.add(...drawn);
+    this.cloud = cloudOf(body, drawn);
     if (first) this.frame();
     this.draw();
   }
 
-  /** Looks at the whole body. */
+  /** Its middle and half its size, at rest. */
+  private measure(surface: Surface, body: BufferGeometry): void {
+    const rest = new Box3().setFromArray(surface.rest);
+    rest.getCenter(this.middle);
+    this.radius = 0.5 * rest.min.distanceTo(rest.max);
+    body.computeBoundingBox();
+    body.boundingBox!.getCenter(this.middle);
+  }
+
+  /** Looks at the whole body, from where it is seen first. */
   frame(): void {
-    const surface = this.shown;
-    if (!surface) return;
-    const low = new Vector3(Infinity, Infinity, Infinity);
-    const high = low.clone().negate();
-    for (let i = 0; i < surface.rest.length; i += 3) {
-      const x = new Vector3(surface.rest[i], surface.rest[i + 1], surface.rest[i + 2]);
-      low.min(x);
-      high.max(x);
+    if (!this.shown) return;
+    this.fitting = true;
+    this.camera.position.copy(this.middle).add(new Vector3(1.6, -2.6, 1.3).multiplyScalar(this.radius));
+    this.draw();
+  }
+
+  /** Moves the camera along its line of sight to where all that is drawn fits in, with a margin. */
+  private fit(aspect: number): void {
+    const inside = 0.86;
+    const back = this.camera.position.clone().sub(this.fitting ? this.middle : this.controls.target).normalize();
+    const right = new Vector3().crossVectors(this.camera.up, back).normalize();
+    const above = new Vector3().crossVectors(back, right);
+    const tangent = inside * Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
+    const x = new Vector3();
+    let distance = 0;
+    for (let i = 0; i < this.cloud.length; i += 3) {
+      x.fromArray(this.cloud, i).sub(this.middle);
+      const across = Math.max(Math.abs(x.dot(right)) / (tangent * aspect), Math.abs(x.dot(above)) / tangent);
+      distance = Math.max(distance, x.dot(back) + across);
     }
-    const middle = low.clone().add(high).multiplyScalar(0.5);
-    this.radius = 0.5 * high.distanceTo(low);
-    this.controls.target.copy(middle);
-    this.camera.position.copy(middle).add(new Vector3(1.6, -2.6, 1.3).multiplyScalar(1.25 * this.radius));
+    this.controls.target.copy(this.middle);
+    this.camera.position.copy(this.middle).addScaledVector(back, distance || 4 * this.radius);
     this.camera.near = 0.01 * this.radius;
     this.camera.far = 100 * this.radius;
-    this.controls.update();
-    this.draw();
+    this.camera.lookAt(this.middle);
   }
 
   /** Turns about the body by the keyboard. */
   turn(azimuth: number, polar: number, distance = 1): void {
+    this.fitting = false;
     const from = this.camera.position.clone().sub(this.controls.target);
     from.applyAxisAngle(new Vector3(0, 0, 1), azimuth);
     const side = new Vector3().crossVectors(new Vector3(0, 0, 1), from).normalize();
@@ -188,22 +236,43 @@ export class BodyScene {
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
+    if (this.fitting) this.fit(this.camera.aspect);
     this.camera.updateProjectionMatrix();
     this.renderer.render(this.scene, this.camera);
+    if (!this.overlay || !this.shown) return;
+    const away = this.camera.position.distanceTo(this.controls.target);
+    drawOverlay(this.overlay, this.camera, height / (2 * away * Math.tan((0.5 * this.camera.fov * Math.PI) / 180)),
+      units.value.length, this.marks.labels);
+  }
+
+  /** What is seen, with its letters. */
+  picture(): HTMLCanvasElement {
+    const canvas = document.createElement('canvas');
+    [canvas.width, canvas.height] = [this.canvas.width, this.canvas.height];
+    const context = canvas.getContext('2d')!;
+    context.drawImage(this.canvas, 0, 0);
+    if (this.overlay) context.drawImage(this.overlay, 0, 0, canvas.width, canvas.height);
+    return canvas;
   }
 
   /** The same view of another surface, copied into a small canvas. */
   thumbnail(surface: Surface, look: Look, into: HTMLCanvasElement): void {
-    const [kept, keptMarker] = [this.group.children.slice(), this.marker.visible];
+    const [kept, keptMarker, keptCloud] = [this.group.children.slice(), this.marker.visible, this.cloud];
+    const [place, target, middle] = [this.camera.position.clone(), this.controls.target.clone(), this.middle.clone()];
     this.group.clear();
     this.marker.visible = false;
-    this.group.add(this.build(surface, look));
+    const small = this.build(surface, look);
+    this.group.add(small);
+    this.cloud = cloudOf(small.geometry, []);
+    small.geometry.computeBoundingBox();
+    small.geometry.boundingBox!.getCenter(this.middle);
     const ratio = this.renderer.getPixelRatio();
     into.width = into.clientWidth * ratio;
     into.height = into.clientHeight * ratio;
     if (into.width && into.height) {
       this.renderer.setSize(into.clientWidth, into.clientHeight, false);
       this.camera.aspect = into.width / into.height;
+      this.fit(this.camera.aspect);
       this.camera.updateProjectionMatrix();
       this.renderer.render(this.scene, this.camera);
       into.getContext('2d')!.drawImage(this.canvas, 0, 0, into.width, into.height);
@@ -211,7 +280,11 @@ export class BodyScene {
     (this.group.children[0] as Mesh).geometry.dispose();
     this.group.clear();
     this.group.add(...kept);
-    this.marker.visible = keptMarker;
+    [this.marker.visible, this.cloud] = [keptMarker, keptCloud];
+    this.camera.position.copy(place);
+    this.controls.target.copy(target);
+    this.middle.copy(middle);
+    this.camera.lookAt(target);
     this.drawNow();
   }
 

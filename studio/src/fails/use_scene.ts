@@ -4,12 +4,12 @@ import type {RefObject} from 'preact';
 import {BodyScene} from './scene';
 
 /** The scene, or why there is none. */
-export function useScene(canvas: RefObject<HTMLCanvasElement>): {scene: BodyScene | null; fault: string} {
+export function useScene(canvas: RefObject<HTMLCanvasElement>, overlay?: RefObject<HTMLCanvasElement>): {scene: BodyScene | null; fault: string} {
   const [scene, setScene] = useState<BodyScene | null>(null);
   const [fault, setFault] = useState('');
   useEffect(() => {
     try {
-      const made = new BodyScene(canvas.current!);
+      const made = new BodyScene(canvas.current!, overlay?.current);
       setScene(made);
       const watch = new ResizeObserver(() => made.draw());
       watch.observe(canvas.current!);

@@ -13,6 +13,7 @@ export interface Line {
   colour: string;
   dash?: number[];
   points?: boolean;
+  width?: number;
 }
 /** Whether names stand side by side under the axis; else numbers do, and the names are in the legend. */
 const fit = (u: uPlot, names: string[]): boolean =>
@@ -34,6 +35,7 @@ export function Chart(props: {
   log?: boolean;
   tall?: boolean;
   visited?: [number, number];  // shaded along x: where the data are
+  brief?: boolean;  // without a legend: its lines are told elsewhere
 }) {
   const ref = useRef<HTMLDivElement>(null);
   useEffect(() => {
@@ -44,17 +46,18 @@ export function Chart(props: {
     const size = (): {width: number; height: number} => ({
       width: Math.max(200, box.clientWidth),
       // uPlot's legend stands below its canvas
-      height: Math.max(140, box.clientHeight - (box.querySelector('.u-legend')?.clientHeight ?? 30) - 4),
+      height: Math.max(140, box.clientHeight - (props.brief ? 0 : box.querySelector('.u-legend')?.clientHeight ?? 30) - 4),
     });
     const axis = {stroke: ink, grid: {stroke: faint, width: 1}, ticks: {stroke: faint, width: 1}};
     const names = props.names;
     const plot = new uPlot(
       {
         ...size(),
+        legend: {show: !props.brief},
         pxAlign: 0,  // whole pixels would give smooth curves corners
         scales: {x: {time: false, range: names ? [-0.3, names.length - 0.7] : undefined}, y: {distr: props.log ? 3 : 1}},
         axes: [
-          {...axis, label: props.xLabel, labelSize: 22, ...(names && {
+          {...axis, label: props.xLabel, labelSize: 22, size: 34, ...(names && {
             splits: () => props.x, values: (u: uPlot, at: number[]) => at.map((i) => (fit(u, names) ? names[i] : names[i] && `${i}`) ?? ''),
           })},
           {...axis, label: props.yLabel, labelSize: 22, size: 64,
@@ -65,14 +68,14 @@ export function Chart(props: {
           ...props.lines.map((line) => ({
             label: line.label,
             stroke: line.colour,
-            width: 2,
+            width: line.width ?? 2,
             dash: line.dash,
             points: {show: line.points ?? false, size: 8, fill: line.colour},
             value: (_: uPlot, v: number | null | undefined) => (v == null ? '–' : v.toPrecision(4)),
           })),
         ],
         hooks: {
-          ready: [(u) => u.setLegend({idx: props.x.length - 1})],  // figures before anything is pointed at
+          ready: props.brief ? [] : [(u) => u.setLegend({idx: props.x.length - 1})],  // figures before anything is pointed at
           drawClear: props.visited ? [(u) => {
             const [from, to] = props.visited!.map((v) => u.valToPos(v, 'x', true));
             u.ctx.save();

@@ -2,10 +2,11 @@
 import {useMemo} from 'preact/hooks';
 import {saveCsv} from '../download';
 import {around, figure} from '../format';
-import {floor, other, run, step, timelineOf, units} from '../state';
+import {floor, floorSource, other, run, step, timelineOf} from '../state';
 import {Wide} from '../widgets';
+import {MeasuredTable} from '../answer/measured';
 import {Chart, type Line} from './chart';
-import type {EnergyCurve, ParameterValue, StepEntry} from '../document';
+import type {EnergyCurve, ParameterValue} from '../document';
 
 /** Parameters of the shown step and, beside them, of the one it is compared with. */
 function Parameters(props: {steps: {folder: string; list: ParameterValue[]}[]}) {
@@ -85,9 +86,9 @@ export function Falls() {
       x: list.map((_, i) => i),
       names: list.map((s) => s.folder.replace(/^\d+-/, '').replaceAll('_', ' ')),
       lines: [
-        {label: 'χ fitted photos', values: told.map((t) => t?.chi_fit ?? null), colour: '#2f7fc1', points: true},
-        {label: 'χ held-out photos', values: told.map((t) => t?.chi_validate ?? null), colour: '#d1495b', dash: [6, 4], points: true},
-        {label: `floor (${floor.value.source})`, values: list.map(() => floor.value.chi), colour: '#888888', dash: [2, 3],
+        {label: 'fitted photos', values: told.map((t) => t?.chi_fit ?? null), colour: '#2f7fc1', points: true},
+        {label: 'held-out photos', values: told.map((t) => t?.chi_validate ?? null), colour: '#d1495b', dash: [6, 4], points: true},
+        {label: `noise floor (${floorSource(floor.value.source)})`, values: list.map(() => floor.value.chi), colour: '#888888', dash: [2, 3],
           points: list.length === 1},
       ] as Line[],
     };
@@ -103,9 +104,9 @@ export function Falls() {
   return (
     <div class="falls columns">
       <section>
-        {list.length > 0 && <Chart title="Misfit over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
-               says="Misfit chi over the steps of the run, fitted and held out, against the noise floor"
-               xLabel="step" yLabel="χ, residual over noise" />}
+        {list.length > 0 && <Chart title="Residual over the steps" file="error" csv={errorCsv()} x={x} names={names} lines={lines} log tall={curves.length === 0}
+               says="Normalised residual over the steps of the run, fitted and held out, against the noise floor"
+               xLabel="step" yLabel="normalised residual" />}
         <div class="curves">{curves.map((curve) => <Energy key={curve.name} curve={curve} />)}</div>
         {lost && lost.elements_lost > 0 && <p class="note">The material loses ellipticity at the strains of {lost.elements_lost} elements,
           most in {lost.example}: no resistance against wrinkles or shear bands there.</p>}
@@ -119,29 +120,8 @@ export function Falls() {
         {latest?.diagnosis?.mesh_note && <p class="note">The mesh: {latest.diagnosis.mesh_note}.</p>}
         {now?.undetermined?.map((sentence) => <p class="note" key={sentence}>{sentence}</p>)}
         {now?.converged === false && <p class="note">This fit did not converge in {now.iterations} iterations.</p>}
-        <Measured of={latest} />
+        <MeasuredTable all={latest?.metrics?.measured ?? []} />
       </section>
     </div>
-  );
-}
-
-function Measured(props: {of: StepEntry | undefined}) {
-  const all = props.of?.metrics?.measured ?? [];
-  if (!all.length) return null;
-  const {length, force} = units.value;
-  const unit = (kind: string): string => (kind === 'force_on' ? force : kind === 'moment_on' ? `${force} ${length}` : length);
-  const three = (v: number[]): string => v.map((c) => figure(c)).join(', ');
-  return (
-    <Wide label="Measured forces and positions">
-      <thead><tr><th>measured <button class="quiet" onClick={() => saveCsv('measured.csv', [
-        ['example', 'kind', 'region', 'unit', 'sigma', ...['measured', 'model'].flatMap((of) => ['x', 'y', 'z'].map((axis) => `${of}_${axis}`))],
-        ...all.map((m) => [m.example, m.kind, m.region, unit(m.kind), m.sigma, ...m.measured, ...m.predicted])])}>CSV</button></th><th>value</th><th>model</th><th>unit</th><th>over σ</th></tr></thead>
-      <tbody>
-        {all.map((m, i) => (
-          <tr key={i}><td>{m.example}: {m.kind.replace('_', ' ')} {m.region}</td><td>{three(m.measured)}</td>
-            <td>{three(m.predicted)}</td><td>{unit(m.kind)}</td><td>{three(m.over_sigma)}</td></tr>
-        ))}
-      </tbody>
-    </Wide>
   );
 }

@@ -25,7 +25,7 @@ interface Field {
 const chosen = signal(0);
 
 const names: Record<string, string> = {body_force: 'force in the body', traction: 'traction on the surface'};
-const nameOf = (f: Field): string => `${names[f.name] ?? f.name}${f.example ? ` in ${f.example}` : ', in all examples'}`;
+const nameOf = (f: Field): string => `${names[f.name] ?? f.name}${f.example ? ` in ${f.example}` : ', in all load cases'}`;
 
 function rampOf(f: Field, most: number): Ramp {
   return {title: `${names[f.name] ?? f.name} [${f.unit}]`, ends: ['0', '', figure(most)], scale: sequential, from: 0};
@@ -91,7 +91,7 @@ export function FreeForm() {
       <ul>
         {fields.map((f, i) => (
           <li key={nameOf(f)}><button class="link" aria-pressed={f === shown} onClick={() => (chosen.value = i)}>{nameOf(f)}</button>
-            {' '}would remove {percent(f.explains)}; log evidence {logEvidence(f.evidence)}</li>
+            {' '}would remove {percent(f.explains)}; log Bayes factor {logEvidence(f.evidence)}</li>
         ))}
       </ul>
       <Drawn of={shown} body={body} />

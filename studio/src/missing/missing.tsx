@@ -6,7 +6,7 @@ import {figure, listed, logEvidence, percent, spaced} from '../format';
 import {chosenEffect, decisionAfter, effectsOf, gateOf, isNamed, step, wasTested, type Decision} from '../state';
 import {AddButton} from '../add/add';
 import {Ask} from '../facts/glossary';
-import {bothOf, decidedBy, tooLittle, triedBy} from '../story';
+import {bothOf, decidedBy, triedBy, whyNotNamed} from '../story';
 import {Confusion} from './confusion';
 import {FreeForm} from './free_form';
 import {Removed} from './removed';
@@ -22,6 +22,7 @@ function Detail(props: {effect: EffectScore; pinned: EffectScore}) {
     <section class="detail" aria-live="polite">
       <h3>{spaced(e.effect)} <AddButton effect={props.pinned.effect} named /></h3>
       <p>{e.why ?? e.why_not}</p>
+      {e.why_not_named && <p class="note">Not named: {e.why_not_named}<Ask word="gate" />.</p>}
       {(e.confused_with ?? []).length > 0 && <p>These photos hardly tell it from {listed(e.confused_with!.map(spaced))}.</p>}
       {e.predicted && e.predicted.length > 0 && (
         <Wide label="Parameters it would have">
@@ -82,7 +83,7 @@ function Decided(props: {ranked: EffectScore[]; decision: Decision; folder: stri
   const own = ranked.find((e) => e.effect === added);
   const next = ranked.find((e) => e !== own);
   return <p><b>{spaced(added)}</b> was added to step {folder}
-    {own && `: log evidence ${logEvidence(own.evidence)}`}
+    {own && `: log Bayes factor ${logEvidence(own.evidence)}`}
     {own && next && `, ${next === ranked[0] ? 'behind' : 'before'} ${spaced(next.effect)} with ${logEvidence(next.evidence)}`}
     {triedBy(decision) && <>; {triedBy(decision)}<Ask word="tried" /></>}
     {margin !== undefined && <>; {decidedBy(added, refitted, margin)}<Ask word="refit" /></>}.</p>;
@@ -96,13 +97,13 @@ function Outcome(props: {ranked: EffectScore[]; decision: Decision | undefined})
   if (decision) return <Decided ranked={ranked} decision={decision} folder={folder} />;
   const first = ranked.find((e) => isNamed(e, step.value)) ?? ranked[0];
   const second = ranked.find((e) => e !== first);
-  const rule = `below ${figure(gate)}, which chance alone reaches in less than 5 % of runs, nothing is named`;
+  const rule = `critical value ${figure(gate)}`;
   if (!first) return <p>Nothing could be tested in step {folder}.</p>;
   if (isNamed(first, step.value))
-    return <p><b>{spaced(first.effect)}</b> leads in step {folder} with log evidence {logEvidence(first.evidence)}
+    return <p><b>{spaced(first.effect)}</b> leads in step {folder} with a log Bayes factor of {logEvidence(first.evidence)}
       {second && `, before ${spaced(second.effect)} with ${logEvidence(second.evidence)}`}; {rule}<Ask word="gate" />.</p>;
-  return <p><b>Nothing stands out</b> in step {folder}: {spaced(first.effect)} leads with log evidence {logEvidence(first.evidence)}; {
-    (first.evidence ?? 0) < gate ? rule : tooLittle}.</p>;
+  return <p><b>Nothing stands out</b> in step {folder}. {spaced(first.effect)} leads, and is not named: {
+    whyNotNamed(first, step.value)}<Ask word="gate" />.</p>;
 }
 
 export function Missing() {
@@ -121,10 +122,10 @@ export function Missing() {
       <div class="ranking" onMouseLeave={() => (previewed.value = '')}>
         <Outcome ranked={ranked} decision={decision} />
         <Wide label="Ranked effects">
-          <thead><tr><th>effect <button class="quiet" onClick={() => rankingCsv(all, tried)}>CSV</button></th><th>would explain</th>
-            <th>evidence<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th>
-            {tried.length > 0 && <th class="wide">tried χ<Ask word="tried" /></th>}<th class="wide">dof<Ask word="dof" /></th>
-            <th class="wide">easily taken for</th></tr></thead>
+          <thead><tr><th>effect <button class="quiet" onClick={() => rankingCsv(all, tried)}>CSV</button></th><th>would remove<Ask word="explains" /></th>
+            <th>log BF<Ask word="evidence" /></th><th>weight<Ask word="weight" /></th>
+            {tried.length > 0 && <th class="wide">screening<Ask word="tried" /></th>}<th class="wide">dof<Ask word="dof" /></th>
+            <th class="wide">confused with</th></tr></thead>
           <tbody>
             {[...ranked, ...all.filter((e) => !wasTested(e))].map((e) => (
               <Row key={e.effect} effect={e} pinned={e === pinned} named={isNamed(e, step.value)} tried={tried} />

@@ -13,14 +13,16 @@ import {gainOf} from '../compare/frames';
 import {OnBody} from './on_body';
 import {usePrediction, type Cells, type Prediction} from './prediction';
 
-/** The smallest box of cells that count. */
+/** The smallest box of cells that count, with a margin of a cell or two: the whole body as far as it is seen. */
 function boxOf(cells: Cells, now: Uint8Array): {left: number; top: number; columns: number; rows: number} {
   let [left, top, right, bottom] = [cells.columns, cells.rows, -1, -1];
   for (let y = 0, i = 0; y < cells.rows; ++y)
     for (let x = 0; x < cells.columns; ++x, ++i)
       if (now[i] > 0) [left, top, right, bottom] = [Math.min(left, x), Math.min(top, y), Math.max(right, x), Math.max(bottom, y)];
   if (right < 0) return {left: 0, top: 0, columns: cells.columns, rows: cells.rows};
-  return {left, top, columns: right - left + 1, rows: bottom - top + 1};
+  const margin = Math.ceil(0.06 * Math.max(right - left, bottom - top));
+  [left, top] = [Math.max(0, left - margin), Math.max(0, top - margin)];
+  return {left, top, columns: Math.min(cells.columns - 1, right + margin) - left + 1, rows: Math.min(cells.rows - 1, bottom + margin) - top + 1};
 }
 
 /** One scale for what there is and for what the effect changes [sigma]: the 90 % point of what there is.

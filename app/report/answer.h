@@ -1,0 +1,25 @@
+// The answer first: what a run has found, in the order in which it is asked for. Terminal and page
+// tell the same, from the run's own files.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace hookeye {
+
+/// {material, headline, sentence, misfit}: the newest step's `material` (material_card.h), with the
+/// intervals of its diagnosis where there is one; the verdict in a word and in a plain sentence
+/// (what `discover` said, else what the step's own figures say); the misfit in a sentence.
+/// `metrics`, `diagnosis`: the newest step's files, null where they are not there.
+nlohmann::json answer_of(const nlohmann::json& timeline, const nlohmann::json& metrics,
+                         const nlohmann::json& diagnosis);
+/// Of the run in a folder, whose steps stand in `timeline`.
+nlohmann::json answer_of(const std::filesystem::path& run, const nlohmann::json& timeline);
+
+/// The material as a table, with what it rests on; "" where there is none.
+std::string material_text(const nlohmann::json& material);
+/// All of it, within 100 columns.
+std::string answer_text(const nlohmann::json& answer);
+
+}  // namespace hookeye
