@@ -119,6 +119,79 @@ TEST_F(Cli, TheStudioSaysWhatIsWrongWithARequest) {
   EXPECT_EQ(json::parse(studio.get("job").body).at("state"), "idle");
 }
 
+/// A run whose parts are links to what lies outside it: no route reads or writes through them.
+TEST_F(Cli, NoRouteOfTheStudioFollowsALinkOutOfTheRun) {
+  write_cube("{z: 1}");
+  const fs::path run = folder_ / "run", base = run / "steps/00-base", out = folder_ / "outside";
+  for (const char* sub : {"page", "removed", "deformed", "residuals"})
+    fs::create_directories(base / sub);
+  fs::create_directories(out / "page");
+  for (const char* name : {"metrics.json", "page/body.json", "model.yaml", "a.vtu", "a.exr"})
+    write((fs::path("outside") / name).string(), R"({"secret": "SECRET"})");
+  const json timeline = {{"hookeye", 1},
+                         {"capture", (folder_ / "capture.yaml").string()},
+                         {"steps", {{{"name", "base"}, {"effects", json::array()}}}}};
+  write("run/run.json", timeline.dump());
+  fs::create_symlink(out / "metrics.json", base / "metrics.json");
+  fs::create_symlink(out / "metrics.json", base / "diagnosis.json");
+  fs::create_symlink(out / "page/body.json", base / "page/body.json");
+  fs::create_symlink(out / "page/body.json", base / "removed/gravity.json");
+  fs::create_symlink("../../../../outside/a.vtu", base / "deformed/a.vtu");
+  fs::create_symlink(out / "a.exr", base / "residuals/a.exr");
+  fs::create_symlink(out / "model.yaml", base / "model.yaml");
+  fs::create_symlink(out, run / "steps/01-out");
+  write("run/steps/00-base/own.json", "{}");
+  fs::create_symlink("own.json", base / "inner.json");
+  const Studio studio(folder_);
+  if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)
+    GTEST_SKIP() << "built without the page";
+  ASSERT_TRUE(studio.ready());
+  for (const char* whole : {"", "document", "job"}) {
+    const auto answer = studio.get(whole);
+    EXPECT_EQ(answer.status, 200) << whole;
+    EXPECT_THAT(answer.body, Not(HasSubstr("SECRET"))) << whole;
+    EXPECT_THAT(answer.body, Not(HasSubstr("01-out"))) << whole;
+  }
+  EXPECT_THAT(studio.get("document").body,
+              HasSubstr("00-base/metrics.json is a link out of this run"));
+  for (const std::string part :
+       {"field/00-base/body.json", "field/00-base/removes-gravity.json", "deformed/00-base/a.vtu",
+        "residual/00-base/a", "field/01-out/body.json", "deformed/01-out/a.vtu",
+        "residual/01-out/a"})
+    EXPECT_EQ(studio.get("part?name=" + part).status, 404) << part;
+  for (const std::string file :
+       {"steps/00-base/metrics.json", "steps/00-base/model.yaml", "steps/00-base/deformed/a.vtu",
+        "steps/00-base/residuals/a.exr", "steps/01-out/metrics.json", "steps/01-out/page/body.json",
+        "../outside/metrics.json", "../capture.yaml"})
+    EXPECT_EQ(studio.get("file?name=" + file).status, 404) << file;
+  EXPECT_EQ(studio.get("file?name=steps/00-base/inner.json").body, "{}");
+  const auto add = studio.post("add", R"({"effect": "gravity"})");
+  EXPECT_EQ(add.status, 409);
+  EXPECT_THAT(add.body, HasSubstr("is a link out of this run"));
+  EXPECT_EQ(json::parse(studio.post("stop", "{}").body).at("state"), "idle");
+  // Nor does a report hold what lies outside.
+  ASSERT_EQ(hookeye("report run -o report.html").status, 0);
+  EXPECT_THAT(read(folder_ / "report.html"), Not(HasSubstr("SECRET")));
+}
+
+TEST_F(Cli, ARunThatIsALinkAndItsLockAreNotFollowed) {
+  write_cube("{z: 1}");
+  fs::create_directories(folder_ / "run/steps/00-base");
+  write("outside.json", R"({"hookeye": 1, "steps": [], "secret": "SECRET"})");
+  write("mine.txt", "mine");
+  fs::create_symlink("../outside.json", folder_ / "run/run.json");
+  fs::create_symlink("../mine.txt", folder_ / "run/.studio");
+  {
+    const Studio studio(folder_);
+    if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)
+      GTEST_SKIP() << "built without the page";
+    ASSERT_TRUE(studio.ready());
+    EXPECT_THAT(studio.get("document").body, Not(HasSubstr("SECRET")));
+    EXPECT_EQ(studio.get("file?name=run.json").status, 404);
+  }
+  EXPECT_EQ(read(folder_ / "mine.txt"), "mine");
+}
+
 TEST_F(FittedRun, TheStudioTellsWhatARefitIsDoing) {
   ASSERT_EQ(hookeye("diagnose run").status, 0);
   const Studio studio(folder_);

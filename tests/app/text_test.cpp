@@ -5,6 +5,7 @@
 
 #include "app/cli.h"
 #include "app/commands/tables.h"
+#include "estimation/step_json.h"
 
 namespace hookeye::test {
 namespace {
@@ -77,7 +78,7 @@ TEST(Text, AFloorFarAboveTheToldNoiseIsTold) {
   };
   EXPECT_EQ(told(2.4, "rest photos", {}), "");
   EXPECT_EQ(told(5.44, "noise model", {}), "");
-  EXPECT_THAT(told(5.44, "rest photos", {}), HasSubstr("5.44 times the told noise"));
+  EXPECT_THAT(told(5.44, "rest photos", {}), HasSubstr("5.44 times the specified noise"));
   EXPECT_EQ(told(2.4, "rest photos", {{"left", 2.9}}), "");
   EXPECT_THAT(told(2.79, "rest photos", {{"left", 1.04}, {"right", 4.49}}),
               HasSubstr("of camera 'right' itself is 4.49 times"));
@@ -118,7 +119,8 @@ TEST(Text, AChoiceTellsWhatElseItCouldHaveBeen) {
   step["rivals"][1]["score"] = -7309.8;
   EXPECT_THAT(choice_table(before, step, 1.0), HasSubstr("odds of more than a million to one"));
   step["chi_fit"] = 3.2;  // nobody is sure of an effect beside which much is left
-  EXPECT_THAT(choice_table(before, step, 1.0), HasSubstr("alone it leaves 3.20 times the floor"));
+  EXPECT_THAT(choice_table(before, step, 1.0),
+              HasSubstr("alone it leaves 3.20 times the noise floor"));
 }
 
 /// One effect in another form is no choice between effects: what it is now, and what that takes.
@@ -130,8 +132,10 @@ TEST(Text, AnotherFormIsToldInItsOwnWords) {
       "says": ["swelling: it has swollen by 1 % in the middle, more to the left"]})");
   EXPECT_EQ(
       choice_table(before, step, 1.0),
-      "\nwhy swelling, other form: it has swollen by 1 % in the middle, more to the left (chi "
-      "over the\n  floor: 1.50 fitted, 1.00 held out; before: 6.00 fitted, 8.00 held out)\n");
+      "\nwhy swelling, other parametrisation: it has swollen by 1 % in the middle, more to the "
+      "left\n"
+      "  (residual over noise floor: 1.50 fitted, 1.00 held out; before: 6.00 fitted, 8.00 held "
+      "out)\n");
 }
 
 /// The bar is of what is over the floor, not of the floor.
@@ -141,10 +145,38 @@ TEST(Text, TheBarEndsAtTheFloor) {
       {"name": "swelling", "dropped": ["swelling"], "chi_fit": 1.0}]})");
   EXPECT_EQ(
       steps_table(timeline),
-      "  step                  chi fitted  chi held out  rms px  chi / floor\n"
-      "  base                  5.000       -             0.000   5.00 ####################\n"
-      "  swelling              3.000       -             0.000   3.00 ##########..........\n"
-      "  swelling, other form  1.000       -             0.000   1.00 ....................\n");
+      "  step                             residual  held out  rms px  over noise floor\n"
+      "  base                             5.000     -         0.000   5.00 ####################\n"
+      "  swelling                         3.000     -         0.000   3.00 ##########..........\n"
+      "  swelling, other parametrisation  1.000     -         0.000   1.00 ....................\n");
+}
+
+/// An effect that its figure alone would name says which guard keeps it from that.
+TEST(Text, AnEffectAboveTheCriticalValueSaysWhyItIsNotNamed) {
+  Diagnosis diagnosis;
+  diagnosis.gate = 12.1;
+  diagnosis.floor.chi = 1.2;  // a tenth of 0.44 may be a renderer's
+  diagnosis.floor.per_px2 = 4.0;
+  EffectScore score;
+  score.effect = "gravity", score.evidence = 20.4, score.fall = 0.01;
+  diagnosis.effects = {score};
+  const auto why = [&] { return not_named_because(diagnosis.effects[0], diagnosis); };
+  EXPECT_EQ(why(),
+            "its log Bayes factor 20.4 is above the critical value 12.1, but that knows of noise "
+            "alone: it would lower the squared residual by 0.01 (as 0.05 px of motion all over the "
+            "surface), and the error of a renderer or a lens may be as much as 0.044 (as 0.1 px of "
+            "motion all over the surface)");
+  const std::string text = diagnosis_table(diagnosis);
+  EXPECT_THAT(text, testing::ContainsRegex("gravity is not named: its log Bayes factor 20.4"));
+  EXPECT_THAT(too_long(text), IsEmpty());
+  diagnosis.effects[0].mesh_fall = 0.09;
+  EXPECT_THAT(why(), HasSubstr("the mesh's own error may be as much as 0.09"));
+  diagnosis.effects[0].evidence = 8.0;
+  EXPECT_THAT(why(), HasSubstr("8.0 is below 12.1, the 95 % critical value over all effects"));
+  diagnosis.gate = 2.0, diagnosis.effects[0].evidence = 4.0;
+  EXPECT_THAT(why(), HasSubstr("is below 5, which is asked for in any case"));
+  diagnosis.effects[0].evidence = 20.4, diagnosis.effects[0].fall = 1.0;
+  EXPECT_EQ(why(), "");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ Fitted as_told() {
 
 TEST(LawCurves, NeoHookesPullIsTheFormulaAndItsBandTheModulus) {
   const Fitted fitted = as_told();
-  const auto curves = law_curves(*fitted.form.scene, fitted);
+  const auto curves = law_curves(*fitted.form.scene, fitted, EnergyNeighbourhood(fitted));
   ASSERT_EQ(curves.size(), 2u);
   EXPECT_EQ(curves[0]["name"], "pull");
   EXPECT_EQ(curves[1]["name"], "volume");
@@ -40,9 +40,9 @@ TEST(LawCurves, NeoHookesPullIsTheFormulaAndItsBandTheModulus) {
 /// and on that side alone.
 TEST(LawCurves, BandsReachForTheMeshAsIntervalsDo) {
   Fitted fitted = as_told();
-  const auto before = law_curves(*fitted.form.scene, fitted);
+  const auto before = law_curves(*fitted.form.scene, fitted, EnergyNeighbourhood(fitted));
   fitted.mesh_reach = VectorXd::Constant(fitted.p.size(), 0.02 * fitted.p[0]);
-  const auto curves = law_curves(*fitted.form.scene, fitted);
+  const auto curves = law_curves(*fitted.form.scene, fitted, EnergyNeighbourhood(fitted));
   const double value = curves[0]["value"][40];
   EXPECT_EQ(curves[0]["low"][40], before[0]["low"][40]);
   const double more = curves[0]["high"][40].get<double>() - before[0]["high"][40].get<double>();
@@ -59,7 +59,7 @@ TEST(LawCurves, FibresPullOtherwiseAlongThem) {
   p << fitted.p, VectorXd::Constant(p.size() - fitted.p.size(), 0.02);
   Workspace workspace(fitted.form.scene);
   const Fitted with = std::get<Fitted>(assess(workspace, fitted.form, p));
-  const auto curves = law_curves(*fitted.form.scene, with);
+  const auto curves = law_curves(*fitted.form.scene, with, EnergyNeighbourhood(with));
   ASSERT_EQ(curves.size(), 4u);
   EXPECT_EQ(curves[2]["name"], "pull along z");
 }

@@ -1,0 +1,137 @@
+// The answer first: what a run has found in plain words, from its own files.
+#include "app/report/answer.h"
+
+#include <gmock/gmock.h>
+
+#include "app/cli.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
+using testing::Not;
+
+json timeline(const std::string& verdict, const json& missing, double chi, double held_out) {
+  return {{"verdict", verdict},
+          {"sentence", "as the search said it"},
+          {"missing", missing},
+          {"floor", {{"chi", 1.0}, {"source", "rest photos"}}},
+          {"steps",
+           {{{"name", "base"},
+             {"effects", missing},
+             {"chi_fit", chi},
+             {"chi_validate", held_out},
+             {"rms_px_fit", 0.02},
+             {"says", {"gravity: self-weight, 9.8 m/s2 towards (0.00, 0.00, -1.00)"}}}}}};
+}
+
+std::string sentence(const json& run) { return answer_of(run, {}, {}).at("sentence"); }
+
+TEST(Answer, SaysInPlainWordsWhatIsMissing) {
+  EXPECT_EQ(sentence(timeline("explained", {"gravity"}, 1.01, 1.02)),
+            "The given model lacks gravity (self-weight, 9.8 m/s2 towards (0.00, 0.00, -1.00)). "
+            "With it the model explains the photos down to their noise");
+  EXPECT_EQ(sentence(timeline("explained", {"gravity", "creep", "mesh_resolution"}, 1.2, 1.25)),
+            "The given model lacks gravity (self-weight, 9.8 m/s2 towards (0.00, 0.00, -1.00)) and "
+            "creep. With them on a finer mesh the model explains the photos to 1.20 times the "
+            "noise floor (1.25 on held-out photos)");
+  EXPECT_EQ(sentence(timeline("explained", json::array(), 1.0, 1.0)),
+            "Nothing is missing: the given model explains the photos down to their noise");
+  EXPECT_EQ(sentence(timeline("unexplained", json::array(), 3.1, 0.0)),
+            "No effect of the catalogue explains what is left: 3.10 times the noise floor");
+  EXPECT_EQ(sentence(timeline("unexplained", {"creep"}, 3.1, 4.0)),
+            "Creep is missing, but it is not enough: 3.10 times the noise floor (4.00 on held-out "
+            "photos) is left, and nothing else of the catalogue explains it");
+  json tie = timeline("ambiguous", {"creep"}, 1.0, 1.0);
+  tie["tie"] = {"creep", "softening"};
+  EXPECT_EQ(sentence(tie),
+            "The given model lacks either creep or softening; these photos cannot tell which "
+            "(`hookeye plan RUN` names some that can). With one of them the model explains the "
+            "photos down to their noise");
+  // Photos at the floor and still unexplained: only the search's own sentence says why.
+  EXPECT_EQ(sentence(timeline("unexplained", json::array(), 1.05, 1.0)), "As the search said it");
+}
+
+TEST(Answer, AStepThatNobodyHasJudgedIsToldByItsFigures) {
+  json run = timeline("unexplained", {"gravity"}, 4.33, 4.0);
+  run.erase("sentence");
+  json answer = answer_of(run, {}, {});
+  EXPECT_EQ(answer.at("headline"), "not judged yet");
+  EXPECT_THAT(
+      answer.at("sentence").get<std::string>(),
+      HasSubstr("The model with gravity leaves 4.33 times the noise floor (4.00 on held-out "
+                "photos). What may be missing has not been tested"));
+  const json tested = {
+      {"effects",
+       {{{"effect", "creep"}, {"named", true}}, {{"effect", "swelling"}, {"named", false}}}}};
+  answer = answer_of(run, {}, tested);
+  EXPECT_EQ(answer.at("headline"), "above the noise floor");
+  EXPECT_THAT(answer.at("sentence").get<std::string>(), HasSubstr(". Creep stands out as missing"));
+  run["steps"][0]["chi_fit"] = run["steps"][0]["chi_validate"] = 1.02;
+  const json camera = {{"most_over_floor",
+                        {{"camera", "left"}, {"times", 1.45}, {"use", "fit"}, {"its_own", true}}}};
+  answer = answer_of(run, camera, {{"effects", json::array()}});
+  EXPECT_EQ(answer.at("headline"), "above the noise floor");
+  EXPECT_THAT(
+      answer.at("sentence").get<std::string>(),
+      HasSubstr("but 1.45 times its own in the fitted photos of camera 'left'. Nothing else"));
+  answer = answer_of(run, {}, {{"effects", json::array()}});
+  EXPECT_EQ(answer.at("headline"), "at the noise floor");
+}
+
+TEST(Answer, TheMisfitTellsPhotosAndForces) {
+  const json metrics = {
+      {"measured", {{{"over_sigma", {1.0, -1.0, 0.0}}}, {{"over_sigma", {0.0, 0.0, 2.0}}}}}};
+  const json answer = answer_of(timeline("explained", json::array(), 1.01, 1.02), metrics, {});
+  EXPECT_EQ(answer.at("misfit"),
+            "normalised residual 1.010 on fitted photos, 1.020 on held-out ones; noise floor 1.000 "
+            "(reference images); surface off by 0.02 px; measured values are met to 1 of their "
+            "sigma (RMS of 6 components)");
+}
+
+/// A run that is lost or of an earlier version has an answer all the same.
+TEST(Answer, WhatIsNotThereIsSaid) {
+  EXPECT_EQ(answer_of(json(), {}, {}).at("sentence"), "No step is finished");
+  EXPECT_EQ(answer_of({{"steps", json::array()}}, {}, {}).at("headline"), "not judged yet");
+  const json answer = answer_of(timeline("explained", json::array(), 1.0, 0.0), {}, {});
+  EXPECT_TRUE(answer.at("material").is_null());
+  EXPECT_THAT(answer_text(answer), MatchesRegex("verdict: explained\\. .*\nmisfit: .*\n"));
+}
+
+/// The material, then the verdict, then the misfit, then all else; also where a report is made.
+TEST_F(Cli, TheAnswerComesFirst) {
+  write_cube("{z: 1}");
+  const std::string text = read(folder_ / "capture.yaml");
+  // A force that is measured, and nothing else to fit to.
+  write("capture.yaml",
+        text + "    measured:\n      - {force_on: top, value: [0, 0, 0.6], sigma: 0.01}\n");
+  const Result fitted = hookeye("fit . -o run");
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_THAT(fitted.out, testing::StartsWith("material: neo-hookean\n"));
+  EXPECT_THAT(fitted.out,
+              ContainsRegex("mu +0\\.[0-9]+ +0\\.[0-9]+ \\.\\. 0\\.[0-9]+ +MPa +shear modulus"));
+  EXPECT_THAT(fitted.out, ContainsRegex("kappa +0\\.5 +as given +MPa +bulk modulus"));
+  EXPECT_THAT(fitted.out, ContainsRegex("E +0\\.[0-9]+ .*Young's modulus at small strain"));
+  EXPECT_THAT(fitted.out, ContainsRegex("nu +0\\.[0-9]+ "));
+  EXPECT_THAT(fitted.out, HasSubstr("mu is tied to the measured forces (pull)"));
+  const size_t verdict = fitted.out.find("verdict: "), misfit = fitted.out.find("misfit: ");
+  EXPECT_LT(fitted.out.find("mu "), verdict);
+  EXPECT_LT(verdict, misfit);
+  EXPECT_LT(misfit, fitted.out.find("written to"));
+  EXPECT_THAT(too_long(fitted.out), IsEmpty());
+  const Result reported = hookeye("report run -o report.html");
+  if (reported.err.find("without its page") == std::string::npos) {
+    EXPECT_EQ(reported.status, 0) << reported.err;
+    EXPECT_THAT(reported.out, testing::StartsWith("material: neo-hookean\n"));
+  }
+  const json document = json::parse(hookeye("fit . -o again --json").out);
+  EXPECT_EQ(document.at("answer").at("material").at("cards").at(0).at("law"), "neo-hookean");
+  EXPECT_THAT(document.at("answer").at("material").at("yaml").get<std::string>(),
+              ContainsRegex("material: \\{law: neo-hookean, mu: 0\\.[0-9]+, kappa: 0\\.5\\}"));
+}
+
+}  // namespace
+}  // namespace hookeye::test
