@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,15 +46,44 @@ RawVolume read_inp(const std::filesystem::path& file);
 // text_mesh.cpp
 RawVolume read_text_mesh(const std::filesystem::path& file);
 
-/// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): fill.cpp.
+/// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): tetgen.cpp.
 int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
 
-/// Six times the enclosed volume, negative inside out; as exact far from the origin (inspect.cpp).
-double six_volume(const SurfaceMesh& surface);
+struct TetGenTask {
+  std::vector<Vector3d> holes;  ///< a point in each
+  double volume = 0.0;          ///< largest of a tetrahedron [length^3]
+  double radius_edge_ratio = 0.0, min_dihedral_deg = 0.0;
+  bool keep_surface = true;  ///< no points on the boundary but the skin's own
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< while it is meshed: other rounding
+  double most_points = 0.0, seconds = 0.0;  ///< where quality cannot be had it may go on for ever
+};
+/// Tetrahedra of order 1 within a closed surface, boundary_parent being its triangles. Nothing
+/// where TetGen gives up (tetgen.cpp).
+std::optional<TetMesh> tetrahedra(const SurfaceMesh& skin, const TetGenTask& task);
 
-/// A point in every cavity: shells of the surface whose triangles are turned inwards, away from the
-/// material around them (cavities.cpp).
+// shells.cpp
+/// Six times the enclosed volume, negative inside out; as exact far from the origin.
+double six_volume(const SurfaceMesh& surface);
+/// Triangles that hang together.
+struct Shell {
+  std::vector<int> triangles;
+  double six_volume = 0.0;
+  int depth = 0;  ///< number of shells around it
+};
+std::vector<Shell> shells(const SurfaceMesh& surface);
+/// Triangles of shells that enclose a negative volume and are no cavities.
+std::vector<int> inside_out(const SurfaceMesh& surface);
+/// Refuses shells within another that are turned outwards, as if there were material in material.
+void refuse_shells_within(const SurfaceMesh& surface, const Place& place);
+/// A point in every cavity: shells within another, whose triangles are turned inwards, away from
+/// the material around them.
 std::vector<Vector3d> cavities(const SurfaceMesh& surface);
+
+/// How far rounding of a file, to six digits or single precision, may have moved a vertex:
+/// mend.cpp.
+double rounding(const SurfaceMesh& surface);
+/// Of a surface that bounds no body: inspect.cpp.
+InputError no_body(const SurfaceMesh& surface, const SurfaceFaults& faults, const Place& place);
 
 // child.cpp: libraries that may end the process run in one of their own.
 /// In the child: no core file, no handlers of the parent, nothing printed, no life without it.

@@ -1,4 +1,4 @@
-// What is wrong with a surface, and what can be mended without guessing.
+// What is wrong with a surface.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -10,18 +10,6 @@
 #include "meshing/triangle_tree.h"
 
 namespace hookeye {
-
-double detail::six_volume(const SurfaceMesh& s) {
-  if (s.X.cols() == 0) return 0.0;
-  const Vector3d origin = s.X.rowwise().mean();
-  double sum = 0.0;
-  for (const auto& t : s.triangles) {
-    const Vector3d a = s.X.col(t[0]) - origin, b = s.X.col(t[1]) - origin,
-                   c = s.X.col(t[2]) - origin;
-    sum += a.dot(b.cross(c));
-  }
-  return sum;
-}
 
 namespace {
 
@@ -200,8 +188,14 @@ std::string SurfaceFaults::describe(const SurfaceMesh& s) const {
     return fmt::format("triangles {} and {} intersect near {}{}", a, b, at(s.triangles[b][0]),
                        more(self_intersections.size(), "such pairs"));
   }
-  if (inside_out) return "the surface is inside out: all its triangles are turned inwards";
+  if (inside_out) return "the surface is inside out: its triangles are turned inwards";
   return "no fault";
+}
+
+InputError detail::no_body(const SurfaceMesh& surface, const SurfaceFaults& faults,
+                           const Place& place) {
+  return {place, fmt::format("the surface does not bound a body: {}", faults.describe(surface)),
+          "a closed surface without self-intersections, triangles turned outwards"};
 }
 
 SurfaceFaults inspect(const SurfaceMesh& surface) {
@@ -229,47 +223,8 @@ SurfaceFaults inspect(const SurfaceMesh& surface) {
   faults.inverted = find_inverted(surface, edges);
   faults.self_intersections = find_self_intersections(surface, left_out);
   faults.inside_out =
-      faults.open_edges.empty() && faults.inverted.empty() && detail::six_volume(surface) < 0.0;
+      faults.open_edges.empty() && faults.inverted.empty() && !detail::inside_out(surface).empty();
   return faults;
-}
-
-MendedSurface mend(const SurfaceMesh& surface, const Place& place) {
-  SurfaceFaults faults = inspect(surface);
-  MendedSurface out;
-  std::set<int> dropped(faults.degenerate.begin(), faults.degenerate.end());
-  dropped.insert(faults.duplicated.begin(), faults.duplicated.end());
-  if (!faults.degenerate.empty()) {
-    out.said.push_back(fmt::format("dropped {} triangles without area, the first being {}",
-                                   faults.degenerate.size(), faults.degenerate[0]));
-  }
-  if (!faults.duplicated.empty()) {
-    out.said.push_back(fmt::format("dropped {} triangles that were there twice, the first being {}",
-                                   faults.duplicated.size(), faults.duplicated[0]));
-  }
-  out.surface.X = surface.X;
-  for (int t = 0; t < static_cast<int>(surface.triangles.size()); ++t) {
-    if (dropped.contains(t)) continue;
-    out.file_triangle.push_back(t);
-    out.surface.triangles.push_back(surface.triangles[t]);
-    if (!surface.uv.empty()) out.surface.uv.push_back(surface.uv[t]);
-  }
-  if (faults.inside_out) {
-    for (Triangle& t : out.surface.triangles) std::swap(t[1], t[2]);
-    for (auto& uv : out.surface.uv) std::swap(uv[1], uv[2]);
-    out.said.emplace_back("turned the surface, whose triangles all faced inwards");
-  }
-  faults.degenerate.clear();
-  faults.duplicated.clear();
-  faults.inside_out = false;
-  if (out.surface.triangles.empty()) {
-    throw InputError(place, "the surface has no triangle with an area", "a closed surface");
-  }
-  if (!faults.clean()) {
-    throw InputError(place,
-                     fmt::format("the surface does not bound a body: {}", faults.describe(surface)),
-                     "a closed surface without self-intersections, triangles turned outwards");
-  }
-  return out;
 }
 
 }  // namespace hookeye

@@ -229,21 +229,6 @@ std::set<int> chosen_triangles(const RegionSpec& spec, const MendedSurface* surf
   return chosen;
 }
 
-Patch parent_patch(std::set<int> chosen, const TetMesh& mesh) {
-  std::set<int> nodes;
-  for (Eigen::Index f = 0; f < mesh.boundary.cols(); ++f) {
-    if (!chosen.contains(mesh.boundary_parent[static_cast<size_t>(f)])) continue;
-    for (Eigen::Index k = 0; k < mesh.boundary.rows(); ++k) nodes.insert(mesh.boundary(k, f));
-  }
-  Patch patch;
-  patch.share = [chosen = std::move(chosen), &mesh](int f) {
-    return chosen.contains(mesh.boundary_parent[static_cast<size_t>(f)]) ? Patch::Share::whole
-                                                                         : Patch::Share::none;
-  };
-  patch.has_node = [nodes](int i, const Vector3d&) { return nodes.contains(i); };
-  return patch;
-}
-
 /// For meshes that are not cut along the surface's triangles: a point belongs to its nearest one.
 Patch nearest_patch(const std::set<int>& chosen, const SurfaceMesh& surface,
                     std::shared_ptr<const detail::TriangleTree> all, const TetMesh& mesh) {
@@ -292,6 +277,28 @@ Patch nearest_patch(const std::set<int>& chosen, const SurfaceMesh& surface,
   return patch;
 }
 
+/// For meshes that were filled from the surface. Faces that lie on several triangles are cut.
+Patch parent_patch(std::set<int> chosen, const SurfaceMesh& surface,
+                   std::shared_ptr<const detail::TriangleTree> all, const TetMesh& mesh) {
+  const auto parent = [&mesh](int f) { return mesh.boundary_parent[static_cast<size_t>(f)]; };
+  const Patch by_nearest = nearest_patch(chosen, surface, std::move(all), mesh);
+  std::set<int> nodes, on_several;
+  for (int f = 0; f < static_cast<int>(mesh.boundary.cols()); ++f) {
+    if (parent(f) >= 0 && !chosen.contains(parent(f))) continue;
+    for (Eigen::Index k = 0; k < mesh.boundary.rows(); ++k)
+      (parent(f) < 0 ? on_several : nodes).insert(mesh.boundary(k, f));
+  }
+  Patch patch = by_nearest;
+  patch.share = [=, chosen = std::move(chosen)](int f) {
+    if (parent(f) < 0) return by_nearest.share(f);
+    return chosen.contains(parent(f)) ? Patch::Share::whole : Patch::Share::none;
+  };
+  patch.has_node = [=](int i, const Vector3d& x) {
+    return nodes.contains(i) || (on_several.contains(i) && by_nearest.has_node(i, x));
+  };
+  return patch;
+}
+
 [[noreturn]] void nothing_selected(const RegionSpec& spec, const TetMesh& mesh) {
   throw InputError(spec.place,
                    fmt::format("region '{}' selects no point of the surface", spec.name),
@@ -328,13 +335,10 @@ RegionSet::RegionSet(const Capture& capture, const TetMesh& mesh, const MendedSu
     if (std::holds_alternative<RegionSpec::Faces>(spec.shape)) {
       std::set<int> chosen = chosen_triangles(spec, surface);
       if (chosen.empty()) nothing_selected(spec, mesh);
-      if (!mesh.boundary_parent.empty()) {
-        patch = parent_patch(std::move(chosen), mesh);
-      } else {
-        const SurfaceMesh& s = surface->surface;
-        if (!tree) tree = std::make_shared<const detail::TriangleTree>(s.X, s.triangles);
-        patch = nearest_patch(chosen, s, tree, mesh);
-      }
+      const SurfaceMesh& s = surface->surface;
+      if (!tree) tree = std::make_shared<const detail::TriangleTree>(s.X, s.triangles);
+      patch = mesh.boundary_parent.empty() ? nearest_patch(chosen, s, tree, mesh)
+                                           : parent_patch(std::move(chosen), s, tree, mesh);
     } else if (std::holds_alternative<RegionSpec::Group>(spec.shape)) {
       patch = group_patch(spec, mesh);
     } else {

@@ -122,6 +122,13 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> rows_of(
 
 }  // namespace
 
+std::vector<std::pair<int, int>> bisect(Subdivided& now, double longest) {
+  Round round(now, longest);
+  if (round.idle()) return {};
+  now = round.result();
+  return round.ends();
+}
+
 Subdivided subdivide(const SurfaceMesh& surface, double longest) {
   Subdivided now;
   now.mesh = surface;
@@ -130,15 +137,14 @@ Subdivided subdivide(const SurfaceMesh& surface, double longest) {
   for (int v = 0; v < given; ++v) weights[static_cast<size_t>(v)] = {{v, 1.0}};
   for (size_t t = 0; t < surface.triangles.size(); ++t) now.parent.push_back(static_cast<int>(t));
   while (longest > 0) {
-    Round round(now, longest);
-    if (round.idle()) break;
-    for (const auto& [a, b] : round.ends()) {
+    const auto fresh = bisect(now, longest);
+    if (fresh.empty()) break;
+    for (const auto& [a, b] : fresh) {
       std::map<int, double> mean;
       for (const int end : {a, b})
         for (const auto& [v, w] : weights[static_cast<size_t>(end)]) mean[v] += 0.5 * w;
       weights.push_back(std::move(mean));
     }
-    now = round.result();
   }
   now.mesh.cut_from = surface.triangles;
   now.mesh.cut_weights = rows_of(weights, given);

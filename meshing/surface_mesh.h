@@ -39,16 +39,16 @@ struct SurfaceFaults {
   std::vector<std::array<int, 2>> self_intersections;  ///< triangle pairs
   std::vector<int> degenerate, duplicated;             ///< triangles
   std::vector<int> inverted;  ///< triangles turned against their neighbours
-  bool inside_out = false;    ///< the whole surface: negative volume
+  bool inside_out = false;    ///< closed parts: negative volume
   bool clean() const;
   /// One sentence with the place (vertex position, triangle index) of the first fault.
   std::string describe(const SurfaceMesh& surface) const;
 };
 SurfaceFaults inspect(const SurfaceMesh& surface);
 
-/// Mends what can be mended without guessing: turns an inside-out surface, drops duplicated and
-/// zero-area triangles; `said` tells each mend. Throws InputError for the rest. Triangle indices
-/// of the file remain valid through `file_triangle` (one per remaining triangle).
+/// Mends what can be mended without guessing and `said` tells each mend (docs/meshing.md); what
+/// intersects by rounding alone stays, for fill() passes it by. Throws InputError for the rest.
+/// Triangle indices of the file remain valid through `file_triangle` (one per triangle left).
 struct MendedSurface {
   SurfaceMesh surface;
   std::vector<int> file_triangle;

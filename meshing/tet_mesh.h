@@ -26,7 +26,7 @@ struct TetMesh {
   std::map<std::string, std::vector<int>>
       volume_groups;  ///< name -> elements (msh physical groups)
   std::map<std::string, std::vector<int>> boundary_groups;  ///< name -> columns of boundary
-  /// For meshes made by fill(): triangle of the surface each boundary triangle lies on; else empty.
+  /// Of fill(): the surface's triangle each boundary triangle lies on, -1: several; else empty.
   std::vector<int> boundary_parent;
 
   int nodes() const { return static_cast<int>(X.cols()); }
@@ -52,9 +52,9 @@ struct FillOptions {
   double radius_edge_ratio = 1.4;  ///< TetGen's quality bound -q
   double min_dihedral_deg = 12.0;
 };
-/// Fills a closed surface (TetGen). The boundary of the result lies on the surface and
-/// boundary_parent says on which triangle. Throws InputError (place) when TetGen refuses, with the
-/// place of the fault. The only file that touches TetGen is fill.cpp.
+/// Fills a closed surface (TetGen). The boundary of the result lies on the surface, within a few
+/// thousandths of the edge where triangles of a bad shape had to go, and boundary_parent says on
+/// which triangle. Throws InputError (place) with the place of the fault.
 TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place);
 
 /// msh 2.2 / 4.1, vtu, inp (C3D4, C3D10), mesh (medit, and "nnodes ntets nodes_per_tet" text).

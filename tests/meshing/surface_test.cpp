@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "meshing/surface_mesh.h"
+#include "meshing/tet_mesh.h"
 #include "shapes.h"
 #include "support/shared_data.h"
 
@@ -177,6 +178,45 @@ TEST(Inspect, DuplicatesAndDegeneratesAreDroppedAndIndicesKept) {
   }
 }
 
+TEST(Inspect, ATriangleWithoutAreaAlongAnEdgeCutsItsNeighbour) {
+  // The edge from 0 to 1 of a box has a vertex more on the lower side than on the other: there the
+  // file has a triangle without area between the two.
+  SurfaceMesh s = box_surface({4, 2, 1}, 1);
+  const int p = s.triangles[0][0], q = s.triangles[0][1], b = s.triangles[0][2];
+  s.X.conservativeResize(3, s.X.cols() + 1);
+  const int middle = static_cast<int>(s.X.cols()) - 1;
+  s.X.col(middle) = 0.75 * s.X.col(p) + 0.25 * s.X.col(q);
+  const std::array<Vector2d, 3> uv = s.uv[0];
+  const Vector2d uv_middle = 0.75 * uv[0] + 0.25 * uv[1];
+  s.triangles[0] = {p, middle, b};
+  s.uv[0] = {uv[0], uv_middle, uv[2]};
+  s.triangles.insert(s.triangles.begin() + 1, {middle, q, b});
+  s.uv.insert(s.uv.begin() + 1, {uv_middle, uv[1], uv[2]});
+  s.triangles.push_back({p, q, middle});
+  s.uv.push_back(uv);
+  ASSERT_EQ(inspect(s).degenerate, std::vector<int>{13});
+  const MendedSurface mended = mend(s, kPlace);
+  EXPECT_TRUE(inspect(mended.surface).clean()) << inspect(mended.surface).describe(mended.surface);
+  ASSERT_EQ(mended.said.size(), 1u);
+  EXPECT_THAT(mended.said[0], HasSubstr("the first being 13, lay along an edge"));
+  EXPECT_NEAR(test::area_of(mended.surface), 2 * (8 + 4 + 2), 1e-12);
+  ASSERT_EQ(mended.surface.triangles.size(), 14u);
+  // The neighbour's two parts are of its own texture.
+  for (size_t t = 0; t < 14; ++t) {
+    const int from = mended.file_triangle[t];
+    const Vector2d centre =
+        (mended.surface.uv[t][0] + mended.surface.uv[t][1] + mended.surface.uv[t][2]) / 3;
+    Vector3d at = Vector3d::Zero();
+    for (const int v : mended.surface.triangles[t]) at += mended.surface.X.col(v) / 3;
+    const auto& corner = s.triangles[from];
+    Eigen::Matrix3d x;
+    for (int k = 0; k < 3; ++k) x.col(k) = s.X.col(corner[k]) + Vector3d(9, 9, 9);
+    const Vector3d w = x.colPivHouseholderQr().solve(at + Vector3d(9, 9, 9));
+    EXPECT_LT((w[0] * s.uv[from][0] + w[1] * s.uv[from][1] + w[2] * s.uv[from][2] - centre).norm(),
+              1e-9);
+  }
+}
+
 TEST(Inspect, OneTurnedTriangleIsRefused) {
   SurfaceMesh s = box_surface({3, 2, 1}, 2);
   std::swap(s.triangles[7][0], s.triangles[7][1]);
@@ -214,6 +254,48 @@ TEST(Inspect, SelfIntersectionsAreFoundAndTouchingPartsApartAreNot) {
   // Sliding along a shared plane: coplanar overlap.
   EXPECT_FALSE(inspect(joined(box, box, {0.6, 0.3, 0.0})).self_intersections.empty());
   EXPECT_FALSE(inspect(joined(box, box, {0.25, 0.25, 1.0})).self_intersections.empty());
+}
+
+SurfaceMesh inside_out(SurfaceMesh s) {
+  for (auto& t : s.triangles) std::swap(t[0], t[1]);
+  for (auto& uv : s.uv) std::swap(uv[0], uv[1]);
+  return s;
+}
+
+TEST(Inspect, PartsWithinPartsAreCavitiesOrAFault) {
+  const SurfaceMesh outer = box_surface({4, 4, 4}, 2), inner = box_surface({1, 1, 1}, 1);
+  const Vector3d within(1.5, 1.5, 1.5), beside(9, 0, 0);
+  EXPECT_TRUE(inspect(joined(outer, inside_out(inner), within)).clean()) << "a cavity";
+  const SurfaceMesh filled = joined(outer, inner, within);
+  EXPECT_THAT(refusal([&] { mend(filled, kPlace); }),
+              HasSubstr("(1.5, 1.5, 1.5) lies within another and is turned outwards"));
+  // Of two bodies side by side the one that is inside out is turned.
+  const MendedSurface mended = mend(joined(outer, inside_out(inner), beside), kPlace);
+  EXPECT_TRUE(inspect(mended.surface).clean());
+  EXPECT_THAT(mended.said, ::testing::ElementsAre(HasSubstr("turned 12 triangles")));
+  // A body in a cavity.
+  const SurfaceMesh shell = joined(outer, inside_out(box_surface({2, 2, 2}, 1)), {1, 1, 1});
+  EXPECT_TRUE(inspect(joined(shell, inner, within)).clean());
+}
+
+TEST(Inspect, WhatCrossesByRoundingAloneIsPassedBy) {
+  // Two parallel edges of a plane face, one of which rounding has pushed past the other.
+  SurfaceMesh s = box_surface({60, 40, 20}, 2);
+  s.uv.clear();
+  for (const double crossing : {1e-4, 1.0}) {
+    SurfaceMesh bad = s;
+    for (Eigen::Index v = 0; v < bad.X.cols(); ++v)
+      if (bad.X.col(v) == Vector3d(30, 20, 20)) bad.X.col(v) = Vector3d(60 + crossing, 39, 20);
+    EXPECT_FALSE(inspect(bad).self_intersections.empty());
+    if (crossing == 1.0) {
+      EXPECT_THAT(refusal([&] { mend(bad, kPlace); }), HasSubstr("intersect near"));
+      continue;
+    }
+    const MendedSurface mended = mend(bad, kPlace);
+    EXPECT_THAT(mended.said, ::testing::ElementsAre(HasSubstr("cross by no more than rounding")));
+    EXPECT_EQ(mended.surface.triangles, bad.triangles);
+    EXPECT_NEAR(quality(fill(mended.surface, {}, kPlace)).volume, 48000, 1);
+  }
 }
 
 TEST(HiddenData, SurfaceAgreesWithAPlainRead) {
