@@ -1,6 +1,7 @@
 # Every third-party package, found once. Debian package names: packages.txt.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(OpenCV REQUIRED COMPONENTS core calib3d imgproc video)
+include(opencv)
+hookeye_opencv(core imgproc video imgcodecs)
 find_package(OpenImageIO REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
