@@ -140,12 +140,21 @@ std::string hint(const CLI::App& app, const std::vector<std::string>& words) {
   return {};
 }
 
+/// CLI11 asks for a command where there is a word that is none.
+std::string wrong_with(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> words = app.remaining(true);
+  const bool a_word = !words.empty() && !words.front().starts_with('-');
+  if (app.get_subcommands().empty() && a_word)
+    return fmt::format("there is no command `{}`", words.front());
+  return error.what();
+}
+
 int report_usage(const CLI::App& app, Session& session, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   const std::string name = chosen.empty() ? "hookeye" : "hookeye " + chosen.front()->get_name();
   return report(session, kBadInput, "bad input",
-                fmt::format("{}: {}\n  {}{} --help tells what is right", name, error.what(),
-                            hint(app, app.remaining(true)), name),
+                fmt::format("{}: {}\n  {}{} --help tells what is right", name,
+                            wrong_with(app, error), hint(app, app.remaining(true)), name),
                 {{"file", ""}, {"line", 0}, {"column", 0}});
 }
 

@@ -48,35 +48,26 @@ Question question_of(const std::string& kind, const ModelForm& form, const Vecto
   return out;
 }
 
-json states_json(const Evaluation& evaluation, const TetMesh& mesh) {
+json states_json(const Evaluation& evaluation) {
   json out = json::array();
   for (const ExampleEvaluation& example : evaluation.examples) {
-    const VectorXd u = example.equilibrium->q - mesh.X.reshaped();
-    const double unit = u.cwiseAbs().maxCoeff() / INT16_MAX;
-    std::vector<std::int16_t> times(static_cast<size_t>(u.size()));
-    for (size_t i = 0; unit > 0.0 && i < times.size(); ++i)
-      times[i] = static_cast<std::int16_t>(std::lround(u[static_cast<Eigen::Index>(i)] / unit));
-    std::vector<std::uint8_t> bytes(times.size() * sizeof(times[0]));
-    std::memcpy(bytes.data(), times.data(), bytes.size());
-    out.push_back({{"example", example.example},
-                   {"unit", unit},
-                   {"displacement", json::binary(std::move(bytes))}});
+    const VectorXd& q = example.equilibrium->q;
+    std::vector<std::uint8_t> bytes(static_cast<size_t>(q.size()) * sizeof(double));
+    std::memcpy(bytes.data(), q.data(), bytes.size());
+    out.push_back({{"example", example.example}, {"position", json::binary(std::move(bytes))}});
   }
   return out;
 }
 
 std::vector<VectorXd> states_from(const json& states, const Scene& scene) {
-  const VectorXd rest = scene.body->mesh.X.reshaped();
+  const Eigen::Index unknowns = scene.body->mesh.X.size();
   std::vector<VectorXd> out(scene.capture.examples.size());
   for (const json& state : states) {
-    const auto& bytes = state.at("displacement").get_binary();
-    std::vector<std::int16_t> times(static_cast<size_t>(rest.size()));
-    if (bytes.size() != times.size() * sizeof(times[0])) continue;
-    std::memcpy(times.data(), bytes.data(), bytes.size());
+    const auto& bytes = state.at("position").get_binary();
+    if (bytes.size() != static_cast<size_t>(unknowns) * sizeof(double)) continue;
     VectorXd& q = out.at(state.at("example"));
-    q = rest;
-    for (size_t i = 0; i < times.size(); ++i)
-      q[static_cast<Eigen::Index>(i)] += state.at("unit").get<double>() * times[i];
+    q.resize(unknowns);
+    std::memcpy(q.data(), bytes.data(), bytes.size());
   }
   return out;
 }

@@ -18,9 +18,9 @@ namespace hookeye {
 /// the whole archive is about.)
 Question question_of(const std::string& kind, const ModelForm& form, const VectorXd& p);
 
-/// Where the examples are, to 1/32767 of the largest displacement: enough for Newton's method to
-/// come back to it.
-nlohmann::json states_json(const Evaluation& evaluation, const TetMesh& mesh);
+/// Where the examples are, in every bit: what is asked next begins there, and another rounding would
+/// make other questions of it.
+nlohmann::json states_json(const Evaluation& evaluation);
 /// Deformed positions by example, 3n each; empty where none is told.
 std::vector<VectorXd> states_from(const nlohmann::json& states, const Scene& scene);
 

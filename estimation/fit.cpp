@@ -84,7 +84,7 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
       },
       [&] { return assess_anew(workspace, form, p, options); },
       [&](const Fitted& fitted) {
-        return nlohmann::json{{"states", states_json(fitted.evaluation, form.scene->body->mesh)}};
+        return nlohmann::json{{"states", states_json(fitted.evaluation)}};
       },
       [&](const nlohmann::json& known) -> std::optional<std::variant<Fitted, NumericalFailure>> {
         workspace.start_from(form.scene, states_from(known.at("states"), *form.scene));

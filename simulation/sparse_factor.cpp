@@ -253,8 +253,7 @@ void solve_block(const double* b, double* x, Eigen::Index n, Eigen::Index m, cho
   B.x = const_cast<double*>(b);
   B.xtype = CHOLMOD_REAL;
   B.dtype = CHOLMOD_DOUBLE;
-  if (!cholmod_solve2(CHOLMOD_A, L, &B, nullptr, X, nullptr, Y, E, c))
-    throw std::bad_alloc();
+  if (!cholmod_solve2(CHOLMOD_A, L, &B, nullptr, X, nullptr, Y, E, c)) throw std::bad_alloc();
   std::copy_n(static_cast<const double*>((*X)->x), n * m, x);
 }
 }  // namespace

@@ -21,8 +21,9 @@ class Killed : public Cli {
 
   /// Exit status of the search in `run`; what it worked out is added to `anew`.
   int search(const std::string& run, const std::string& more = "") {
-    const std::string command = "cd '" + folder_.string() + "' && " + more + " '" HOOKEYE_PROGRAM
-                                "' discover -v capture -o " + run + " >>out.txt 2>err.txt";
+    const std::string command = "cd '" + folder_.string() + "' && " + more +
+                                " '" HOOKEYE_PROGRAM "' discover -v capture -o " + run +
+                                " >>out.txt 2>err.txt";
     const int status = std::system(("sh -c \"" + command + "\" 2>>sh.txt").c_str());
     std::istringstream lines(read(folder_ / "err.txt"));
     for (std::string line; std::getline(lines, line);)
@@ -49,8 +50,9 @@ TEST_F(Killed, ASearchLosesNothingThatEnded) {
   int stopped = 0;
   for (const char* signal : {"KILL", "INT", "KILL"}) {
     const double after = took * std::uniform_real_distribution<double>(0.1, 0.7)(random);
-    const int status = search("killed", "timeout -s " + std::string(signal) + " " +
-                                            std::to_string(after) + (stopped == 1 ? " taskset 1" : ""));
+    const int status =
+        search("killed", "timeout -s " + std::string(signal) + " " + std::to_string(after) +
+                             (stopped == 1 ? " taskset 1" : ""));
     if (status == 0) break;
     EXPECT_THAT(status, testing::AnyOf(137, 124)) << read(folder_ / "err.txt");
     ++stopped;

@@ -104,7 +104,7 @@ TEST_F(Escapes, QuotedInErrorsAreShown) {
   replace("title: cube", "\"ti\\x9btle\": cube");
   expect_shown("check .", 2, "ti\\u009btle");
   expect_shown("check \"$(printf 'no\\033[31mwhere')\"", 2, "no\\u001b[31mwhere");
-  expect_shown("\"$(printf 'che\\033[31mck')\"", 2, "\\u001b");
+  expect_shown("\"$(printf 'che\\033[31mck')\"", 2, "there is no command `che\\u001b[31mck`");
   write("capture.yaml", "hookeye: 1\n\x1b[31m: 2\n\xff\xfe\n");
   expect_shown("check .", 2, "capture.yaml");
   write("broken.obj", "v \x1b[31m 0 0\nf 1 2 3\n");

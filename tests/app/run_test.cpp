@@ -29,7 +29,8 @@ class WrittenRun : public Cli {
                      {"steps", json::array()}};
     for (const std::string name : {"base", "gravity"}) {
       write_step((name == "base" ? "00-" : "01-") + name);
-      timeline["steps"].push_back({{"name", name}, {"added", nullptr}, {"chi_fit", 22.0}});
+      timeline["steps"].push_back(
+          {{"name", name}, {"added", nullptr}, {"effects", json::array()}, {"chi_fit", 22.0}});
     }
     write("run/run.json", timeline.dump(2));
   }
@@ -223,14 +224,16 @@ TEST_F(JudgedRun, AVerdictGoesWithTheNextStepAndComesBackWithDiscover) {
   EXPECT_EQ(chosen.at("rivals").at(0).at("effect"), added);
   EXPECT_EQ(chosen.at("rivals")[0].at("chi_fit"), chosen.at("chi_fit"));
   EXPECT_EQ(chosen.at("made_in"), fs::canonical(folder_).string());
-  EXPECT_THAT(found.out, HasSubstr("why " + added + ": chi over the floor that the effects "));
+  EXPECT_THAT(found.out,
+              HasSubstr("why " + added + ": normalised residual over the noise floor with "));
   for (const char* key : {"verdict", "sentence", "missing", "tie"})
     EXPECT_TRUE(judged.contains(key)) << key;
   // The same command on a finished run: no other step, the same verdict, and all steps are told.
   const Result again = hookeye("discover capture -o run");
   ASSERT_EQ(again.status, 0);
   EXPECT_THAT(again.out, HasSubstr("\n  base "));
-  EXPECT_THAT(again.out, HasSubstr("why " + added + ": chi over the floor that the effects "));
+  EXPECT_THAT(again.out,
+              HasSubstr("why " + added + ": normalised residual over the noise floor with "));
   EXPECT_EQ(timeline().at("steps").size(), judged.at("steps").size());
   EXPECT_EQ(timeline().at("verdict"), judged.at("verdict"));
 }

@@ -97,9 +97,11 @@ TEST_F(Cli, AStudioForAllAddressesIsRefused) {
 TEST_F(Cli, TheStudioSaysWhatIsWrongWithARequest) {
   write_cube("{z: 1}");
   fs::create_directories(folder_ / "run/steps/00-base");
-  json timeline = {{"hookeye", 1},
-                   {"capture", (folder_ / "capture.yaml").string()},
-                   {"steps", {{{"name", "base"}, {"effects", {"swelling"}}}}}};
+  json timeline = {
+      {"hookeye", 1},
+      {"capture", (folder_ / "capture.yaml").string()},
+      {"steps",
+       {{{"name", "base"}, {"added", nullptr}, {"effects", {"swelling"}}, {"chi_fit", 2.0}}}}};
   write("run/run.json", timeline.dump());
   const Studio studio(folder_);
   if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)

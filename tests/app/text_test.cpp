@@ -98,7 +98,7 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
   EXPECT_THAT(text, testing::ContainsRegex("pressure +89.2 +-"));
   EXPECT_THAT(text, testing::Not(HasSubstr("creep")));
   EXPECT_THAT(text, HasSubstr("no other was refitted"));
-  EXPECT_THAT(text, HasSubstr("to first order no other changes"));
+  EXPECT_THAT(text, HasSubstr("to first order no other"));
   step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
   EXPECT_EQ(choice_table(before, step, 1.0), "");
 }
