@@ -12,4 +12,7 @@ struct NumericalFailure {
   std::string reason;          ///< one sentence, with the element where one is at fault
 };
 
+/// It ended because somebody asked for that.
+inline bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
+
 }  // namespace hookeye

@@ -57,8 +57,6 @@ bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
 
 namespace {
 
-bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
 /// The mesh, where it stands out and no other effect by more than `margin` before it; else null.
 const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
   for (const EffectScore& score : diagnosis.effects)

@@ -131,7 +131,7 @@ struct Draw {
 };
 
 /// The damped quadratic model of one step, in x.
-struct Step {
+struct ConvexStep {
   MatrixXd H;
   VectorXd g;
   /// Minimum of the model over convex control values.
@@ -172,7 +172,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   for (; out.iterations < options.max_iterations; ++out.iterations) {
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
     const VectorXd x = scaled.to_x(out.p), d = scaled.dp_dx(out.p);
-    Step step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
+    ConvexStep step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
     const double noise = sums.r2 / sums_at.residuals;  // variance over what was told
     draw.add_to(step.H, step.g, x, noise);
     bool accepted = false;
@@ -189,7 +189,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
         continue;  // an upper bound took from an addend that others need
       auto trial = sums_at(p);
       if (const auto* failed = std::get_if<NumericalFailure>(&trial)) {
-        if (failed->reason == "cancelled") return *failed;
+        if (cancelled(*failed)) return *failed;
         continue;  // no equilibrium there: a shorter step
       }
       NormalEquations& there = std::get<NormalEquations>(trial);

@@ -335,7 +335,7 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     // Candidates may have a finer mesh, whose factor is several times as large as all of these. To
     // make this one anew costs a hundredth of what they do.
     if (!candidates.empty()) impl_->solvers[e].forget();
-    if (failures[e] && failures[e]->reason == "cancelled") failures[e].reset();
+    if (failures[e] && hookeye::cancelled(*failures[e])) failures[e].reset();
     if (failures[e]) failed = true;
     advance();
   };

@@ -122,7 +122,7 @@ std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& wo
   warm.coarse_to_fine = false;
   auto result = fit(workspace, moved->first, moved->second, warm);
   if (auto* failure = std::get_if<NumericalFailure>(&result))
-    return failure->reason == "cancelled" ? Result(*failure) : none;
+    return cancelled(*failure) ? Result(*failure) : none;
   FitToAll out;
   out.fitted = std::get<Fitted>(std::move(result));
   Evaluation& all = out.fitted.evaluation;

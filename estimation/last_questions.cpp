@@ -17,7 +17,7 @@ LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const Discover
       return add_effect(workspace, newest.fitted, score, options.fit);
     });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (failure->reason == "cancelled") return *failure;
+      if (cancelled(*failure)) return *failure;
       continue;
     }
     Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};

@@ -7,8 +7,6 @@ namespace hookeye {
 
 namespace {
 
-bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
 /// What runs and is refitted beside `first` is told with it.
 DiscoverEvents told_with(const std::string& first, const DiscoverEvents& events) {
   DiscoverEvents out = events;

@@ -139,7 +139,7 @@ std::variant<std::optional<Fitted>, NumericalFailure> one_more(
     const auto [larger, p] = with_structures(present.form, present.p, one.models);
     auto result = fit(workspace, larger, p, options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (failure->reason == "cancelled") return *failure;
+      if (cancelled(*failure)) return *failure;
       continue;
     }
     Fitted& next = std::get<Fitted>(result);
@@ -158,7 +158,7 @@ std::variant<Fitted, NumericalFailure> best_start(Workspace& workspace,
   for (const auto& [form, p] : starts) {
     auto result = fit(workspace, form, p, options);
     const auto* failure = std::get_if<NumericalFailure>(&result);
-    if (failure && failure->reason == "cancelled") return *failure;
+    if (failure && cancelled(*failure)) return *failure;
     const auto* other = std::get_if<Fitted>(&best);
     if (!other || (!failure && normal_equations(std::get<Fitted>(result).evaluation).r2 <
                                    normal_equations(other->evaluation).r2))

@@ -13,8 +13,6 @@ namespace {
 
 constexpr size_t kSecondRound = 4;
 
-bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
 /// After its second step, or where it stands if there is none.
 const Trial& newest(const Racer& racer) { return racer.next ? *racer.next : racer.trial; }
 

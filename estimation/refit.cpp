@@ -12,8 +12,6 @@ namespace hookeye {
 
 namespace {
 
-bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
 FitOptions warm(const FitOptions& options) {
   FitOptions out = options;
   out.coarse_to_fine = false;

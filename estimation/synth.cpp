@@ -160,8 +160,8 @@ void write_photos(const Recipe& recipe, const detail::Truth& truth, detail::Pict
   }
 }
 
-std::vector<GripForce> measure(const Recipe& recipe, const SynthBody& body,
-                               const detail::Truth& truth) {
+std::vector<GripForce> measured_forces(const Recipe& recipe, const SynthBody& body,
+                                       const detail::Truth& truth) {
   std::vector<GripForce> measured;
   for (size_t e = 0; e < truth.states.size(); ++e) {
     Normal normal(detail::random_of(recipe.seed, "forces " + recipe.examples[e].name));
@@ -179,9 +179,11 @@ std::vector<GripForce> measure(const Recipe& recipe, const SynthBody& body,
 
 /// Nine digits: further ones depend on where arrays happen to lie in memory (sums are vectorised),
 /// and the same seed must give the same file.
-double rounded(double value) { return std::stod(fmt::format("{:.9g}", value)); }
+double to_nine_digits(double value) { return std::stod(fmt::format("{:.9g}", value)); }
 
-Json vector_json(const Vector3d& v) { return {rounded(v.x()), rounded(v.y()), rounded(v.z())}; }
+Json vector_json(const Vector3d& v) {
+  return {to_nine_digits(v.x()), to_nine_digits(v.y()), to_nine_digits(v.z())};
+}
 
 Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
   const Scene& scene = *truth.model.scene;
@@ -193,11 +195,11 @@ Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
     Json values = Json::object();
     const auto parameters = put.ingredient->parameters();
     for (size_t i = 0; i < parameters.size(); ++i)
-      values[parameters[i].name] = rounded(put.values[i]);
+      values[parameters[i].name] = to_nine_digits(put.values[i]);
     out["hidden"].push_back({{"effect", put.effect->name()},
                              {"variant", put.ingredient->variant()},
                              {"values", values},
-                             {"rms_px", rounded(put.rms_px)},
+                             {"rms_px", to_nine_digits(put.rms_px)},
                              {"sentence", put.sentence}});
   }
   out["mesh"] = {{"nodes", scene.body->mesh.nodes()},
@@ -250,8 +252,8 @@ std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const
   if (options.cancel && *options.cancel) return NumericalFailure{"", 0.0, "cancelled"};
   write_photos(recipe, truth, std::move(pictures), folder);
   write_text(folder / "capture.yaml",
-             detail::capture_text(recipe, body,
-                                  {.photos = true, .measured = measure(recipe, body, truth)}));
+             detail::capture_text(
+                 recipe, body, {.photos = true, .measured = measured_forces(recipe, body, truth)}));
   read_capture(folder);
   Synthesis result{out, truth_file(out), scene->body->mesh.nodes(), 0, {}};
   for (const auto& example : scene->capture.examples)

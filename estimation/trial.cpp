@@ -157,7 +157,7 @@ std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const Mode
   for (int step = 0; step < steps && !out.stalled; ++step) {
     auto result = try_step(workspace, form, out.trial.p, any, options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (step == 0 || failure->reason == "cancelled") return *failure;
+      if (step == 0 || cancelled(*failure)) return *failure;
       break;
     }
     const double before = over_floor(out.trial);

@@ -11,8 +11,6 @@ namespace hookeye {
 
 namespace {
 
-bool cancelled(const NumericalFailure& failure) { return failure.reason == "cancelled"; }
-
 VectorXd values_of(const Fitted& fitted, size_t at) {
   return fitted.p.segment(
       offset_of(fitted.form, at),

@@ -44,7 +44,7 @@ std::shared_ptr<const Scene> example_scene() {
   return load_scene(read_capture(folder.path), false);
 }
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json json_number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json describe(const DeclaredForm& form) {
   Json parameters = Json::array();
@@ -53,8 +53,8 @@ Json describe(const DeclaredForm& form) {
                           {"unit", p.unit},
                           {"long_name", p.long_name},
                           {"null", p.value},
-                          {"low", number(p.low)},
-                          {"high", number(p.high)},
+                          {"low", json_number(p.low)},
+                          {"high", json_number(p.high)},
                           {"matters", p.typical}});
   return {{"form", form.variant},
           {"ways", form.ways},

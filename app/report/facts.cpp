@@ -33,14 +33,14 @@ std::string support_text(const SupportSpec& support, const Units& units) {
   return fmt::format("{}: {}", support.region, fmt::join(parts, ", "));
 }
 
-std::string load_text(const LoadSpec& load, const Units& units) {
+std::string load_fact(const LoadSpec& load, const Units& units) {
   if (load.force)
     return fmt::format("force {} {} on {}", three(*load.force), units.force, load.region);
   return fmt::format("pressure {:.4g} {} on {}", load.pressure.value_or(0.0), units.stress(),
                      load.region);
 }
 
-std::string texture_text(const BodySpec& body) {
+std::string texture_fact(const BodySpec& body) {
   switch (body.texture) {
     case BodySpec::Texture::image:
       return "image " + body.texture_image.path.filename().string();
@@ -81,7 +81,7 @@ json support_act(const SupportSpec& support, const Units& units) {
 }
 
 json load_act(const LoadSpec& load, const Units& units) {
-  json out = {{"region", load.region}, {"text", load_text(load, units)}};
+  json out = {{"region", load.region}, {"text", load_fact(load, units)}};
   if (load.force) out["force"] = {load.force->x(), load.force->y(), load.force->z()};
   if (load.pressure) out["pressure"] = *load.pressure;
   return out;
@@ -97,7 +97,7 @@ json example_facts(const ExampleSpec& example, const Units& units) {
               {"measured", example.measured.size()}};
   for (const auto& support : example.supports)
     out["supports"].push_back(support_text(support, units));
-  for (const auto& load : example.loads) out["loads"].push_back(load_text(load, units));
+  for (const auto& load : example.loads) out["loads"].push_back(load_fact(load, units));
   for (const auto& support : example.supports) out["acts"].push_back(support_act(support, units));
   for (const auto& load : example.loads) out["acts"].push_back(load_act(load, units));
   return out;
@@ -113,7 +113,7 @@ json capture_facts(const Capture& capture) {
                 {"force", capture.units.force},
                 {"stress", capture.units.stress()}}},
               {"fit", capture.fit},
-              {"texture", texture_text(capture.body)},
+              {"texture", texture_fact(capture.body)},
               {"laws", json::array()},
               {"cameras", json::array()},
               {"examples", json::array()}};

@@ -23,7 +23,7 @@ const double kPower = 8.0;
 
 /// Amounts of shear over which the modulus of an additive material is tried to change: from what
 /// photos just show to a rubber's, each twice the last.
-const double kReaches[] = {0.05, 0.1, 0.2, 0.4, 0.8};
+const double kStiffeningReaches[] = {0.05, 0.1, 0.2, 0.4, 0.8};
 
 /// A function of I1bar whose modulus is zero at rest and `values` at the control points after it.
 AdditiveModel stiffening(const AdditiveModel& base, std::vector<double> at,
@@ -56,7 +56,7 @@ class StrainStiffening final : public Effect {
   Ingredients candidates(const Model& model, std::string*) const override {
     if (!additive_base(model)) return {of_law(model), of_power(model, false)};
     Ingredients all;
-    for (double reach : kReaches) all.push_back(of_additive(model, {reach}));
+    for (double reach : kStiffeningReaches) all.push_back(of_additive(model, {reach}));
     return all;
   }
 

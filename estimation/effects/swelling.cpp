@@ -9,7 +9,7 @@ namespace hookeye {
 namespace {
 
 const int kBlobs = 12, kFieldBumps = 16;
-const char* const kGradient = "free gradient";
+const char* const kFreeGradient = "free gradient";
 
 /// d(element force)/d(log g) by a central difference of one assembly: f_e depends on its own g_e
 /// only, so that all fields share it.
@@ -77,7 +77,7 @@ class Swelling final : public Effect {
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
     if (variant == "free blob") return free_blob(model);
-    if (variant == kGradient) return gradient(model);
+    if (variant == kFreeGradient) return gradient(model);
     const auto n = numbers_in(variant);
     if (starts_with(variant, "field") && n.size() > 3 && n.size() % 3 == 1) {
       std::vector<Vector3d> centres;
@@ -112,7 +112,7 @@ class Swelling final : public Effect {
     const std::vector<Further> all = {{gradient(model), in_fields(linear_fields(scene), present)},
                                       {field(model, centres, radius),
                                        in_fields(field_of_bumps(scene, centres, radius), present)}};
-    return refitted.variant() == kGradient ? std::vector<Further>{all[1]} : all;
+    return refitted.variant() == kFreeGradient ? std::vector<Further>{all[1]} : all;
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -121,7 +121,7 @@ class Swelling final : public Effect {
         fmt::format("{} by {} % in length", values[0] >= 0 ? "swollen" : "shrunk",
                     figure(100.0 * std::abs(values[0])));
     if (ingredient.variant() == "uniform") return "the body has " + change;
-    if (ingredient.variant() == kGradient) {
+    if (ingredient.variant() == kFreeGradient) {
       const Vector3d g = values.tail(3);
       return fmt::format(
           "the body has in its middle {}, and {} % more along {} over its size of {} {}", change,
@@ -192,7 +192,7 @@ class Swelling final : public Effect {
       parameters.push_back({fmt::format("swelling.g{}", axis), "",
                             fmt::format("change of length over the body's size along {}", axis),
                             0.0, -2.0, 2.0, 0.02, false});
-    return of_fields(kGradient, linear_fields(*model.scene), std::move(parameters),
+    return of_fields(kFreeGradient, linear_fields(*model.scene), std::move(parameters),
                      forces_by_log_stretch());
   }
 

@@ -72,7 +72,7 @@ std::shared_ptr<const EnergyTerm> bimodular_term(double b) {
 
 /// Strains over which an additive material is tried to begin to differ: a switch at rest, and a
 /// growth over what photos show.
-const double kReaches[] = {0.02, 0.1, 0.5};
+const double kTensionReaches[] = {0.02, 0.1, 0.5};
 
 /// The same function of E11, E22 and E33, zero on one side of rest: `values` are its moduli at the
 /// control points `at` on the other side, from rest outwards.
@@ -109,7 +109,7 @@ class TensionCompressionAsymmetry final : public Effect {
               make(model, "by a fixed share", bimodular_term)};
     Ingredients all;
     for (bool tension : {true, false})
-      for (double reach : kReaches) all.push_back(of_additive(model, tension, {reach}));
+      for (double reach : kTensionReaches) all.push_back(of_additive(model, tension, {reach}));
     return all;
   }
 

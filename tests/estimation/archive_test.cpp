@@ -93,7 +93,8 @@ TEST_F(KeptFits, AQuestionIsOfOneFormOnOneMesh) {
   asked.insert(ask(with("load_direction", "in pull")));
   auto bounds = gravity.ingredients.back()->parameters();
   std::vector<std::pair<double, double>> half;
-  for (const Parameter& one : bounds) half.emplace_back(0.5 * one.low, 0.5 * one.high);
+  for (const Parameter& one : bounds)  // a weight's own are without end
+    half.emplace_back(one.value - one.typical, one.value + one.typical);
   ModelForm bounded = gravity;
   if (const auto other = gravity.ingredients.back()->with_bounds(half)) {
     bounded.ingredients.back() = other;
@@ -147,7 +148,9 @@ TEST_F(KeptFits, WhatWasStoppedIsNotKept) {
   std::atomic<bool> cancel{false};
   FitOptions options;
   options.cancel = &cancel;
-  options.progress = [&](const FitProgress& progress) { cancel = progress.iteration > 0; };
+  options.progress = [&](const FitProgress& progress) {
+    if (progress.iteration > 0) cancel = true;
+  };
   const auto stopped = fit(workspace_, form(), form().initial(), options);
   ASSERT_EQ(std::get<NumericalFailure>(stopped).reason, "cancelled");
   EXPECT_EQ(kept("fit"), 0);
