@@ -55,11 +55,13 @@ build_jobs() {
 }
 
 # build_hookeye [TARGET...]: sets `build_folder`. HOOKEYE_WERROR=1 makes warnings errors, HOOKEYE_TESTS=1
-# configures the tests; without it those that are configured stay so.
+# configures the tests; without it those that are configured stay so. HOOKEYE_UNITY=0 compiles each
+# source by itself, for those who change some.
 build_hookeye() {
-  local werror=OFF wanted
+  local werror=OFF unity=ON wanted
   [ "${HOOKEYE_WERROR:-0}" = 0 ] || werror=ON
-  wanted=("HOOKEYE_WERROR:BOOL=$werror")
+  [ "${HOOKEYE_UNITY:-1}" = 1 ] || unity=OFF
+  wanted=("HOOKEYE_WERROR:BOOL=$werror" "HOOKEYE_UNITY:BOOL=$unity")
   # Benchmarks are built where nobody waits for them, so that they do not rot.
   [ -z "${HOOKEYE_CI:-}" ] || wanted+=("HOOKEYE_BENCH:BOOL=ON")
   build_folder=build/release
