@@ -3,40 +3,11 @@
 
 #include <cmath>
 #include <limits>
-#include <mutex>
 
-#include "simulation/newton.h"
+#include "simulation/of_mesh.h"
 #include "simulation/rigid_modes.h"
 
 namespace hookeye {
-
-namespace {
-
-/// What all solvers of one mesh share: a capture has one solver a load case.
-struct OfMesh {
-  Assembly assembly;
-  std::shared_ptr<SymbolicFactors> symbolic = std::make_shared<SymbolicFactors>();
-  /// With its pattern built, so that nothing changes it any more.
-  explicit OfMesh(const TetMesh& mesh) : assembly(mesh) { assembly.pattern(); }
-};
-
-/// The one that another solver of this mesh has, else a new one. A mesh that its pointer does not
-/// own may be gone, and another at its place.
-std::shared_ptr<OfMesh> of_mesh(const std::shared_ptr<const TetMesh>& mesh) {
-  if (mesh.use_count() == 0) return std::make_shared<OfMesh>(*mesh);
-  static std::mutex mutex;
-  static std::vector<std::pair<std::weak_ptr<const TetMesh>, std::weak_ptr<OfMesh>>> known;
-  const std::lock_guard lock(mutex);
-  std::erase_if(known, [](const auto& one) { return one.first.expired() || one.second.expired(); });
-  for (const auto& [other, parts] : known)
-    if (other.lock() == mesh)
-      if (auto alive = parts.lock()) return alive;
-  auto fresh = std::make_shared<OfMesh>(*mesh);
-  known.emplace_back(mesh, fresh);
-  return fresh;
-}
-
-}  // namespace
 
 struct EquilibriumSolver::Impl {
   std::shared_ptr<const TetMesh> mesh;
@@ -57,6 +28,8 @@ struct EquilibriumSolver::Impl {
   VectorXd moved_along(const Problem& problem, const VectorXd& x) const;
   double out_of_balance(const Problem& problem, const VectorXd& x) const;
   bool warm(const Problem& problem, const EquilibriumOptions& options, VectorXd& x);
+  bool in_equilibrium(const Problem& problem, const EquilibriumOptions& options, const VectorXd& x,
+                      const VectorXd& R) const;
   NewtonOutcome climb(const Problem& problem, const EquilibriumOptions& options, VectorXd& x,
                       double& reached);
   std::variant<Equilibrium, NumericalFailure> finish(const Problem& problem, bool factored,
@@ -103,12 +76,22 @@ double feasible(const Assembly& assembly, const VectorXd& q, const VectorXd& d, 
 constexpr int kHeldIterations = 30;
 constexpr double kShortestHeld = 0.01;
 
+/// " (most compressed: element 12, det F 0.1)"
+std::string most_compressed(const Assembly& assembly, const VectorXd& x) {
+  int element = -1;
+  const double J = assembly.smallest_J(x, &element);
+  return fmt::format(" (most compressed: element {}, det F {:.3g})", element, J);
+}
+
+NewtonOutcome failed(std::string reason) { return {false, 0.0, std::move(reason)}; }
+
 /// `most`: of this load step; what is left of the iterations of all of them may be less.
 NewtonGoal goal_of(const EquilibriumOptions& options, const NewtonState& state, double s,
                    int most) {
   NewtonGoal goal;
   goal.s = s;
   goal.tolerance = options.tolerance;
+  goal.tangent_there = options.factored;
   goal.max_iterations =
       std::min({options.max_iterations, most, options.most_iterations - state.iterations});
   goal.cancelled = options.cancelled;
@@ -135,11 +118,13 @@ std::vector<int> pins_of(const Problem& problem, const VectorXd& rest, std::stri
 }  // namespace
 
 /// x with the supports where they belong and the interior moved along with them, by the last
-/// solution's tangent. Without such a move it stays.
+/// factor. Without such a move it stays.
 VectorXd EquilibriumSolver::Impl::moved_along(const Problem& problem, const VectorXd& x) const {
   const VectorXd jump = prescribed_jump(problem, rest, x, x, 1.0);
   if (jump.isZero(0.0)) return x;
-  return x + predict(problem, state, state.K, x, 1.0, jump);
+  SparseMatrix K;
+  problem.tangent(x, 1.0, false, K);
+  return x + predict(problem, state, K, x, 1.0, jump);
 }
 
 /// |R_free|, infinite where an element is inverted.
@@ -166,6 +151,14 @@ bool EquilibriumSolver::Impl::warm(const Problem& problem, const EquilibriumOpti
   return true;
 }
 
+/// x is where all loads keep it: nothing needs a factor to find that out. R: residual() there.
+bool EquilibriumSolver::Impl::in_equilibrium(const Problem& problem,
+                                             const EquilibriumOptions& options, const VectorXd& x,
+                                             const VectorXd& R) const {
+  return prescribed_jump(problem, rest, x, x, 1.0).isZero(0.0) &&
+         relative_error(problem, state, R, x, 1.0) <= options.tolerance;
+}
+
 /// Adaptive load steps from x with the supports at x. From rest the loads grow; from elsewhere all
 /// of them are there, and a force fades that holds x. (It would hold a body that has swollen at its
 /// rest size, too, but dead forces that squeeze a soft body do not hold it stably.) Intermediate
@@ -185,26 +178,20 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
   NewtonOutcome out;
   double s = 0, step = 1;
   while (s < 1) {
-    if (state.iterations >= own.most_iterations) {
-      out.converged = false;
-      out.reason = fmt::format("no equilibrium within {} Newton iterations", state.iterations);
-      return out;
-    }
+    if (state.iterations >= own.most_iterations)
+      return failed(fmt::format("no equilibrium within {} Newton iterations", state.iterations));
     step = std::min(step, 1 - s);
     const double next = step >= 1 - s - 1e-12 ? 1.0 : s + step;
     state.set_tangent(problem, x, s);
+    if (s == 0 && in_equilibrium(at_once, options, x, out_of_balance)) {
+      if (options.factored) state.set_tangent(at_once, x, 1.0);
+      reached = 1.0;
+      return {true, 0.0, ""};
+    }
     if (!state.factorize()) {
-      if (problem.held_by) {
-        out.converged = false;
-        out.reason = "held where it was, the body is not stable";
-        return out;
-      }
+      if (problem.held_by) return failed("held where it was, the body is not stable");
       problem.tangent(x, s, true, state.K);
-      if (!state.factorize()) {
-        out.converged = false;
-        out.reason = "the tangent is singular: something is not held";
-        return out;
-      }
+      if (!state.factorize()) return failed("the tangent is singular: something is not held");
     }
     const VectorXd jump = prescribed_jump(problem, rest, from, x, next);
     const VectorXd d = predict(problem, state, state.K, x, next, jump);
@@ -216,7 +203,7 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
     } else {
       VectorXd trial = x + d;
       NewtonGoal goal = goal_of(own, state, next, next < 1 ? 15 : own.max_iterations);
-      if (next < 1) goal.tolerance = std::max(goal.tolerance, 1e-3);
+      if (next < 1) goal.tolerance = std::max(goal.tolerance, 1e-3), goal.tangent_there = false;
       out = newton(problem, goal, state, trial);
       if (out.reason == "cancelled") return out;
       if (out.converged) {
@@ -227,13 +214,7 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
       }
       step *= 0.4;
     }
-    if (step < own.smallest_step) {
-      int element = -1;
-      const double J = assembly.smallest_J(x, &element);
-      out.converged = false;
-      out.reason += fmt::format(" (most compressed: element {}, det F {:.3g})", element, J);
-      return out;
-    }
+    if (step < own.smallest_step) return failed(out.reason + most_compressed(assembly, x));
   }
   return out;
 }
@@ -250,10 +231,12 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(cons
           problem.loading.name, 1.0,
           "the tangent at the solution is singular: the body buckles here or is not held"};
     e.factor = state.factor;
+    if (state.W.nonZeros() != 0) state.K = sum(state.K, state.W);
+    e.K = std::move(state.K);
+    e.W_ff = state.W_ff;
   }
+  state.K = {};  // as large as half a factor, and there is one of these an example
   for (int u : state.free) e.R[u] = 0;
-  e.K = sum(state.K, state.W);
-  e.W_ff = state.W_ff;
   e.newton_iterations = state.iterations;
   e.factorizations = state.factorizations;
   q = x;
@@ -289,6 +272,9 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
   }
   s.state.iterations = s.state.factorizations = 0;
   VectorXd x = s.q.size() ? s.q : start ? *start : s.rest;
+  if (!s.q.size() && start && options.expected &&
+      s.out_of_balance(problem, *options.expected) < s.out_of_balance(problem, x))
+    x = *options.expected;
   if (s.q.size() && s.warm(problem, options, x))
     return s.finish(problem, options.factored, std::move(x));
 

@@ -18,6 +18,8 @@ class SymbolicFactors {
  private:
   std::mutex mutex_;
   std::vector<std::weak_ptr<const SymbolicFactor>> known_;
+  /// Two that were asked for last: one solver may go to and fro between examples held in two ways.
+  std::vector<std::shared_ptr<const SymbolicFactor>> last_;
 };
 
 /// Factors and counters that live across load steps and solves.
@@ -27,6 +29,7 @@ struct NewtonState {
   std::shared_ptr<const SymbolicFactor> symbolic;
   std::shared_ptr<TangentFactor> factor;  ///< of some earlier tangent; null: none
   SparseMatrix K;                         ///< last tangent assembled, its symmetric part
+  double stiffest = 0.0;                  ///< largest on the diagonal of one; 0: none was assembled
   SparseMatrix W;                         ///< its skew part; no values: none
   SparseMatrix W_ff;                      ///< that of K_ff; no values: K_ff is symmetric
   int iterations = 0, factorizations = 0;
@@ -41,7 +44,8 @@ struct NewtonGoal {
   double s = 1.0;
   double tolerance = 1e-9;  ///< |R_free|_inf over the largest nodal force
   int max_iterations = 60;
-  bool reuse_factor = false;  ///< start by conjugate gradients on the factor at hand, however far
+  bool reuse_factor = false;  ///< start on the factor at hand, however far
+  bool tangent_there = true;  ///< leave the true tangent at the solution in the state
   std::function<bool()> cancelled;
 };
 
@@ -52,6 +56,9 @@ struct NewtonOutcome {
 };
 
 /// Moves q's free unknowns to equilibrium; prescribed ones stay. q must have det F > 0 everywhere.
+/// Where it may start on the factor at hand it steps on that alone first, without a new tangent, as
+/// long as that is quicker (the chord method: Kelley, Iterative Methods for Linear and Nonlinear
+/// Equations, 1995, 5.4).
 NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
                      VectorXd& q);
 

@@ -1,5 +1,7 @@
 #include "simulation/problem.h"
 
+#include "simulation/of_mesh.h"
+
 namespace hookeye {
 
 bool Problem::has_potential() const {
@@ -119,36 +121,36 @@ VectorXd spread(const VectorXd& some, const std::vector<int>& unknowns, Eigen::I
 }
 
 double internal_energy(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {
-  return Assembly(mesh).energy(energy, q);
+  return assembly_of(mesh)->energy(energy, q);
 }
 
 VectorXd residual(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
                   const VectorXd& q, double load_fraction) {
-  Assembly assembly(mesh);
-  return Problem{mesh, assembly, energy, loading}.residual(q, load_fraction);
+  const auto assembly = assembly_of(mesh);
+  return Problem{mesh, *assembly, energy, loading}.residual(q, load_fraction);
 }
 
 SparseMatrix tangent(const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
                      const VectorXd& q, double load_fraction) {
-  Assembly assembly(mesh);
-  const Problem problem{mesh, assembly, energy, loading};
+  const auto assembly = assembly_of(mesh);
+  const Problem problem{mesh, *assembly, energy, loading};
   SparseMatrix K;
   problem.tangent(q, load_fraction, false, K);
   return sum(K, problem.skew_tangent(q, load_fraction));
 }
 
 MatrixXd element_forces(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q) {
-  return Assembly(mesh).element_forces(energy, q);
+  return assembly_of(mesh)->element_forces(energy, q);
 }
 
 VectorXd dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q, int part,
                    int k) {
-  return Assembly(mesh).dR_dtheta(energy, q, part, k);
+  return assembly_of(mesh)->dR_dtheta(energy, q, part, k);
 }
 
 Eigen::MatrixXd all_dR_dtheta(const TetMesh& mesh, const EnergyModel& energy, const VectorXd& q,
                               int part) {
-  return Assembly(mesh).all_dR_dtheta(energy, q, part);
+  return assembly_of(mesh)->all_dR_dtheta(energy, q, part);
 }
 
 }  // namespace hookeye

@@ -9,8 +9,8 @@ namespace {
 
 /// |r| over |B|: what differences of solved equilibria can tell.
 constexpr double kTolerance = 1e-9;
-/// Right-hand sides that are refined together.
-constexpr Eigen::Index kBlock = 32;
+/// Right-hand sides that are solved together.
+constexpr size_t kBlock = 32;
 
 /// X = K_ff^-1 B with the true tangent.
 void solve(const Equilibrium& equilibrium, const MatrixXd& B, MatrixXd& X) {
@@ -19,27 +19,19 @@ void solve(const Equilibrium& equilibrium, const MatrixXd& B, MatrixXd& X) {
     factor.solve(B, X);
     return;
   }
+  if (factor.positive() && skew_gradients(equilibrium.W_ff, factor, B, kTolerance, 200, X) >= 0)
+    return;
   X.resize(B.rows(), B.cols());
-  for (Eigen::Index j = 0; j < B.cols(); j += kBlock) {
-    const Eigen::Index m = std::min(kBlock, B.cols() - j);
-    MatrixXd x;
-    if (factor.positive() &&
-        skew_gradients(equilibrium.W_ff, factor, B.middleCols(j, m), kTolerance, 200, x) >= 0) {
-      X.middleCols(j, m) = x;
+  VectorXd one;  // past a point of instability H is indefinite
+  for (Eigen::Index k = 0; k < B.cols(); ++k) {
+    if (gmres(equilibrium.K, factor, B.col(k), kTolerance, 500, one) >= 0) {
+      X.col(k) = one;
       continue;
     }
-    VectorXd one;  // past a point of instability H is indefinite
-    for (Eigen::Index k = j; k < j + m; ++k) {
-      if (gmres(equilibrium.K, factor, B.col(k), kTolerance, 500, one) >= 0) {
-        X.col(k) = one;
-        continue;
-      }
-      // At a fold S is not there to be had; a step along the symmetric part's is tried all the
-      // same.
-      MatrixXd symmetric;
-      factor.solve(B.col(k), symmetric);
-      X.col(k) = symmetric;
-    }
+    // At a fold S is not there to be had; a step along the symmetric part's is tried all the same.
+    MatrixXd symmetric;
+    factor.solve(B.col(k), symmetric);
+    X.col(k) = symmetric;
   }
 }
 
@@ -58,13 +50,21 @@ MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
   if (moving.empty()) return S;
   for (size_t i = 0; i < loading.prescribed.size() && dqc_dp.size(); ++i)
     S.row(loading.prescribed[i]) = dqc_dp.row(static_cast<Eigen::Index>(i));
-  MatrixXd rhs = dR_dp(Eigen::all, moving);
-  for (size_t k = 0; k < moving.size(); ++k)
-    if (moves_support(moving[k]))
-      rhs.col(static_cast<Eigen::Index>(k)) += equilibrium.K * S.col(moving[k]);
-  MatrixXd X;
-  solve(equilibrium, -rhs(free, Eigen::all), X);
-  S(free, moving) = X;
+  // A block at a time: of a hundred columns all right-hand sides are as large as S.
+  MatrixXd B, X;
+  for (size_t first = 0; first < moving.size(); first += kBlock) {
+    const size_t last = std::min(first + kBlock, moving.size());
+    const std::vector<Eigen::Index> block(moving.begin() + static_cast<std::ptrdiff_t>(first),
+                                          moving.begin() + static_cast<std::ptrdiff_t>(last));
+    B = -dR_dp(free, block);
+    for (size_t k = 0; k < block.size(); ++k)
+      if (moves_support(block[k])) {
+        const VectorXd by_support = equilibrium.K * S.col(block[k]);
+        B.col(static_cast<Eigen::Index>(k)) -= by_support(free);
+      }
+    solve(equilibrium, B, X);
+    S(free, block) = X;
+  }
   return S;
 }
 
