@@ -146,6 +146,32 @@ TEST(Sensitivity, MeshResolutionIsTheFinerMesh) {
   EXPECT_LT(error, 0.02 * moved);
 }
 
+/// The column of mesh_resolution at mu times `factor`, by example.
+std::vector<VectorXd> finer_mesh_at(const std::shared_ptr<const Scene>& scene, double factor) {
+  const ModelForm base = base_form(scene);
+  VectorXd p = base.initial();
+  p[0] *= factor;
+  const Effect& effect = *find_effect("mesh_resolution");
+  const Evaluation evaluation = evaluated(base, p, effect.candidates(base.realise(p), nullptr));
+  std::vector<VectorXd> out;
+  for (const auto& example : evaluation.examples) out.push_back(example.S.col(base.size()));
+  return out;
+}
+
+/// What the finer mesh changed for one model starts the next one of the scene, and no more.
+TEST(Sensitivity, AFinerMeshIsSolvedTheSameFromTheLastModel) {
+  const auto one = std::make_shared<const Scene>(*block_scene());
+  const auto other = std::make_shared<const Scene>(*block_scene());
+  const auto before = finer_mesh_at(one, 1.0);
+  const auto warm = finer_mesh_at(one, 0.8), cold = finer_mesh_at(other, 0.8);
+  double changed = 0.0;
+  for (size_t e = 0; e < cold.size(); ++e) {
+    EXPECT_LT((warm[e] - cold[e]).norm(), 1e-4 * cold[e].norm() + 1e-9) << e;
+    changed = std::max(changed, (cold[e] - before[e]).norm() / std::max(cold[e].norm(), 1e-9));
+  }
+  EXPECT_GT(changed, 0.05);  // the next model is another one
+}
+
 /// The base form on the mesh of mesh_resolution's refit, with `share` of its change on top.
 std::pair<ModelForm, VectorXd> on_finer_mesh(const ModelForm& base, double share) {
   const Model model = base.realise(base.initial());

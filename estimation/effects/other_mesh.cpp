@@ -1,0 +1,174 @@
+#include "estimation/effects/other_mesh.h"
+
+#include <tbb/task_arena.h>
+
+#include <Eigen/LU>
+
+#include "capture_io/input_error.h"
+#include "meshing/interpolation.h"
+
+namespace hookeye {
+
+struct OtherBody {
+  std::shared_ptr<const Scene> scene;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> from_here, to_here;  ///< nodal values there, here
+  std::mutex mutex;                                                 ///< of what follows
+  std::unique_ptr<EquilibriumSolver> solver;                        ///< null: nobody is solving
+  /// By example, 3 x nodes there: what this mesh changed in the displacements of the other when it
+  /// was solved last. Empty: it was not.
+  std::vector<Matrix3Xd> change;
+
+  OtherBody(const Scene& here, double factor, int order)
+      : scene(remeshed(here, factor, order, false)),
+        from_here(interpolation(here.body->mesh, scene->body->mesh.X)),
+        to_here(interpolation(scene->body->mesh, here.body->mesh.X)),
+        change(here.capture.examples.size()) {}
+};
+
+namespace {
+
+/// That of the scene: meshed when first asked for, and kept for as long as the scene is there.
+std::shared_ptr<OtherBody> other_body(const std::shared_ptr<const Scene>& here, double factor,
+                                      int order) {
+  struct Known {
+    std::weak_ptr<const Scene> here;
+    double factor;
+    int order;
+    std::shared_ptr<OtherBody> body;
+  };
+  static std::mutex mutex;
+  static std::vector<Known> known;
+  const std::lock_guard lock(mutex);
+  std::erase_if(known, [](const Known& one) { return one.here.expired(); });
+  for (const Known& one : known)
+    if (one.here.lock() == here && one.factor == factor && one.order == order) return one.body;
+  auto body = std::make_shared<OtherBody>(*here, factor, order);
+  known.push_back({here, factor, order, body});
+  return body;
+}
+
+}  // namespace
+
+OtherMesh::OtherMesh(const Model& model, double factor, int order)
+    : model_(model),
+      factor_(factor),
+      order_(order),
+      forces_(model.examples.size()),
+      done_(model.examples.size()) {}
+
+const VectorXd& OtherMesh::force(int example, const Equilibrium* here) {
+  Slot& slot = forces_[example];
+  // A thread that waits for its own solve must not take another example up meanwhile: that would
+  // want what this one has locked, or pile solve upon solve on one stack.
+  std::call_once(slot.once, [&] {
+    tbb::this_task_arena::isolate([&] {
+      try {
+        slot.force = compute(example, here);
+      } catch (const InputError&) {  // a surface that cannot be filled
+        slot.force = VectorXd::Zero(3 * model_.scene->body->mesh.nodes());
+      }
+    });
+  });
+  return slot.force;
+}
+
+/// A fit asks for the fitted examples, a diagnosis for all.
+void OtherMesh::drop_idle_solver(int example) {
+  const auto& examples = model_.scene->capture.examples;
+  const std::lock_guard lock(body_->mutex);
+  done_[example] = true;
+  const bool held_out_too = examples[example].validate || asked_held_out_;
+  asked_held_out_ = held_out_too;
+  for (size_t e = 0; e < done_.size(); ++e)
+    if (!done_[e] && (held_out_too || !examples[e].validate)) return;
+  body_->solver.reset();
+}
+
+void OtherMesh::realise_there() {
+  std::call_once(once_, [&] {
+    auto body = other_body(model_.scene, factor_, order_);
+    const auto [form, p] = transfer(model_, body->scene);
+    other_ = form.realise(p);
+    body_ = std::move(body);
+  });
+}
+
+std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_there(int example,
+                                                                   const Equilibrium& here) {
+  const TetMesh &mesh = model_.scene->body->mesh, &theirs = body_->scene->body->mesh;
+  const Matrix3Xd u = here.q.reshaped(3, mesh.nodes()) - mesh.X;
+  const Matrix3Xd u_from_here = u * body_->from_here.transpose();
+  const VectorXd start = (theirs.X + u_from_here).reshaped();
+  const std::lock_guard lock(body_->mutex);
+  Matrix3Xd& change = body_->change[example];
+  VectorXd expected;
+  EquilibriumOptions options;
+  options.tolerance = 1e-6;  // what a mesh changes need not be known to more than a per mille
+  options.factored = false;
+  if (change.size() > 0) {
+    expected = start + VectorXd(change.reshaped());
+    options.expected = &expected;
+  }
+  if (!body_->solver) body_->solver = std::make_unique<EquilibriumSolver>(body_->scene->mesh());
+  auto there = body_->solver->solve(other_.energy_of(example), other_.examples[example].loading,
+                                    options, &start);
+  body_->solver->forget();
+  if (const auto* solved = std::get_if<Equilibrium>(&there))
+    change = solved->q.reshaped(3, theirs.nodes()) - theirs.X - u_from_here;
+  return there;
+}
+
+VectorXd OtherMesh::compute(int example, const Equilibrium* known) {
+  const TetMesh& mesh = model_.scene->body->mesh;
+  const Loading& loading = model_.examples[example].loading;
+  const VectorXd none = VectorXd::Zero(3 * mesh.nodes());
+  std::variant<Equilibrium, NumericalFailure> solved;
+  if (!known) {
+    solved = solve_equilibrium(mesh, model_.energy_of(example), loading);
+    known = std::get_if<Equilibrium>(&solved);
+  }
+  if (!known) return none;
+  const Equilibrium& here = *known;
+  realise_there();
+  const auto result = solve_there(example, here);
+  drop_idle_solver(example);
+  if (!std::holds_alternative<Equilibrium>(result)) return none;
+  const Equilibrium& there = std::get<Equilibrium>(result);
+  const TetMesh& theirs = body_->scene->body->mesh;
+  // Moved as a whole, not at the surface alone: there would be an element's thickness of wild
+  // strain in between.
+  const Matrix3Xd u_there = there.q.reshaped(3, theirs.nodes()) - theirs.X;
+  const Matrix3Xd u_here = here.q.reshaped(3, mesh.nodes()) - mesh.X;
+  VectorXd du = (u_there * body_->to_here.transpose() - u_here).reshaped();
+  for (int unknown : loading.prescribed) du[unknown] = 0.0;
+  VectorXd reaction = none;
+  for (const auto& measured : model_.scene->capture.examples[example].measured)
+    if (measured.kind != MeasuredSpec::Kind::position)
+      add_reaction(measured.region, here, there, reaction);
+  VectorXd f = here.K * du;
+  for (int unknown : loading.prescribed) f[unknown] -= reaction[unknown];
+  return f;
+}
+
+/// Change of the support's force and moment, as the smallest nodal forces that have both.
+void OtherMesh::add_reaction(const std::string& name, const Equilibrium& here,
+                             const Equilibrium& there, VectorXd& reaction) const {
+  const Region& region = model_.scene->body->regions.at(name);
+  const Region& theirs = body_->scene->body->regions.at(name);
+  const double count = static_cast<double>(region.nodes.size());
+  Vector3d centre = Vector3d::Zero();
+  for (int node : region.nodes) centre += here.q.segment<3>(3 * node) / count;
+  const Vector3d F = support_force(there, theirs) - support_force(here, region);
+  const Vector3d M = support_moment(there, theirs, centre) - support_moment(here, region, centre);
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  for (int node : region.nodes) {
+    const Vector3d r = here.q.segment<3>(3 * node) - centre;
+    inertia += r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose();
+  }
+  const Vector3d b = inertia.fullPivLu().solve(M);
+  for (int node : region.nodes)
+    reaction.segment<3>(3 * node) =
+        F / count + b.cross(Vector3d(here.q.segment<3>(3 * node) - centre));
+}
+
+}  // namespace hookeye

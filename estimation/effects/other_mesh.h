@@ -1,0 +1,53 @@
+// What another mesh of the same body makes of a model.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "estimation/model.h"
+#include "simulation/equilibrium.h"
+
+namespace hookeye {
+
+/// A body on another mesh, with what serves the next model too.
+struct OtherBody;
+
+/// What another mesh of the same body makes of the present model, as nodal forces on this one:
+/// f = K du moves this mesh by du, to where the other mesh has the body (first order), and
+/// changes the reactions of the supports by as much. Solved once an example, when first asked for,
+/// from this mesh's equilibrium and what the other mesh changed for the last model of this scene.
+/// One example at a time: a factor of the other mesh is larger than all else.
+class OtherMesh {
+ public:
+  /// `factor`, `order`: as remeshed().
+  OtherMesh(const Model& model, double factor, int order);
+
+  /// 3n [force]; zero where there is no such mesh or no equilibrium, so that the effect cannot be
+  /// tested. `here`: the present model's equilibrium, where it is known. Any thread.
+  const VectorXd& force(int example, const Equilibrium* here = nullptr);
+
+ private:
+  struct Slot {
+    std::once_flag once;
+    VectorXd force;
+  };
+  VectorXd compute(int example, const Equilibrium* known);
+  std::variant<Equilibrium, NumericalFailure> solve_there(int example, const Equilibrium& here);
+  void realise_there();
+  void drop_idle_solver(int example);
+  void add_reaction(const std::string& region, const Equilibrium& here, const Equilibrium& there,
+                    VectorXd& reaction) const;
+
+  const Model model_;
+  const double factor_;
+  const int order_;
+  std::once_flag once_;
+  std::shared_ptr<OtherBody> body_;
+  Model other_;
+  std::vector<Slot> forces_;
+  std::vector<bool> done_;  ///< by example
+  bool asked_held_out_ = false;
+};
+
+}  // namespace hookeye
