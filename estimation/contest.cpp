@@ -18,6 +18,15 @@ Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropp
   return step;
 }
 
+void drop_pictures(Fitted& fitted) {
+  for (ExampleEvaluation& example : fitted.evaluation.examples)
+    for (PhotoEvaluation& photo : example.photos) {
+      photo.model = Image();
+      photo.residual = Image();
+      photo.triangle = std::vector<int>();
+    }
+}
+
 bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::string* why) {
   const double noise2 = 1.0 + diagnosis.mesh_in_measured;
   bool fine = true;
@@ -218,6 +227,7 @@ void rank(Contest& contest, const Step& step) {
     return misfit(a.fitted) < misfit(b.fitted);
   });
   contest.reference = best->fitted;
+  drop_pictures(contest.reference);
   contest.measured_noise2 = measured_noise2(step.fitted);
   for (const auto& refit : refits)
     contest.measured_noise2 = std::min(contest.measured_noise2, measured_noise2(refit.fitted));

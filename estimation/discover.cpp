@@ -146,6 +146,7 @@ class Search {
     reach_for_mesh(step.fitted, step.diagnosis);
     out_.floor = step.diagnosis.floor;
     if (events_.step) events_.step(step);
+    drop_pictures(step.fitted);
     return {};
   }
 
@@ -257,6 +258,7 @@ class Search {
     losers_.clear();
     if (spoils_held_out(next.fitted, out_.floor))
       losers_.assign(contest.refits.begin() + 1, contest.refits.end());
+    for (Refit& loser : losers_) drop_pictures(loser.fitted);
     if (next.fitted.form.ingredients.size() > base_ + 1)
       if (auto lighter = backward(workspace_, next.fitted, out_.floor, base_, options_)) {
         next.dropped = {lighter->effect}, next.fitted = std::move(lighter->fitted);

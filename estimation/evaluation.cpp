@@ -114,6 +114,13 @@ void keep_freed_memory() {
 
 namespace {
 
+/// The other way round: before something that takes more than all before it.
+void give_back_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 /// Where the equilibria of an evaluation with derivatives go with the parameters, to first order.
 struct Linear {
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
@@ -332,13 +339,17 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     if (pointless()) return;
     failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options,
                                impl_->linear.at(form, p, e), pointless, solved[e], derivative[e]);
-    // Candidates may have a finer mesh, whose factor is several times as large as all of these. To
-    // make this one anew costs a hundredth of what they do.
     if (!candidates.empty()) impl_->solvers[e].forget();
     if (failures[e] && hookeye::cancelled(*failures[e])) failures[e].reset();
     if (failures[e]) failed = true;
     advance();
   };
+  // Candidates may have a finer mesh, whose factor is as large as all of these. A solver that starts
+  // in equilibrium does without one, and to make them anew costs a hundredth of what candidates do.
+  if (!candidates.empty()) {
+    for (EquilibriumSolver& solver : impl_->solvers) solver.forget();
+    give_back_freed_memory();
+  }
   const auto compare = [&](int e, const ReferenceState& reference_state) {
     if (pointless()) return;
     solved[e].example = e;
