@@ -21,13 +21,12 @@ from effects import EFFECTS
 
 PHOTOGRAPHER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "blind", "cycles")
 FULL_WELL, READ, STEP = 20000, 0.0009, 1 / 255
-REDUCED = 0.75  # of the told pictures' size
 
 
 class Case:
     """The body with loads, light and stiffness of its own; what is hidden is appended by the effects."""
 
-    def __init__(self, body, rng, work):
+    def __init__(self, body, rng, work, pictures):
         self.body, self.rng, self.work, self.told = body, rng, work, body.told
         self.physics, self.optics, self.turned, self.follows = [], [], {}, {}
         self.place, self.force_offset = (Rotation.identity(), np.zeros(3)), np.zeros(3)
@@ -39,7 +38,7 @@ class Case:
         self.order, self.cameras = list(self.told["examples"]), list(self.told["cameras"])
         self.draw_loads(scale)
         self.draw_light()
-        self.reduce_pictures()
+        self.scale_pictures(pictures)
 
     def draw_loads(self, scale):
         for name in self.order:
@@ -59,14 +58,14 @@ class Case:
         turn = Rotation.from_rotvec([0, 0, self.rng.uniform(-0.6, 0.6)])
         sun["toward"] = turn.apply(unit(sun["toward"])).tolist()
 
-    def reduce_pictures(self):
+    def scale_pictures(self, scale):
         for camera in self.told["cameras"].values():
-            camera["size"] = [round(REDUCED * x) for x in camera["size"]]
+            camera["size"] = [round(scale * x) for x in camera["size"]]
             inner = camera["intrinsics"]
             for key in ("fx", "fy"):
-                inner[key] *= REDUCED
+                inner[key] *= scale
             for key in ("cx", "cy"):
-                inner[key] = (inner[key] + 0.5) * REDUCED - 0.5
+                inner[key] = (inner[key] + 0.5) * scale - 0.5
 
     def held(self, name):
         rigid = [s["rigid"] for s in self.told["examples"][name]["supports"] if "rigid" in s]
@@ -171,6 +170,7 @@ def main():
     parser.add_argument("--size", type=float, default=1)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--examples", help="comma between; all unless told")
+    parser.add_argument("--pictures", type=float, default=0.75, help="their size over that of the body's capture")
     parser.add_argument("--differences", action="store_true", help="solve without the effects too, for the truth file")
     parser.add_argument("--work", help="folder that keeps decks and solutions; solved ones serve again")
     parser.add_argument("-o", "--out", required=True)
@@ -185,7 +185,7 @@ def main():
     with contextlib.ExitStack() as stack:
         work = told.work or stack.enter_context(tempfile.TemporaryDirectory())
         os.makedirs(work, exist_ok=True)
-        case = Case(body, np.random.default_rng(told.seed), work)
+        case = Case(body, np.random.default_rng(told.seed), work, told.pictures)
         drawn = np.random.default_rng([told.seed, 1])
         truth = {"effects": {name: EFFECTS[name](case, drawn, told.size) for name in names}, "mu": case.mu,
                  "kappa": case.kappa, "command": " ".join(sys.argv)}
