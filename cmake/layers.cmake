@@ -76,6 +76,14 @@ function(hookeye_test_entries target prefix)
   endforeach()
 endfunction()
 
+# GoogleMock and Eigen, which nearly all tests include, are read once a binary.
+function(hookeye_test_headers target)
+  if(HOOKEYE_PCH)
+    target_precompile_headers(${target} PRIVATE <gmock/gmock.h> <Eigen/Dense> <Eigen/SparseCore>
+      <filesystem> <fmt/format.h> <fstream> <functional> <map> <memory> <string> <vector>)
+  endif()
+endfunction()
+
 # Tests of a folder: one binary from tests/FOLDER/*.cpp.
 function(hookeye_tests name)
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
@@ -88,5 +96,6 @@ function(hookeye_tests name)
   target_compile_definitions(test_${name} PRIVATE HOOKEYE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   add_dependencies(test_${name} helpers)
   hookeye_flags(test_${name})
+  hookeye_test_headers(test_${name})
   hookeye_test_entries(test_${name} ${name} ${sources})
 endfunction()

@@ -8,7 +8,7 @@ namespace hookeye {
 
 namespace {
 
-const int kBlobs = 12, kFieldBumps = 16;
+const int kSwellingBlobs = 12, kSwellingBumps = 16;
 const char* const kFreeGradient = "free gradient";
 
 /// d(element force)/d(log g) by a central difference of one assembly: f_e depends on its own g_e
@@ -69,7 +69,7 @@ class Swelling final : public Effect {
     auto forces = forces_by_log_stretch();
     Ingredients all = {uniform(model, forces)};
     const double radius = 0.15 * body_size(scene).size;
-    for (const Vector3d& c : spread_centres(scene, kBlobs))
+    for (const Vector3d& c : spread_centres(scene, kSwellingBlobs))
       all.push_back(blob(model, c, radius, forces));
     return all;
   }
@@ -107,8 +107,8 @@ class Swelling final : public Effect {
     VectorXd present = VectorXd::Ones(scene.body->mesh.size());
     if (with.energy.swelling.size() > 0) present = with.energy.swelling;
     if (model.energy.swelling.size() > 0) present = present.cwiseQuotient(model.energy.swelling);
-    const double radius = bump_radius(scene, kFieldBumps);
-    const auto centres = spread_centres(scene, kFieldBumps);
+    const double radius = bump_radius(scene, kSwellingBumps);
+    const auto centres = spread_centres(scene, kSwellingBumps);
     const std::vector<Further> all = {{gradient(model), in_fields(linear_fields(scene), present)},
                                       {field(model, centres, radius),
                                        in_fields(field_of_bumps(scene, centres, radius), present)}};
