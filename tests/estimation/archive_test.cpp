@@ -189,7 +189,9 @@ TEST_F(KeptFits, ADiagnosisAndTheTrialsOfItComeBack) {
     EXPECT_EQ(a.values, b.values);
     EXPECT_EQ(a.base_step, b.base_step);
     EXPECT_EQ(nameable(a, first), nameable(b, second));
-    if (a.best) EXPECT_EQ(a.best->variant(), b.best->variant());
+    if (a.best) {
+      EXPECT_EQ(a.best->variant(), b.best->variant());
+    }
   }
   // What it draws is worked out where it is wanted.
   EXPECT_FALSE(lacks_displaced(first));
