@@ -72,10 +72,9 @@ const VectorXd& OtherMesh::force(int example, const Equilibrium* here) {
   return slot.force;
 }
 
-/// A fit asks for the fitted examples, a diagnosis for all.
+/// After `example`, the mutex held. A fit asks for the fitted examples, a diagnosis for all.
 void OtherMesh::drop_idle_solver(int example) {
   const auto& examples = model_.scene->capture.examples;
-  const std::lock_guard lock(body_->mutex);
   done_[example] = true;
   const bool held_out_too = examples[example].validate || asked_held_out_;
   asked_held_out_ = held_out_too;
@@ -113,6 +112,7 @@ std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_there(int example,
   auto there = body_->solver->solve(other_.energy_of(example), other_.examples[example].loading,
                                     options, &start);
   body_->solver->forget();
+  drop_idle_solver(example);
   if (const auto* solved = std::get_if<Equilibrium>(&there))
     change = solved->q.reshaped(3, theirs.nodes()) - theirs.X - u_from_here;
   return there;
@@ -131,7 +131,6 @@ VectorXd OtherMesh::compute(int example, const Equilibrium* known) {
   const Equilibrium& here = *known;
   realise_there();
   const auto result = solve_there(example, here);
-  drop_idle_solver(example);
   if (!std::holds_alternative<Equilibrium>(result)) return none;
   const Equilibrium& there = std::get<Equilibrium>(result);
   const TetMesh& theirs = body_->scene->body->mesh;
