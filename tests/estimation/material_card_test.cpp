@@ -181,7 +181,9 @@ TEST(Uniaxial, TheSidesAreFreeAndTheStressIsTheSlopeOfTheEnergy) {
         const Matrix3d P = energy.P(state->F);
         const double scale = 0.1;
         for (int i = 0; i < 3; ++i)
-          if (i != axis) EXPECT_NEAR(P(i, i), 0.0, 1e-9 * scale);
+          if (i != axis) {
+            EXPECT_NEAR(P(i, i), 0.0, 1e-9 * scale);
+          }
         EXPECT_DOUBLE_EQ(state->F(axis, axis), stretch);
         const double h = 1e-5;
         const auto more = uniaxial(energy, axis, stretch + h, state->F),
