@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "estimation/additive_material.h"
+#include "meshing/extent.h"
 
 namespace hookeye {
 
@@ -310,8 +311,7 @@ std::shared_ptr<const Ingredient> background_ingredient(const Scene& scene) {
 
 std::shared_ptr<const Ingredient> placement_ingredient(const Scene& scene) {
   const Matrix3Xd& X = scene.body->mesh.X;
-  const double size = (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm();
-  return std::make_shared<Placement>(X.rowwise().mean(), size, scene.capture.units.length);
+  return std::make_shared<Placement>(X.rowwise().mean(), extent(X), scene.capture.units.length);
 }
 
 std::shared_ptr<const Ingredient> self_weight_ingredient(const Vector3d& gravity_in_world) {

@@ -29,6 +29,31 @@ bool already_in(const ModelForm& form, const std::string& name) {
                      [&](const auto& ingredient) { return ingredient->name() == name; });
 }
 
+/// Lengths of the columns of H, the same for those parameters of an ingredient that share a unit
+/// and a typical size: x, y and z, which a frame mixes.
+VectorXd common_lengths(const ModelForm& base, const std::vector<Candidate>& candidates,
+                        const Eigen::MatrixXd& H) {
+  VectorXd out = lengths(H);
+  Eigen::Index first = 0;
+  const auto share = [&](const std::vector<Parameter>& parameters) {
+    const VectorXd own = out.segment(first, static_cast<Eigen::Index>(parameters.size()));
+    for (const Parameter& one : parameters) {
+      double square = 0.0;
+      int count = 0;
+      for (size_t i = 0; i < parameters.size(); ++i) {
+        const Parameter& other = parameters[i];
+        if (other.unit != one.unit || other.typical != one.typical) continue;
+        square += own[i] * own[i];
+        ++count;
+      }
+      out[first++] = std::sqrt(square / count);
+    }
+  };
+  for (const auto& ingredient : base.ingredients) share(ingredient->parameters());
+  for (const Candidate& candidate : candidates) share(candidate.ingredient->parameters());
+  return out;
+}
+
 }  // namespace
 
 std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisOptions& options,
@@ -89,10 +114,11 @@ std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates
   return out;
 }
 
-std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
+std::vector<double> simulate_null(const ModelForm& base, const std::vector<Candidate>& candidates,
                                   const std::vector<ProjectedHypothesis>& projected,
                                   const DiagnosisSums& sums, const DiagnosisOptions& options) {
-  const Eigen::MatrixXd root = square_root(sums.null_noise);
+  const Eigen::MatrixXd root = square_root(
+      sums.null_noise, common_lengths(base, candidates, sums.null_noise), sums.effective.s);
   const double r2 = sums.effective.count * sums.effective.floor2;
   std::mt19937 engine(options.seed);
   std::normal_distribution<double> normal;

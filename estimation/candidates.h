@@ -29,7 +29,8 @@ std::map<std::string, double> by_effect(const std::vector<Candidate>& candidates
 
 /// Largest evidence over the catalogue when nothing is missing, sorted: scores drawn as the floor's
 /// errors (their variance and their correlation from cell to cell, rest photos) would give them.
-std::vector<double> simulate_null(const std::vector<Candidate>& candidates,
+/// The same draws in any frame, unit and order (gram.h, square_root).
+std::vector<double> simulate_null(const ModelForm& base, const std::vector<Candidate>& candidates,
                                   const std::vector<ProjectedHypothesis>& projected,
                                   const DiagnosisSums& sums, const DiagnosisOptions& options);
 

@@ -216,8 +216,9 @@ struct Scored {
   }
 };
 
-Scored score_photos(std::vector<Candidate> candidates, const DiagnosisSums& sums, int base,
-                    const DiagnosisOptions& options) {
+Scored score_photos(const ModelForm& form, std::vector<Candidate> candidates,
+                    const DiagnosisSums& sums, const DiagnosisOptions& options) {
+  const int base = form.size();
   Scored out;
   out.r2 = without_base(sums.effective, base);
   out.evidence.resize(candidates.size());
@@ -226,7 +227,7 @@ Scored score_photos(std::vector<Candidate> candidates, const DiagnosisSums& sums
     out.evidence[i] = log_evidence(out.projected[i], sums.effective.s, out.r2, sums.effective.count,
                                    sums.effective.floor2);
   }
-  out.null = simulate_null(candidates, out.projected, sums, options);
+  out.null = simulate_null(form, candidates, out.projected, sums, options);
   keep_within_bounds(sums, base, out.r2, candidates, out.projected, out.evidence);
   out.candidates = std::move(candidates);
   return out;
@@ -317,7 +318,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, co
   out.whiteness_p = sums.whiteness_p;
   tell_of_refined_mesh(fitted, evaluation, sums, out);
 
-  Scored scored = score_photos(std::move(candidates), sums, base, options);
+  Scored scored = score_photos(fitted.form, std::move(candidates), sums, options);
   if (!scored.null.empty())
     out.gate = scored.null[static_cast<size_t>(0.95 * (scored.null.size() - 1))];
   if (const Candidate* mesh = mesh_candidate(scored.candidates, scored.evidence))

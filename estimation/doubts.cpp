@@ -7,16 +7,13 @@
 #include <map>
 #include <set>
 
+#include "meshing/extent.h"
+
 namespace hookeye {
 
 namespace {
 
 using Sentences = std::vector<std::string>;
-
-double diagonal(const Scene& scene) {
-  const Matrix3Xd& X = scene.body->mesh.X;
-  return (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm();
-}
 
 Vector3d displacement(const SupportSpec& support, const Vector3d& X) {
   Vector3d u = Vector3d::Constant(std::nan(""));
@@ -29,7 +26,7 @@ Vector3d displacement(const SupportSpec& support, const Vector3d& X) {
 
 /// Two supports tell one node different displacements: simulation keeps the later one.
 void compare_supports(const Scene& scene, const ExampleSpec& example, Sentences* out) {
-  const double same = 1e-9 * diagonal(scene);
+  const double same = 1e-9 * extent(scene.body->mesh.X);
   for (size_t b = 0; b < example.supports.size(); ++b)
     for (size_t a = 0; a < b; ++a) {
       const SupportSpec &first = example.supports[a], &later = example.supports[b];
@@ -60,7 +57,7 @@ void look_at_measurements(const Scene& scene, const ExampleSpec& example, Senten
     if (measured.kind == MeasuredSpec::Kind::position) {
       SurfacePoint nearest;
       const double off = locate_on_boundary(scene.body->mesh, measured.point, &nearest);
-      if (off > 0.01 * diagonal(scene))
+      if (off > 0.01 * extent(scene.body->mesh.X))
         out->push_back(fmt::format(
             "example {}: the measured point ({:.4g}, {:.4g}, {:.4g}) lies {:.3g} {} off the body "
             "at rest; the nearest point of its surface is taken",

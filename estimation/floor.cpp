@@ -7,6 +7,7 @@
 
 #include "estimation/evidence.h"
 #include "estimation/fit.h"
+#include "meshing/extent.h"
 
 namespace hookeye {
 
@@ -114,8 +115,7 @@ Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
 bool unmoved(const Scene& scene, const ExampleEvaluation& example) {
   const Matrix3Xd& X = scene.body->mesh.X;
   if (!example.equilibrium || example.equilibrium->q.size() != X.size()) return false;
-  const double size = (X.rowwise().maxCoeff() - X.rowwise().minCoeff()).norm();
-  return (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() < 1e-6 * size;
+  return (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() < 1e-6 * extent(X);
 }
 
 /// Smooth motion of photos at rest, and what noise would give of it.

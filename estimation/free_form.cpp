@@ -8,6 +8,7 @@
 #include "estimation/diagnosis_sums.h"
 #include "estimation/effects/toolbox.h"
 #include "estimation/evidence.h"
+#include "meshing/extent.h"
 #include "simulation/loading.h"
 
 namespace hookeye {
@@ -160,7 +161,8 @@ void say(const Scene& scene, FreeForm* field) {
       "{} of up to {} {}, most around {} and there towards {}, {}, would remove {:.0f} % of the "
       "misfit",
       field->name == "traction" ? "a traction on the surface" : "a force in the body",
-      figure(size[most]), field->unit, place_text(field->place), vector_text(towards),
+      figure(size[most]), field->unit, place_text(field->place, extent(scene.body->mesh.X)),
+      vector_text(towards),
       field->example.empty() ? "the same in all examples" : "in '" + field->example + "' alone",
       100.0 * std::max(0.0, field->explains));
 }

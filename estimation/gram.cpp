@@ -9,17 +9,17 @@ namespace {
 /// Root of the least square sum that is told from zero.
 constexpr double kNothing = 1e-150;
 
-/// Eigen-decomposition H = D V diag(values) V^T D over the roots D of the diagonal: columns of
-/// different units differ by many powers of ten, and what a plain decomposition calls rounding of
-/// the large ones drowns the small ones. A column of zeros has no unit: eigenvectors are zero there
-/// to rounding alone, which no power of ten may scale.
+/// Eigen-decomposition H = D V diag(values) V^T D over scales D (the roots of the diagonal):
+/// columns of different units differ by many powers of ten, and what a plain decomposition calls
+/// rounding of the large ones drowns the small ones. A column of zeros has no unit: eigenvectors
+/// are zero there to rounding alone, which no power of ten may scale.
 struct GramEigen {
   Eigen::VectorXd scale, unit, values;  ///< D, its inverse (0 where a column is); ascending
   Eigen::MatrixXd V;
 
-  explicit GramEigen(const Eigen::MatrixXd& H)
-      : scale(H.diagonal().cwiseMax(0.0).cwiseSqrt()),
-        unit((scale.array() > kNothing).select(scale.cwiseInverse(), 0.0)) {
+  explicit GramEigen(const Eigen::MatrixXd& H) : GramEigen(H, lengths(H)) {}
+  GramEigen(const Eigen::MatrixXd& H, const Eigen::VectorXd& scales)
+      : scale(scales), unit((scale.array() > kNothing).select(scale.cwiseInverse(), 0.0)) {
     if (H.size() == 0) return;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * H *
                                                                unit.asDiagonal());
@@ -38,9 +38,16 @@ Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& H) {
   return back * inverse.asDiagonal() * back.transpose();
 }
 
-Eigen::MatrixXd square_root(const Eigen::MatrixXd& H) {
-  const GramEigen of(H);
-  return of.scale.asDiagonal() * of.V * of.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+Eigen::VectorXd lengths(const Eigen::MatrixXd& H) { return H.diagonal().cwiseMax(0.0).cwiseSqrt(); }
+
+Eigen::MatrixXd square_root(const Eigen::MatrixXd& H, const Eigen::VectorXd& scale,
+                            const Eigen::VectorXd& towards) {
+  const GramEigen of(H, scale);
+  const Eigen::VectorXd side = of.V.transpose() * of.unit.cwiseProduct(towards);
+  const Eigen::VectorXd root = of.values.cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd rising =
+      of.scale.asDiagonal() * of.V * (side.array() < 0.0).select(-root, root).matrix().asDiagonal();
+  return rising.rowwise().reverse();
 }
 
 }  // namespace hookeye

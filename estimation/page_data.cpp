@@ -8,6 +8,7 @@
 #include "estimation/energy_curves.h"
 #include "estimation/fitted_fields.h"
 #include "estimation/step_json.h"
+#include "meshing/extent.h"
 #include "render/renderer.h"
 
 namespace hookeye {
@@ -243,7 +244,7 @@ json example_json(const Scene& scene, const Model& model, const Shell& shell,
   Eigen::MatrixXd u(3, shell.nodes.size());
   for (size_t i = 0; i < shell.nodes.size(); ++i)
     u.col(i) = q.segment<3>(3 * shell.nodes[i]) - mesh.X.col(shell.nodes[i]);
-  const double size = (mesh.X.rowwise().maxCoeff() - mesh.X.rowwise().minCoeff()).norm();
+  const double size = extent(mesh.X);
   const Matrix3Xd x = scene.body->surface.deformed(mesh, q);
   std::vector<Sight> sights;
   json views = json::array();

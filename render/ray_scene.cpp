@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "meshing/extent.h"
 #include "render/instruction_set.h"
 
 namespace hookeye {
@@ -117,7 +118,7 @@ RayScene::RayScene(const std::vector<std::array<int, 3>>& triangles, const Eigen
     : impl_(std::make_unique<Impl>()) {
   const Eigen::Vector3d low = x.rowwise().minCoeff(), high = x.rowwise().maxCoeff();
   centre_ = (low + high) / 2;
-  epsilon_ = 1e-5 * (high - low).norm();
+  epsilon_ = 1e-5 * extent(x);
   Impl& m = *impl_;
   m.scene = rtcNewScene(device());
   // A LOW quality dynamic scene really refits; a MEDIUM one silently rebuilds at ten times the

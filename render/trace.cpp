@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "render/frame.h"
 #include "render/hits.h"
@@ -132,6 +133,21 @@ std::vector<Vector3d> cosine_directions(int rays) {
   return out;
 }
 
+/// Two axes across the normal n; the first one on the side of `outwards`, as seen from the surface,
+/// so that the few rays of a vertex turn with the body.
+std::pair<Vector3d, Vector3d> tangents(const Vector3d& n, const Vector3d& outwards) {
+  const Vector3d across = outwards - outwards.dot(n) * n;
+  if (across.norm() > 0.01 * outwards.norm()) {
+    const Vector3d e1 = across.normalized();
+    return {e1, n.cross(e1)};
+  }
+  // Of a place that looks straight outwards: frame of Duff et al. 2017, Building an orthonormal
+  // basis, revisited.
+  const double sign = n.z() < 0 ? -1 : 1, a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
+  return {Vector3d(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()),
+          Vector3d(b, sign + n.y() * n.y() * a, -n.y())};
+}
+
 }  // namespace
 
 std::vector<double> sky_visibility(const RayScene& scene, const Matrix3Xd& x,
@@ -139,12 +155,10 @@ std::vector<double> sky_visibility(const RayScene& scene, const Matrix3Xd& x,
   std::vector<double> out(x.cols(), 1.0);
   if (rays <= 0) return out;
   const std::vector<Vector3d> directions = cosine_directions(rays);
+  const Vector3d middle = x.rowwise().mean();
   for (int v = 0; v < x.cols(); ++v) {
     const Vector3d n = normals.col(v);
-    // Frame of Duff et al. 2017, Building an orthonormal basis, revisited.
-    const double sign = n.z() < 0 ? -1 : 1, a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
-    const Vector3d e1(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x());
-    const Vector3d e2(b, sign + n.y() * n.y() * a, -n.y());
+    const auto [e1, e2] = tangents(n, x.col(v) - middle);
     const Vector3d from = x.col(v) - scene.centre() + 10 * scene.epsilon() * n;
     int open = 0;
     for (int first = 0; first < rays; first += 16) {

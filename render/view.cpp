@@ -72,7 +72,8 @@ View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int
       eye(c.centre()),
       p((c.R * x).colwise() + c.t) {
   start = p.row(2).minCoeff();
-  start -= 0.01 * (p.row(2).maxCoeff() - start) + 1e-6;
+  // and by more than floats round, where the body is flat as seen from here
+  start -= 0.01 * (p.row(2).maxCoeff() - start) + 1e-6 * p.row(2).cwiseAbs().maxCoeff();
   front.resize(triangles.size());
   for (size_t f = 0; f < triangles.size(); ++f) {
     Matrix3d corners;

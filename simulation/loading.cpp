@@ -99,19 +99,23 @@ Eigen::MatrixXd tidy(Eigen::MatrixXd A) {
   return A.topRows(row);
 }
 
-std::string point_text(Vector3d v) {
+/// What is nothing beside `size` is rounding.
+std::string point_text(Vector3d v, double size) {
   for (double& x : v)
-    if (std::abs(x) < 1e-6 * std::max(1.0, v.cwiseAbs().maxCoeff())) x = 0;
+    if (std::abs(x) < 1e-6 * std::max(size, v.cwiseAbs().maxCoeff())) x = 0;
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", v[0], v[1], v[2]);
 }
 
-std::string motion_text(const Vector3d& move, const Vector3d& turn, const Vector3d& center) {
-  if (turn.norm() < 1e-6) return "translation along " + point_text(move.normalized());
+/// `size`: the body's [length].
+std::string motion_text(const Vector3d& move, const Vector3d& turn, const Vector3d& center,
+                        double size) {
+  if (turn.norm() < 1e-6) return "translation along " + point_text(move.normalized(), 1.0);
   const double w2 = turn.squaredNorm(), pitch = move.dot(turn) / w2;
   const Vector3d through = center + turn.cross(move) / w2;
-  std::string text =
-      "rotation about " + point_text(turn.normalized()) + " through " + point_text(through);
-  if (std::abs(pitch) > 1e-6) text += fmt::format(" with an advance of {:.4g} a radian", pitch);
+  std::string text = "rotation about " + point_text(turn.normalized(), 1.0) + " through " +
+                     point_text(through, size);
+  if (std::abs(pitch) > 1e-6 * size)
+    text += fmt::format(" with an advance of {:.4g} a radian", pitch);
   return text;
 }
 
@@ -127,7 +131,7 @@ std::vector<std::string> free_rigid_motions(const TetMesh& mesh, const Loading& 
   std::vector<std::string> names;
   for (Eigen::Index k = 0; k < basis.rows(); ++k)
     names.push_back(motion_text(basis.row(k).tail<3>().transpose() * modes.size,
-                                basis.row(k).head<3>().transpose(), modes.center));
+                                basis.row(k).head<3>().transpose(), modes.center, modes.size));
   return names;
 }
 

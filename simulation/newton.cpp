@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "meshing/extent.h"
 #include "simulation/krylov.h"
 
 namespace hookeye {
@@ -129,9 +130,7 @@ double relative_error(const Problem& problem, const NewtonState& state, const Ve
   const VectorXd f = problem.external(q, s);
   double largest = f.cwiseAbs().maxCoeff();
   for (int u : problem.loading.prescribed) largest = std::max(largest, std::abs(R[u]));
-  const double size =
-      (problem.mesh.X.rowwise().maxCoeff() - problem.mesh.X.rowwise().minCoeff()).norm();
-  largest = std::max(largest, 1e-5 * size * state.stiffest);
+  largest = std::max(largest, 1e-5 * extent(problem.mesh.X) * state.stiffest);
   double error = 0;
   for (int u : state.free) {
     if (!std::isfinite(R[u])) return std::numeric_limits<double>::infinity();

@@ -31,6 +31,7 @@ struct Telling {
   std::string name;
   Frame frame = {};
   Order order = {};
+  std::string isa = {}, threads = {};  ///< HOOKEYE_ISA; empty: the best, as many as all searches
 };
 
 std::vector<Telling> tellings(const Options& options) {
@@ -43,6 +44,7 @@ std::vector<Telling> tellings(const Options& options) {
   // Effects of history count the examples, whose order stays.
   all.push_back(
       {.name = "reordered", .order = {.nodes = 1, .vertices = 1, .cameras = 2, .regions = 2}});
+  all.push_back({.name = "sse2-one-thread", .isa = "sse2", .threads = "1"});
   std::erase_if(all, [&](const Telling& one) {
     return !options.only.empty() && one.name != "first" &&
            std::find(options.only.begin(), options.only.end(), one.name) == options.only.end();
@@ -57,7 +59,7 @@ int run(const std::string& command) {
 
 /// What `discover --json` ended with, to compare.
 struct Ending {
-  std::string verdict, missing, sentence;
+  std::string verdict, missing = {}, sentence = {};
   double chi_fit = 0.0, chi_validate = 0.0;
 };
 
@@ -67,12 +69,14 @@ std::string words(const std::string& sentence) {
   return std::regex_replace(sentence, number, "#");
 }
 
-Ending search(const Options& options, const fs::path& folder) {
+Ending search(const Options& options, const Telling& telling, const fs::path& folder) {
   const fs::path found = folder / "discover.json";
   if (!fs::exists(found) &&
-      run(fmt::format("'{0}' discover --json '{1}/capture' -o '{1}/run' --threads {2} > '{1}/part' "
-                      "2> '{1}/log' && mv '{1}/part' '{3}'",
-                      options.hookeye, folder.string(), options.threads, found.string())) != 0)
+      run(fmt::format("HOOKEYE_ISA={4} '{0}' discover --json '{1}/capture' -o '{1}/run' --threads "
+                      "{2} > '{1}/part' 2> '{1}/log' && mv '{1}/part' '{3}'",
+                      options.hookeye, folder.string(),
+                      telling.threads.empty() ? options.threads : telling.threads, found.string(),
+                      telling.isa)) != 0)
     return {.verdict = "failed"};
   const json document = json::parse(read_text(found));
   const json& last = document.at("steps").back();
@@ -117,7 +121,7 @@ void one(const Options& options, const std::string& effect, std::string& table) 
     const fs::path told = folder / telling.name;
     if (!fs::exists(told / "capture"))
       write_transformed(source, told / "capture", telling.frame, telling.order);
-    const Ending now = search(options, told);
+    const Ending now = search(options, telling, told);
     if (telling.name == "first") first = now;
     table += row(effect, telling, now, first);
     fmt::print("{}    {}\n", row(effect, telling, now, first), now.sentence);

@@ -1,20 +1,11 @@
 #include <fmt/format.h>
 
 #include "estimation/effects/fibre_forms.h"
+#include "estimation/effects/own_directions.h"
 
 namespace hookeye {
 
 namespace {
-
-const int kDirections = 24;
-
-/// Directions spread over the upper half sphere by the golden angle.
-Vector3d hemisphere_direction(int i) {
-  const double z = (i + 0.5) / kDirections;
-  const double angle = i * EIGEN_PI * (3.0 - std::sqrt(5.0));
-  const double r = std::sqrt(1.0 - z * z);
-  return rounded(Vector3d(r * std::cos(angle), r * std::sin(angle), z), 1.0);
-}
 
 /// E_jj, E_kk and E_jk of the two axes across `axis` with one modulus: W = k/2 (E_jj^2 + E_kk^2 +
 /// 2 E_jk^2), the same in all directions of that plane.
@@ -57,13 +48,13 @@ class Anisotropy final : public Effect {
 
   Ingredients candidates(const Model& model, std::string*) const override {
     Ingredients all;
-    for (int i = 0; i < kDirections; ++i) all.push_back(along(model, hemisphere_direction(i)));
+    const auto lines = own_lines(model.scene->body->mesh);
+    for (const Vector3d& line : lines) all.push_back(along(model, line));
     if (additive_base(model)) {
       for (int axis = 0; axis < 3; ++axis) all.push_back(across(model, axis));
       return all;
     }
-    for (int i = 0; i < kDirections; ++i)
-      all.push_back(pulling_along(model, hemisphere_direction(i)));
+    for (const Vector3d& line : lines) all.push_back(pulling_along(model, line));
     return all;
   }
 
@@ -167,7 +158,7 @@ class Anisotropy final : public Effect {
   std::shared_ptr<const Ingredient> along(const Model& model, const Vector3d& a) const {
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = fmt::format("along {}", vector_text(a, 3));
+    spec.variant = fmt::format("along {}", direction_text(a));
     spec.parameters = {stiffness(model)};
     if (additive_base(model)) return fibre_function(model, a, spec.variant, spec.parameters);
     spec.touches = {.energy = true};
@@ -184,7 +175,7 @@ class Anisotropy final : public Effect {
   std::shared_ptr<const Ingredient> free_around(const Model& model, const Vector3d& a) const {
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = fmt::format("free around {}", vector_text(a, 3));
+    spec.variant = fmt::format("free around {}", direction_text(a));
     spec.parameters = {
         stiffness(model),
         {"anisotropy.angle1", "rad", "first angle of the fibre", 0.0, -3.2, 3.2, 0.2, false},

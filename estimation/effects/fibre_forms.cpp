@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "estimation/effects/own_directions.h"
+
 namespace hookeye {
 
 namespace {
@@ -31,7 +33,7 @@ std::shared_ptr<const Ingredient> pulling_along(const Model& model, const Vector
   };
   IngredientSpec spec;
   spec.name = "anisotropy";
-  spec.variant = fmt::format("{} {}", kPullingAlong, vector_text(a, 3));
+  spec.variant = fmt::format("{} {}", kPullingAlong, direction_text(a));
   spec.parameters = {modulus_of(model, "k", "fibre modulus", 0.0)};
   spec.touches = {.energy = true};
   spec.apply = [term](const VectorXd& v, Model& m) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "estimation/effects/floor_planes.h"
+#include "estimation/effects/own_directions.h"
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
@@ -16,9 +17,13 @@ const double kGaps[] = {0.005, 0.05, 0.15};
 /// Part of the size that the body has to move outward before a plane between the axes is tried,
 /// half of it behind the plane: twenty times the depth over which its force sets in (smoothing).
 constexpr double kLeastTravel = 0.02;
-/// Half a step of the grid of directions [rad], 36 degrees at most: nearer to an axis than that, a
+/// Half a step of the grid of directions [rad], 38 degrees at most: nearer to an axis than that, a
 /// fitted plane is asked whether it is normal to it.
-constexpr double kHalfStep = 0.314;
+constexpr double kHalfStep = 0.335;
+
+/// By how much a side of a body that stands along the frame may lean [rad]: a draft, a taper, the
+/// bumps of a cast.
+constexpr double kLeaning = 0.1;
 
 /// By how much a plane is softer from which a hard one starts (penalty continuation, Fiacco and
 /// McCormick 1968). Where an edge meets a hard plane, chi has a kink over the tilt at which the
@@ -66,6 +71,24 @@ std::vector<double> travels(const Model& model, const Vector3d& direction) {
   return all;
 }
 
+std::vector<double> gaps_at_axes(double size) {
+  std::vector<double> all;
+  for (const double gap : kGaps) all.push_back(gap * size);
+  return all;
+}
+
+/// From the rest body to half-way where each example moves along a direction, but for those that
+/// reach such a plane already.
+std::vector<double> gaps_between_axes(const Model& model, const Vector3d& direction) {
+  const double size = body_size(*model.scene).size;
+  std::vector<double> all;
+  for (const double travel : travels(model, direction)) {
+    if (travel < kLeastTravel * size) break;
+    if (all.empty() || travel <= all.back()) all.push_back(0.5 * travel);
+  }
+  return all;
+}
+
 /// Where the known states press against the plane, in the mean weighted by depth; what is next to
 /// the plane of the rest body's middle, where none does.
 Vector3d pressed(const Model& model, const ScoredPlane& scored) {
@@ -96,31 +119,27 @@ class FloorContact final : public Effect {
   std::string manual() const override {
     return "The deformed body touches a table, a wall or a jaw that was not told. Easily taken "
            "for stiffening or for a misaligned load; it changes only the examples that reach "
-           "the plane. Beside planes normal to the axes, 36 directions between them are tried "
-           "where the deformed body moves outward. Refitted as a cushion of free position and "
-           "stiffness, which between the axes may tilt, and as a hard floor, which stays where it "
-           "explains as much; so does a plane normal to an axis, which may tilt too where it "
-           "leaves more than noise.";
+           "the plane. Beside planes normal to the body's own axes, 44 directions between them are "
+           "tried where the deformed body moves outward. Refitted as a cushion of free position "
+           "and "
+           "stiffness, which may tilt unless it stands normal to an axis of the capture's frame, "
+           "and "
+           "as a hard floor, which stays where it explains as much; so does a plane normal to "
+           "such an axis, which may tilt too where it leaves more than noise.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
     const double size = body_size(*model.scene).size;
     Ingredients all;
-    for (int side = 0; side < 6; ++side)
-      for (double gap : kGaps)
-        all.push_back(soft(model, on_side(side, reach(*model.scene, outward(side)) + gap * size)));
-    if (model.states.empty()) return all;
-    // Half-way to where each example moves, but for those that reach such a plane already.
-    for (const Vector3d& direction : between_axes()) {
-      const Vector3d unit = direction.normalized();
-      double gap = std::numeric_limits<double>::infinity();
-      for (const double travel : travels(model, unit)) {
-        if (travel < kLeastTravel * size) break;
-        if (travel > gap) continue;
-        gap = 0.5 * travel;
-        all.push_back(soft(model, towards(direction, reach(*model.scene, unit) + gap)));
+    const auto lines = own_lines(model.scene->body->mesh);
+    for (size_t i = 0; i < lines.size(); ++i)
+      for (const double sign : {1.0, -1.0}) {
+        const Vector3d out = sign * lines[i] + Vector3d::Zero();  // no -0
+        const double rest = reach(*model.scene, out.normalized());
+        for (const double gap :
+             i < kAxes ? gaps_at_axes(size) : gaps_between_axes(model, out.normalized()))
+          all.push_back(soft(model, plane_at(out, rest + gap, size)));
       }
-    }
     return all;
   }
 
@@ -137,11 +156,14 @@ class FloorContact final : public Effect {
     const auto plane = scored_plane(scored->variant());
     if (!plane) return scored;
     // Tilt is freed where the score asks for it: free at an axis as well, a cushion at the body's
-    // end imitates softening and outruns it.
+    // end imitates softening and outruns it. Frames are laid along tables and walls: what is next
+    // to an axis of the frame starts as normal to it.
     for (int side = 0; side < 6; ++side)
-      if (plane->out == outward(side)) {
-        values = Eigen::Vector2d(plane->position, values[0]);
-        return refitted(model, {false, false, side, plane->out});
+      if (plane->out.dot(outward(side)) > std::cos(kLeaning)) {
+        const double position = pressed(model, *plane).dot(outward(side));
+        values =
+            Eigen::Vector2d(plane->out == outward(side) ? plane->position : position, values[0]);
+        return refitted(model, {false, false, side, outward(side)});
       }
     values = Eigen::Vector4d(plane->position, values[0], 0.0, 0.0);
     const Vector3d out = rounded(plane->out, 1.0);
@@ -224,7 +246,8 @@ class FloorContact final : public Effect {
     const std::string side = form->tilts
                                  ? fmt::format("its side towards {}", vector_text(plane.out))
                                  : fmt::format("its {} side", kSides[form->side]);
-    const std::string place = form->tilts ? ", around " + place_text(plane.through) : "";
+    const std::string place =
+        form->tilts ? ", around " + place_text(plane.through, body_size(*model.scene).size) : "";
     return fmt::format(
         "the body touches a {} on {}, {} {} from where it ends at rest{}{}",
         form->hard ? "plane" : "cushion", side, figure(gap), length, place,

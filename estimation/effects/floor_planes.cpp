@@ -16,35 +16,23 @@ std::string digits(const Vector3d& v) {
   return fmt::format("({:g}, {:g}, {:g})", v[0], v[1], v[2]);
 }
 
-std::vector<Vector3d> between_axes() {
-  const double golden = 0.5 * (1.0 + std::sqrt(5.0));
-  std::vector<Vector3d> all;
-  const auto add = [&](const Vector3d& first) {
-    for (int turn = 0; turn < 3; ++turn)
-      for (int signs = 0; signs < 8; ++signs) {
-        Vector3d d(first[turn], first[(turn + 1) % 3], first[(turn + 2) % 3]);
-        bool twice = false;  // a zero has no sign
-        for (int i = 0; i < 3; ++i)
-          if (signs >> i & 1) twice = twice || d[i] == 0.0, d[i] = -d[i];
-        if (!twice) all.push_back(d);
-      }
-  };
-  add({0.0, 1.0, golden});
-  add({1.0, golden, golden * golden});
-  for (Vector3d& d : all) d = rounded(d.normalized(), 1.0);
-  return all;
-}
-
 ScoredPlane on_side(int side, double position) {
-  position = rounded(position);
   return {outward(side), position,
-          fmt::format("plane at {} side, position {:g}", kSides[side], position)};
+          fmt::format("plane at {} side, position {}", kSides[side], position)};
 }
 
 ScoredPlane towards(const Vector3d& direction, double position) {
-  position = rounded(position);
   return {direction.normalized(), position,
-          fmt::format("plane towards {}, position {:g}", digits(direction), position)};
+          fmt::format("plane towards {}, position {}", digits(direction), position)};
+}
+
+ScoredPlane plane_at(const Vector3d& direction, double position, double size) {
+  // a hundredth of the smallest gap at most, wherever the frame has its origin
+  const int decimals = std::max(0, 5 - static_cast<int>(std::floor(std::log10(size))));
+  position = std::stod(fmt::format("{:.{}f}", position, decimals)) + 0.0;
+  for (int side = 0; side < 6; ++side)
+    if (direction == outward(side)) return on_side(side, position);
+  return towards(direction, position);
 }
 
 std::optional<ScoredPlane> scored_plane(const std::string& variant) {

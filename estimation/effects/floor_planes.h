@@ -24,11 +24,7 @@ struct Plane {
   Vector3d out, through;
 };
 
-/// Directions between the axes: the other 36 of the 42 corners and middles of edges of an
-/// icosahedron that stands on a middle. Any direction is within 21 degrees of one or of an axis.
-std::vector<Vector3d> between_axes();
-
-/// A plane of the scores: normal to an axis ("at +x side"), or to another direction.
+/// A plane of the scores: normal to an axis of the frame ("at +x side"), or to another direction.
 struct ScoredPlane {
   Vector3d out;
   double position;  ///< along `out` [length]
@@ -36,6 +32,8 @@ struct ScoredPlane {
 };
 ScoredPlane on_side(int side, double position);
 ScoredPlane towards(const Vector3d& direction, double position);
+/// Either of them, at a position to digits of the body's size: written, it reads back the same.
+ScoredPlane plane_at(const Vector3d& direction, double position, double size);
 /// Empty: `variant` tells none.
 std::optional<ScoredPlane> scored_plane(const std::string& variant);
 

@@ -235,15 +235,16 @@ std::string graded_sentence(const Model& model, const Ingredient& ingredient,
   if (ingredient.variant() == kBall)
     return fmt::format("a ball {} times as stiff as the rest, of radius {} {} around {}",
                        figure(std::exp(values[0])), figure(values[4]), length,
-                       place_text(values.segment<3>(1)));
+                       place_text(values.segment<3>(1), body_size(*model.scene).size));
   const auto n = numbers_in(ingredient.variant());
   const Vector3d across(n.at(0), n.at(1), n.at(2));
   const auto [first, second] = normal_axes(across);
   const Vector3d normal = rotation_of(values[1] * first + values[2] * second) * across.normalized();
+  const BodySize body = body_size(*model.scene);
   return fmt::format(
       "two layers: {} times as stiff beyond the plane through {} {} across {} as before it",
-      figure(std::exp(values[0])), place_text(body_size(*model.scene).centre + values[3] * normal),
-      length, vector_text(normal));
+      figure(std::exp(values[0])), place_text(body.centre + values[3] * normal, body.size), length,
+      vector_text(normal));
 }
 
 }  // namespace hookeye

@@ -156,7 +156,7 @@ class StiffnessField final : public Effect {
     return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
                        values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
                        figure(place.radius), model.scene->capture.units.length,
-                       place_text(place.centre));
+                       place_text(place.centre, body_size(*model.scene).size));
   }
 
  private:

@@ -139,7 +139,8 @@ class Swelling final : public Effect {
     }
     const Blob place = blob_of(ingredient, values);
     return fmt::format("a place of radius {} {} around {} has {}", figure(place.radius),
-                       model.scene->capture.units.length, place_text(place.centre), change);
+                       model.scene->capture.units.length,
+                       place_text(place.centre, body_size(*model.scene).size), change);
   }
 
  private:

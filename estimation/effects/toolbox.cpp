@@ -11,6 +11,7 @@
 #include <set>
 
 #include "estimation/base_ingredients.h"
+#include "meshing/extent.h"
 
 namespace hookeye {
 
@@ -70,8 +71,9 @@ BodySize body_size(const Scene& scene) {
   BodySize out;
   out.low = X.rowwise().minCoeff();
   out.high = X.rowwise().maxCoeff();
-  out.centre = 0.5 * (out.low + out.high);
-  out.size = (out.high - out.low).norm();
+  const VectorXd volumes = element_volumes(scene.body->mesh);
+  out.centre = element_centres(scene.body->mesh) * volumes / volumes.sum();
+  out.size = extent(X);
   return out;
 }
 
@@ -269,9 +271,8 @@ std::string vector_text(const Vector3d& v, int digits) {
                      v.z() + 0.0, digits);
 }
 
-std::string place_text(const Vector3d& X) {
-  const double most = X.cwiseAbs().maxCoeff();
-  const int whole = most > 0.0 ? static_cast<int>(std::floor(std::log10(most))) : 2;
+std::string place_text(const Vector3d& X, double size) {
+  const int whole = size > 0.0 ? static_cast<int>(std::floor(std::log10(size))) : 2;
   const double step = std::pow(10.0, whole - 2);
   return vector_text(Vector3d((X / step).array().round() * step), std::max(0, 2 - whole));
 }

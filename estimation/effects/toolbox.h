@@ -30,10 +30,11 @@ struct IngredientSpec {
 };
 std::shared_ptr<const Ingredient> make_ingredient(IngredientSpec spec);
 
-/// Bounding box of the body at rest.
+/// The body at rest. Its box is the frame's; all else is the same in every frame.
 struct BodySize {
-  Vector3d low, high, centre;
-  double size = 0.0;  ///< diagonal [length]
+  Vector3d low, high;  ///< bounding box
+  Vector3d centre;     ///< of the volume
+  double size = 0.0;   ///< extent() [length]
 };
 BodySize body_size(const Scene& scene);
 /// Rest centroids of the elements, 3 x m.
@@ -112,8 +113,8 @@ class ElementForces {
 std::vector<double> numbers_in(const std::string& text);
 /// "(0.5, -0.2, -0.8)".
 std::string vector_text(const Vector3d& v, int digits = 2);
-/// "(4.9, -0.2, 38.7)": a place, to 3 digits of its largest coordinate, in whatever unit.
-std::string place_text(const Vector3d& X);
+/// "(4.9, -0.2, 38.7)": a place, to 3 digits of the body's size, in whatever unit and frame.
+std::string place_text(const Vector3d& X, double size);
 /// 3 significant digits.
 std::string figure(double value);
 bool starts_with(const std::string& text, const std::string& start);

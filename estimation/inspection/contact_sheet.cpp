@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "estimation/evaluation.h"
+#include "meshing/extent.h"
 
 namespace hookeye::inspection {
 
@@ -129,7 +130,7 @@ class Canvas {
       if (region.vertices[static_cast<size_t>(v)]) middle += x.col(v), count += 1.0;
     if (count == 0.0) return;
     middle /= count;
-    const double size = (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).norm();
+    const double size = extent(x);
     const Vector2d from = camera_.project(middle),
                    to = camera_.project(middle + 0.25 * size * region.direction.normalized());
     if (!from.allFinite() || !to.allFinite() || (to - from).norm() > 4.0 * picture_.cols) return;

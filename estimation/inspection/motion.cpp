@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimation/evaluation.h"
+#include "meshing/extent.h"
 
 namespace hookeye::inspection {
 
@@ -45,7 +46,7 @@ std::vector<Vector2d> motion_between(const Sight& sight, const Motion& motion,
 std::vector<Vector2d> first_order_motion(const Sight& sight, const Motion& motion,
                                          const Matrix3Xd& u) {
   const Matrix3Xd& rest = sight.scene().body->surface.mesh.X;
-  const double size = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
+  const double size = extent(rest);
   const double largest = u.colwise().norm().maxCoeff();
   if (!(largest > 0.0)) return std::vector<Vector2d>(motion.triangle.size(), Vector2d::Zero());
   const double step = 1e-4 * size / largest;

@@ -136,10 +136,12 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
 }
 
 TEST(Sentences, TellPlacesToThreeDigitsInAnyUnit) {
-  EXPECT_EQ(place_text({4.91, -0.04, 38.73}), "(4.9, 0.0, 38.7)");
-  EXPECT_EQ(place_text({0.00491, -0.00004, 0.03873}), "(0.0049, 0.0000, 0.0387)") << "in metres";
-  EXPECT_EQ(place_text({4912.0, -40.0, 38730.0}), "(4900, 0, 38700)") << "in micrometres";
-  EXPECT_EQ(place_text(Vector3d::Zero()), "(0, 0, 0)");
+  EXPECT_EQ(place_text({4.91, -0.04, 38.73}, 42.0), "(4.9, 0.0, 38.7)");
+  EXPECT_EQ(place_text({0.00491, -0.00004, 0.03873}, 0.042), "(0.0049, 0.0000, 0.0387)")
+      << "in metres";
+  EXPECT_EQ(place_text({4912.0, -40.0, 38730.0}, 42e3), "(4900, 0, 38700)") << "in micrometres";
+  EXPECT_EQ(place_text({304.91, -200.04, 38.73}, 42.0), "(304.9, -200.0, 38.7)") << "moved";
+  EXPECT_EQ(place_text(Vector3d::Zero(), 420.0), "(0, 0, 0)");
 }
 
 /// A plane that stands normal to an axis goes on to one that tilts about where it is pressed, and

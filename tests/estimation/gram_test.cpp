@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <random>
 
 namespace hookeye {
@@ -27,10 +28,26 @@ Columns some_columns() {
 
 TEST(Gram, ASquareRootKeepsTheColumnsOfEveryUnit) {
   const Columns columns = some_columns();
-  const MatrixXd A = square_root(columns.mixed());
+  const MatrixXd A = square_root(columns.mixed(), lengths(columns.mixed()), columns.of);
   const VectorXd back = columns.of.cwiseInverse();
   EXPECT_LT((back.asDiagonal() * A * A.transpose() * back.asDiagonal() - columns.H).norm(),
             1e-10 * columns.H.norm());
+}
+
+/// Columns turned among those of one scale, and in another order.
+TEST(Gram, ASquareRootTurnsWithItsColumns) {
+  const Columns columns = some_columns();
+  const VectorXd scale = (VectorXd(5) << 3.0, 3.0, 3.0, 7.0, 0.5).finished();
+  const VectorXd towards = (VectorXd(5) << 1.0, -2.0, 0.3, 0.7, 5.0).finished();
+  MatrixXd turn = MatrixXd::Identity(5, 5);
+  turn.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+  turn.row(3).swap(turn.row(4));
+  const MatrixXd first = square_root(columns.H, scale, towards);
+  const VectorXd scale_turned = (VectorXd(5) << 3.0, 3.0, 3.0, 0.5, 7.0).finished();
+  const MatrixXd turned =
+      square_root(turn * columns.H * turn.transpose(), scale_turned, turn * towards);
+  EXPECT_LT((turned - turn * first).norm(), 1e-9 * first.norm());
 }
 
 TEST(Gram, APseudoInverseInvertsTheColumnsOfEveryUnit) {
@@ -46,7 +63,7 @@ TEST(Gram, ColumnsThatSayNothingStayOut) {
   H(0, 0) = 4.0;
   EXPECT_EQ(pseudo_inverse(H).row(1).norm() + pseudo_inverse(H).col(2).norm(), 0.0);
   EXPECT_DOUBLE_EQ(pseudo_inverse(H)(0, 0), 0.25);
-  EXPECT_EQ(square_root(H).row(2).norm(), 0.0);
+  EXPECT_EQ(square_root(H, lengths(H), VectorXd::Ones(3)).row(2).norm(), 0.0);
   EXPECT_EQ(pseudo_inverse(MatrixXd(0, 0)).size(), 0);
 }
 
@@ -62,7 +79,7 @@ TEST(Gram, ColumnsThatSayNothingStayOutBesideManyThatDo) {
     const MatrixXd H = some.transpose() * some, inverse = pseudo_inverse(H);
     EXPECT_EQ(inverse.row(silent).norm() + inverse.col(silent).norm(), 0.0) << silent;
     EXPECT_LT((H * inverse * H - H).norm(), 1e-10 * H.norm()) << silent;
-    EXPECT_EQ(square_root(H).row(silent).norm(), 0.0) << silent;
+    EXPECT_EQ(square_root(H, lengths(H), VectorXd::Ones(16)).row(silent).norm(), 0.0) << silent;
   }
 }
 

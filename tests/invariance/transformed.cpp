@@ -80,7 +80,7 @@ std::vector<int> write_surface(const SurfaceMesh& told, const fs::path& file, co
   for (const int t : triangles) {
     const int first = seed ? static_cast<int>(random() % 3) : 0;
     std::array<int, 3> corners;
-    std::array<Vector2d, 3> uv;
+    std::array<Vector2d, 3> uv = {Vector2d::Zero(), Vector2d::Zero(), Vector2d::Zero()};
     for (int k = 0; k < 3; ++k) {
       corners[k] = vertex_at[told.triangles[t][(first + k) % 3]];
       if (!told.uv.empty()) uv[k] = told.uv[t][(first + k) % 3];
