@@ -23,15 +23,19 @@ void die_quietly() {
   dup2(nowhere, 2);
 }
 
-bool ended_well(int process) {
+Ended await(int process) {
   int status = -1;
-  while (process > 0 && waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  rusage used{};
+  while (process > 0 && wait4(process, &status, 0, &used) < 0 && errno == EINTR) {
   }
   // Ctrl-C goes to both processes; the parent's handler only took note of it.
-  if (process > 0 && WIFSIGNALED(status) &&
-      (WTERMSIG(status) == SIGINT || WTERMSIG(status) == SIGTERM))
-    throw Interrupted();
-  return process > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const int signal = process > 0 && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGINT || signal == SIGTERM) throw Interrupted();
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return {process > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0,
+          signal != SIGXCPU && signal != SIGKILL, seconds(used.ru_utime) + seconds(used.ru_stime)};
 }
 
 }  // namespace hookeye::detail

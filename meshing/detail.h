@@ -57,13 +57,27 @@ struct TetGenTask {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< while it is meshed: other rounding
   double most_points = 0.0, seconds = 0.0;  ///< where quality cannot be had it may go on for ever
 };
-/// Tetrahedra of order 1 within a closed surface, boundary_parent being its triangles. Nothing
-/// where TetGen gives up (tetgen.cpp).
-std::optional<TetMesh> tetrahedra(const SurfaceMesh& skin, const TetGenTask& task);
+struct TetGenAnswer {
+  std::optional<TetMesh> mesh;  ///< none where TetGen gives up
+  double seconds = 0.0;         ///< of computing that it took
+  bool in_time = true;          ///< false: it was ended
+};
+/// Tetrahedra of order 1 within a closed surface, boundary_parent being its triangles (tetgen.cpp).
+TetGenAnswer tetrahedra(const SurfaceMesh& skin, const TetGenTask& task);
+
+/// fill(), whose attempts take `seconds` of computing together.
+TetMesh fill_within(const SurfaceMesh& surface, const FillOptions& options, const Place& place,
+                    double seconds);
+
+/// Where a surface is hardest to fill, in words: where two of its parts that share no corner come
+/// nearest to each other, where it folds onto itself, or its thinnest triangle, whichever is
+/// smallest (tightest.cpp).
+std::string tightest(const SurfaceMesh& surface);
 
 // shells.cpp
 /// Six times the enclosed volume, negative inside out; as exact far from the origin.
 double six_volume(const SurfaceMesh& surface);
+double area(const SurfaceMesh& surface);
 /// Triangles that hang together.
 struct Shell {
   std::vector<int> triangles;
@@ -88,9 +102,13 @@ InputError no_body(const SurfaceMesh& surface, const SurfaceFaults& faults, cons
 // child.cpp: libraries that may end the process run in one of their own.
 /// In the child: no core file, no handlers of the parent, nothing printed, no life without it.
 void die_quietly();
-/// In the parent: waits. False: ended by a signal or with a fault, or there is no such process.
-/// Throws Interrupted where Ctrl-C ended it.
-bool ended_well(int process);
+struct Ended {
+  bool well = false;     ///< not by a signal, nor with a fault
+  bool in_time = true;   ///< false: by its limit of the processor's time
+  double seconds = 0.0;  ///< of computing
+};
+/// In the parent: waits. Throws Interrupted where Ctrl-C ended the child.
+Ended await(int process);
 
 /// Jacobian determinant of an element at barycentric coordinates (6 x volume when straight).
 double jacobian(const TetMesh& mesh, int element, const Eigen::Vector4d& barycentric);

@@ -15,15 +15,6 @@ namespace {
 using detail::Subdivided;
 using detail::TetGenTask;
 
-double area(const SurfaceMesh& s) {
-  double sum = 0.0;
-  for (const auto& t : s.triangles) {
-    const Vector3d a = s.X.col(t[0]), b = s.X.col(t[1]), c = s.X.col(t[2]);
-    sum += 0.5 * (b - a).cross(c - a).norm();
-  }
-  return sum;
-}
-
 /// Whether the tetrahedra have volume, all of them, and together that of the skin.
 bool fills(const TetMesh& mesh, const SurfaceMesh& skin) {
   double sum = 0.0;
@@ -45,21 +36,46 @@ double expected(const SurfaceMesh& surface, double edge) {
          5.0 * static_cast<double>(surface.triangles.size());
 }
 
-/// TetGen gives up on about one body in a hundred because of the way in which points happen to be
-/// rounded; turned a little it takes the same one.
-std::optional<TetMesh> filled(const Subdivided& skin, TetGenTask task, bool keep_surface) {
-  if (skin.mesh.triangles.empty()) return {};
-  task.keep_surface = keep_surface;
-  for (const auto& [angle, about] :
-       {std::pair{0.0, Vector3d(1, 0, 0)}, {0.7, Vector3d(1, 2, 3)}, {1.1, Vector3d(-3, 1, 2)}}) {
-    task.turn = Eigen::AngleAxisd(angle, about.normalized()).toRotationMatrix();
-    auto mesh = detail::tetrahedra(skin.mesh, task);
-    if (!mesh || !fills(*mesh, skin.mesh)) continue;
-    for (int& parent : mesh->boundary_parent) parent = skin.parent[static_cast<size_t>(parent)];
-    return mesh;
+/// The attempts at one body. TetGen gives up on about one in a hundred because of the way in which
+/// points happen to be rounded; turned a little it takes the same one.
+class Attempts {
+ public:
+  Attempts(TetGenTask task, double seconds) : task_(std::move(task)), seconds_(seconds) {}
+
+  std::optional<TetMesh> at(const Subdivided& skin, bool keep_surface) {
+    if (skin.mesh.triangles.empty()) return {};
+    task_.keep_surface = keep_surface;
+    for (const auto& [angle, about] :
+         {std::pair{0.0, Vector3d(1, 0, 0)}, {0.7, Vector3d(1, 2, 3)}, {1.1, Vector3d(-3, 1, 2)}}) {
+      if (count_ > 0 && seconds_ - used_ < kShortest) return {};
+      task_.turn = Eigen::AngleAxisd(angle, about.normalized()).toRotationMatrix();
+      task_.seconds = std::min(seconds_ - used_, kLargestShare * seconds_);
+      detail::TetGenAnswer answer = detail::tetrahedra(skin.mesh, task_);
+      ++count_;
+      used_ += answer.seconds;
+      // What refines without end does so turned as well.
+      if (!answer.in_time) return {};
+      if (!answer.mesh || !fills(*answer.mesh, skin.mesh)) continue;
+      for (int& parent : answer.mesh->boundary_parent)
+        parent = skin.parent[static_cast<size_t>(parent)];
+      return std::move(answer.mesh);
+    }
+    return {};
   }
-  return {};
-}
+
+  /// "in 5 attempts, 3.1 s of computing (limit 120 s)".
+  std::string told() const {
+    return fmt::format("in {} attempt{}, {:.2g} s of computing (limit {:.3g} s)", count_,
+                       count_ == 1 ? "" : "s", used_, seconds_);
+  }
+
+ private:
+  static constexpr double kLargestShare = 0.3;  ///< of the time, for one attempt
+  static constexpr double kShortest = 1.0;      ///< [s]: limits of a process are whole seconds
+  TetGenTask task_;
+  double seconds_, used_ = 0.0;  ///< of computing, together
+  int count_ = 0;
+};
 
 /// Beyond that a factorization takes tens of GB.
 constexpr double kMostTetrahedra = 1e6;
@@ -74,9 +90,19 @@ void refuse_too_fine(const SurfaceMesh& surface, double edge, const Place& place
       fmt::format("an edge of at least {:.2g}", 1.05 * edge * std::cbrt(count / kMostTetrahedra)));
 }
 
+/// What the attempts may take together [s of computing]: most bodies take less than one.
+constexpr double kSeconds = 120.0, kSecondsEach = 1e-4;  ///< the second for each tetrahedron
+
 }  // namespace
 
 TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place) {
+  const double edge = options.edge > 0 ? options.edge : detail::diagonal(surface.X) / 12.0;
+  const double count = surface.triangles.empty() ? 0.0 : expected(surface, edge);
+  return detail::fill_within(surface, options, place, kSeconds + kSecondsEach * count);
+}
+
+TetMesh detail::fill_within(const SurfaceMesh& surface, const FillOptions& options,
+                            const Place& place, double seconds) {
   if (surface.triangles.empty()) {
     throw InputError(place, "the surface has no triangles", "a closed surface");
   }
@@ -84,41 +110,40 @@ TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place
   const bool crosses = !faults.self_intersections.empty();
   SurfaceFaults others = faults;
   others.self_intersections.clear();
-  if (!others.clean()) throw detail::no_body(surface, others, place);
-  detail::refuse_shells_within(surface, place);
-  const double edge = options.edge > 0 ? options.edge : detail::diagonal(surface.X) / 12.0;
+  if (!others.clean()) throw no_body(surface, others, place);
+  refuse_shells_within(surface, place);
+  const double edge = options.edge > 0 ? options.edge : diagonal(surface.X) / 12.0;
   refuse_too_fine(surface, edge, place);
   TetGenTask task;
-  task.holes = detail::cavities(surface);
+  task.holes = cavities(surface);
   task.radius_edge_ratio = options.radius_edge_ratio;
   task.min_dihedral_deg = options.min_dihedral_deg;
   // Bounded by -a, volumes come out at about two thirds of the bound: hence 1.5 times the volume of
   // the regular tetrahedron.
   task.volume = 1.5 * edge * edge * edge / (6.0 * std::sqrt(2.0));
-  const double count = expected(surface, edge);
-  task.most_points = 1e5 + count;
-  task.seconds = 30.0 + 2e-4 * count;
+  task.most_points = 1e5 + expected(surface, edge);
   // TetGen refines a boundary by bisecting every segment of it until quality is met, which makes
   // five to ten times more elements than asked for. So the surface is cut to the target edge here
   // and kept (-Y). Edges come out at 0.7 to 1.4 of the target, their mean near it.
-  const double thickness = detail::six_volume(surface) / 3.0 / area(surface);
+  const double thickness = six_volume(surface) / 3.0 / area(surface);
   double tolerance = std::min(0.002 * edge, 0.01 * thickness);
-  if (crosses) tolerance = std::max(tolerance, detail::rounding(surface));
-  Subdivided skin = detail::skin_of(surface, 1.4 * edge, tolerance), plain;
+  if (crosses) tolerance = std::max(tolerance, rounding(surface));
+  Subdivided skin = skin_of(surface, 1.4 * edge, tolerance), plain;
   const bool sound = inspect(skin.mesh).clean();
-  if (crosses && !sound) throw detail::no_body(surface, faults, place);
+  if (crosses && !sound) throw no_body(surface, faults, place);
   if (!sound) skin = {};
-  if (!crosses) plain = detail::subdivide(surface, 1.4 * edge);
+  if (!crosses) plain = subdivide(surface, 1.4 * edge);
+  Attempts attempts(task, seconds);
   for (const bool keep_surface : {true, false}) {
     for (const Subdivided* one : {&skin, &plain}) {
-      if (auto mesh = filled(*one, task, keep_surface)) return with_order(*mesh, options.order);
+      if (auto mesh = attempts.at(*one, keep_surface)) return with_order(*mesh, options.order);
     }
   }
-  throw InputError(
-      place,
-      "the surface could not be filled with tetrahedra: TetGen gave up, though no open "
-      "edge or self-intersection was found",
-      "a surface without slivers");
+  throw InputError(place,
+                   fmt::format("TetGen could not fill the surface with tetrahedra {}; no hole and "
+                               "no self-intersection was found. It is tightest {}",
+                               attempts.told(), tightest(sound ? skin.mesh : surface)),
+                   "parts of a surface that are clearly apart or joined, and no slivers");
 }
 
 }  // namespace hookeye

@@ -74,6 +74,19 @@ std::vector<int> find_inverted(const SurfaceMesh& s, const Edges& edges) {
   return inverted;
 }
 
+/// The first of the inverted triangles beside one that is not, and a corner on the edge between
+/// them: those around it may be turned as well.
+std::pair<int, int> first_turned(const SurfaceMesh& s, const std::vector<int>& inverted) {
+  const Edges edges = edges_of(s, {});
+  for (const int t : inverted)
+    for (size_t k = 0; k < 3; ++k) {
+      const int a = s.triangles[t][k], b = s.triangles[t][(k + 1) % 3];
+      const std::vector<EdgeUse>& uses = edges.at({std::min(a, b), std::max(a, b)});
+      if (uses.size() == 2 && uses[0].forward == uses[1].forward) return {t, a};
+    }
+  return {inverted[0], s.triangles[inverted[0]][0]};
+}
+
 /// Segment pq against triangle abc, endpoints and edges included; coplanar segments do not count.
 bool pierces(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vector3d& b,
              const Vector3d& c) {
@@ -180,8 +193,9 @@ std::string SurfaceFaults::describe(const SurfaceMesh& s) const {
                        more(crowded_edges.size(), "such edges"));
   }
   if (!inverted.empty()) {
-    return fmt::format("triangle {} at {} is turned against its neighbours{}", inverted[0],
-                       at(s.triangles[inverted[0]][0]), more(inverted.size(), "such triangles"));
+    const auto [triangle, corner] = first_turned(s, inverted);
+    return fmt::format("triangle {} at {} is turned against its neighbours{}", triangle, at(corner),
+                       more(inverted.size(), "such triangles"));
   }
   if (!self_intersections.empty()) {
     const auto [a, b] = self_intersections[0];

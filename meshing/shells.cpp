@@ -25,6 +25,15 @@ double six_volume(const SurfaceMesh& s) {
   return sum;
 }
 
+double area(const SurfaceMesh& s) {
+  double sum = 0.0;
+  for (const auto& t : s.triangles) {
+    const Vector3d a = s.X.col(t[0]), b = s.X.col(t[1]), c = s.X.col(t[2]);
+    sum += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return sum;
+}
+
 namespace {
 
 /// Smallest number of a vertex of the same shell, for every vertex.

@@ -121,7 +121,8 @@ bool receive(int pipe, std::vector<T>& data) {
 /// In the child: mesh, send, end.
 [[noreturn]] void child(int pipe, std::string switches, tetgenio& in, double seconds) {
   die_quietly();
-  const rlimit time{static_cast<rlim_t>(seconds), static_cast<rlim_t>(seconds) + 1};
+  const auto whole = static_cast<rlim_t>(std::max(1.0, std::ceil(seconds)));
+  const rlimit time{whole, whole + 1};
   setrlimit(RLIMIT_CPU, &time);
   tetgenio out;
   try {
@@ -139,11 +140,11 @@ bool receive(int pipe, std::vector<T>& data) {
 }
 
 /// One run of TetGen, in a process of its own: when it gives up it frees its memory, throws, and
-/// frees it again while the exception passes, which ends the process. False: it gave up, or had not
-/// ended after so many seconds of the processor.
-bool run_tetgen(const std::string& switches, tetgenio& in, double seconds, Filled& out) {
+/// frees it again while the exception passes, which ends the process. Not well: it gave up, or had
+/// not ended after so many seconds of the processor.
+Ended run_tetgen(const std::string& switches, tetgenio& in, double seconds, Filled& out) {
   int ends[2];
-  if (pipe(ends) != 0) return false;
+  if (pipe(ends) != 0) return {};
   const pid_t process = fork();
   if (process == 0) {
     close(ends[0]);
@@ -153,7 +154,9 @@ bool run_tetgen(const std::string& switches, tetgenio& in, double seconds, Fille
   const bool whole = process > 0 && receive(ends[0], out.points) && receive(ends[0], out.corners) &&
                      receive(ends[0], out.triangles) && receive(ends[0], out.markers);
   close(ends[0]);
-  return ended_well(process) && whole;
+  Ended ended = await(process);
+  ended.well = ended.well && whole;
+  return ended;
 }
 
 /// TetGen's points begin with those of the skin, which keep their places to the last bit.
@@ -216,7 +219,7 @@ bool name_boundary(TetMesh& mesh, const Filled& out) {
 
 }  // namespace
 
-std::optional<TetMesh> tetrahedra(const SurfaceMesh& skin, const TetGenTask& task) {
+TetGenAnswer tetrahedra(const SurfaceMesh& skin, const TetGenTask& task) {
   const UnitFrame frame(skin.X, task.turn);
   tetgenio in;
   hand_over(skin, frame, in);
@@ -228,12 +231,15 @@ std::optional<TetMesh> tetrahedra(const SurfaceMesh& skin, const TetGenTask& tas
       "p{}q{:.3f}/{:.3f}a{:.17g}S{:.0f}Q", task.keep_surface ? "Y" : "", task.radius_edge_ratio,
       task.min_dihedral_deg, task.volume * std::pow(frame.length_in(1.0), 3), task.most_points);
   Filled out;
-  if (!run_tetgen(switches, in, task.seconds, out)) return {};
+  const Ended ended = run_tetgen(switches, in, task.seconds, out);
+  TetGenAnswer answer{{}, ended.seconds, ended.in_time};
+  if (!ended.well) return answer;
   TetMesh mesh = taken_back(out, frame, skin);
-  if (!name_boundary(mesh, out)) return {};
+  if (!name_boundary(mesh, out)) return answer;
   drop_unused(mesh);
   find_boundary(mesh);
-  return mesh;
+  answer.mesh = std::move(mesh);
+  return answer;
 }
 
 }  // namespace hookeye::detail

@@ -144,6 +144,33 @@ TEST(Inspect, HoleIsNamedWithItsPlaceAndRefused) {
   EXPECT_THAT(refusal([&] { mend(s, kPlace); }), HasSubstr("capture.yaml:5:3"));
 }
 
+TEST(Inspect, APatchThatIsTurnedIsPlacedAtItsRim) {
+  SurfaceMesh s = box_surface({3, 2, 1}, 4);
+  s.uv.clear();
+  // All of the bottom but its rim; the first of them lies inside the patch.
+  std::vector<std::array<int, 3>> inside, rest;
+  for (const auto& t : s.triangles) {
+    bool within = true;
+    for (const int v : t) within = within && s.X(2, v) == 0.0 && s.X(0, v) < 3.0 && s.X(1, v) < 2.0;
+    (within ? inside : rest).push_back(t);
+  }
+  std::ranges::stable_sort(inside, {}, [&](const auto& t) {
+    return (s.X.col(t[0]) + s.X.col(t[1]) + s.X.col(t[2]) - 3 * Vector3d(1.1, 0.7, 0)).norm();
+  });
+  for (auto& t : inside) std::swap(t[0], t[1]);
+  s.triangles = inside;
+  s.triangles.insert(s.triangles.end(), rest.begin(), rest.end());
+  const SurfaceFaults faults = inspect(s);
+  ASSERT_EQ(faults.inverted.size(), inside.size());
+  const std::string told = faults.describe(s);
+  Vector3d at;
+  ASSERT_EQ(std::sscanf(told.substr(told.find('(')).c_str(), "(%lf, %lf, %lf)", &at.x(), &at.y(),
+                        &at.z()),
+            3)
+      << told;
+  EXPECT_TRUE(at.x() == 0.0 || at.y() == 0.0 || at.x() == 2.25 || at.y() == 1.5) << told;
+}
+
 TEST(Inspect, InsideOutIsMended) {
   SurfaceMesh s = box_surface({3, 2, 1}, 2);
   const SurfaceMesh right = s;

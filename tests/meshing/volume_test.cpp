@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <Eigen/Dense>
 
 #include "meshing/body.h"
+#include "meshing/detail.h"
 #include "shapes.h"
 #include "support/shared_data.h"
 
@@ -12,6 +14,7 @@ namespace {
 using test::box_surface;
 using test::refusal;
 using test::Scratch;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const Place kPlace{"capture.yaml", 5, 3};
@@ -109,6 +112,37 @@ TEST(Fill, WhatTetGenCannotMeshIsRefusedNotACrash) {
   SurfaceMesh s = box_surface({3, 2, 1}, 1);
   s.X.row(2) *= 1e-13;  // a body without thickness
   EXPECT_THAT(refusal([&] { fill(s, {}, kPlace); }), HasSubstr("capture.yaml:5:3"));
+}
+
+/// 400,000 tetrahedra take TetGen several seconds.
+TEST(Fill, AllAttemptsTogetherEndInTime) {
+  const SurfaceMesh s = box_surface({60, 40, 20}, 1);
+  FillOptions options;
+  options.edge = 1.0;
+  const auto computed = [] {
+    rusage children{};
+    getrusage(RUSAGE_CHILDREN, &children);
+    return static_cast<double>(children.ru_utime.tv_sec + children.ru_stime.tv_sec);
+  };
+  const double before = computed();
+  EXPECT_THAT(refusal([&] { detail::fill_within(s, options, kPlace, 1.0); }),
+              AllOf(HasSubstr("could not fill the surface with tetrahedra in 1 attempt"),
+                    HasSubstr("(limit 1 s)"), HasSubstr("It is tightest")));
+  EXPECT_LE(computed() - before, 3.0);
+}
+
+TEST(Fill, TheTightestPlaceIsNamed) {
+  // A fin of two sides a millionth apart on a box, a sliver, and a fold.
+  SurfaceMesh s = box_surface({3, 2, 1}, 2);
+  EXPECT_THAT(detail::tightest(s), HasSubstr("at "));
+  SurfaceMesh near = box_surface({3, 2, 1}, 2);
+  near.X.colwise() += Vector3d(0, 0, 1 + 1e-6);
+  const int n = static_cast<int>(s.X.cols());
+  s.X.conservativeResize(3, 2 * n);
+  s.X.rightCols(n) = near.X;
+  for (const auto& [a, b, c] : near.triangles) s.triangles.push_back({n + a, n + b, n + c});
+  EXPECT_THAT(detail::tightest(s),
+              AllOf(HasSubstr(", 1)"), HasSubstr("two parts pass at a distance of 1e-06")));
 }
 
 TEST(Fill, SameInputSameMesh) {
