@@ -10,7 +10,7 @@ set(below_render capture_io meshing)
 set(below_estimation capture_io meshing simulation render)
 set(below_app capture_io meshing simulation render estimation)
 # First part of the header's path, as a regular expression.
-set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh "vtk[A-Z][A-Za-z]*" embree3 ceres httplib
+set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL "vtk[A-Z][A-Za-z]*" embree3 ceres httplib
     boost xxhash)
 
 set(faults "")

@@ -22,6 +22,7 @@ find_library(METIS_LIBRARY metis REQUIRED)
 find_library(TETGEN_LIBRARY NAMES tet tetgen REQUIRED)
 find_library(TINYOBJ_LIBRARY tinyobjloader_double REQUIRED)
 find_library(GMSH_LIBRARY gmsh REQUIRED)
+find_package(CGAL QUIET)  # without it `hookeye mesh --repair` says so
 find_library(OPENBLAS_LIBRARY openblas)
 if(NOT OPENBLAS_LIBRARY)
   message(WARNING "OpenBLAS is not there: factorizations will be 4-8 times slower")

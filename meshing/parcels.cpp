@@ -75,4 +75,15 @@ RawVolume unpack_volume(Unpacker& from) {
   return volume;
 }
 
+void pack(Packer& to, const SurfaceMesh& surface) { to.put(surface.X).put(surface.triangles); }
+
+SurfaceMesh unpack_surface(Unpacker& from) {
+  SurfaceMesh surface;
+  from.get(surface.X);
+  from.get(surface.triangles);
+  for (const auto& corners : surface.triangles)
+    for (const int i : corners) demand(i >= 0 && i < surface.X.cols());
+  return surface;
+}
+
 }  // namespace hookeye::detail

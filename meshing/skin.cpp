@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "meshing/soup.h"
 #include "meshing/triangle_tree.h"
 
 namespace hookeye::detail {
@@ -230,22 +231,6 @@ class Mending {
   std::vector<bool> alive_;
 };
 
-/// Vertices of no triangle go: the mesher would put nodes there.
-void drop_unused(Subdivided& skin) {
-  std::vector<int> fresh(skin.mesh.X.cols(), -1);
-  for (const Triangle& t : skin.mesh.triangles)
-    for (const int v : t) fresh[v] = 0;
-  int kept = 0;
-  for (int v = 0; v < static_cast<int>(fresh.size()); ++v) {
-    if (fresh[v] < 0) continue;
-    skin.mesh.X.col(kept) = skin.mesh.X.col(v).eval();
-    fresh[v] = kept++;
-  }
-  skin.mesh.X.conservativeResize(3, kept);
-  for (Triangle& t : skin.mesh.triangles)
-    for (int& v : t) v = fresh[v];
-}
-
 }  // namespace
 
 Subdivided skin_of(const SurfaceMesh& surface, double longest, double tolerance) {
@@ -259,7 +244,7 @@ Subdivided skin_of(const SurfaceMesh& surface, double longest, double tolerance)
   do {
     if (round++ < kRounds) Mending(skin, tolerance, longest).run();
   } while (!bisect(skin, longest).empty());
-  drop_unused(skin);
+  drop_unused(skin.mesh);  // the mesher would put nodes there
   return skin;
 }
 

@@ -5,6 +5,7 @@
 #include "app/commands/describe.h"
 #include "app/validators.h"
 #include "capture_io/scope.h"
+#include "meshing/repair.h"
 #include "meshing/surface_mesh.h"
 #include "meshing/tet_mesh.h"
 
@@ -14,38 +15,81 @@ namespace {
 struct MeshOptions {
   std::string surface, body;
   FillOptions fill;
+  bool repair = false;
+  double tolerance = 0.0;  ///< of the repair
 };
 
-void run_mesh(const MeshOptions& options, Session& session) {
-  const Scope scope("surface " + options.surface);
+void refuse_unless_writable(const MeshOptions& options) {
   const std::filesystem::path out = options.body;
-  if (out.extension() != ".vtu")
-    throw InputError({options.body}, "a body is written as .vtu",
-                     "-o " + std::filesystem::path(out).replace_extension(".vtu").string());
+  if (out.extension() == ".vtu" || (options.repair && out.extension() == ".obj")) return;
+  throw InputError({options.body},
+                   options.repair ? "a body is written as .vtu, a repaired surface as .obj"
+                                  : "a body is written as .vtu",
+                   "-o " + std::filesystem::path(out).replace_extension(".vtu").string());
+}
+
+/// The surface, mended by as little as it takes or repaired; what was done is told.
+SurfaceMesh body_surface(const MeshOptions& options, Session& session) {
   const Place place{options.surface};
   const SurfaceMesh surface = read_surface(options.surface);
-  const MendedSurface mended = mend(surface, place);
-  const TetMesh mesh = fill(mended.surface, options.fill, place);
-  if (out.has_parent_path()) std::filesystem::create_directories(out.parent_path());
-  write_vtu(out, mesh, {});
-
   auto& document = session.document;
-  document = {{"hookeye", 1}, {"command", "mesh"}, {"surface", options.surface}};
-  document["body"] = out.string();
   document["triangles"] = surface.triangles.size();
-  document["said"] = mended.said;
-  document["asked"] = {{"min_dihedral_deg", options.fill.min_dihedral_deg},
-                       {"radius_edge_ratio", options.fill.radius_edge_ratio}};
-  document["quality"] = describe_mesh(mesh);
-  for (const auto& said : mended.said) session.warn(said);
+  if (!options.repair) {
+    const MendedSurface mended = mend(surface, place);
+    document["said"] = mended.said;
+    for (const auto& said : mended.said) session.warn(said);
+    session.say("{}: {} triangles\n", options.surface, surface.triangles.size());
+    return mended.surface;
+  }
+  const RepairedSurface repaired = repair(surface, {options.tolerance, options.fill.edge}, place);
+  document["said"] = repaired.said;
+  document["moved"] = repaired.moved;
   session.say("{}: {} triangles\n", options.surface, surface.triangles.size());
+  for (const auto& said : repaired.said) session.say("  {}\n", said);
+  if (repaired.said.empty()) session.say("  nothing was wrong with the surface\n");
+  session.say("  {} triangles now, at most {:.2g} from where they were\n",
+              repaired.surface.triangles.size(), repaired.moved);
+  return repaired.surface;
+}
+
+void tell_body(const TetMesh& mesh, const MeshOptions& options, Session& session) {
+  session.document["asked"] = {{"min_dihedral_deg", options.fill.min_dihedral_deg},
+                               {"radius_edge_ratio", options.fill.radius_edge_ratio}};
+  session.document["quality"] = describe_mesh(mesh);
   session.say("{}", mesh_lines(mesh));
-  if (const double reached = quality(mesh).min_dihedral_deg;
-      reached < options.fill.min_dihedral_deg)
+  const MeshQuality reached = quality(mesh);
+  if (reached.min_dihedral_deg < options.fill.min_dihedral_deg)
     session.say(
         "  the mesher was asked for angles of {:g} degrees and more (--min-angle) and reached "
         "{:.1f}\n",
-        options.fill.min_dihedral_deg, reached);
+        options.fill.min_dihedral_deg, reached.min_dihedral_deg);
+  constexpr double kFlat = 0.05;  // docs/meshing.md
+  if (reached.min_radius_ratio < kFlat && !(options.repair && options.fill.edge > 0.0))
+    session.say(
+        "  narrow triangles of the surface make flat tetrahedra: --repair --edge {:.2g} remeshes "
+        "it first\n",
+        reached.mean_edge);
+}
+
+void run_mesh(const MeshOptions& options, Session& session) {
+  const Scope scope("surface " + options.surface);
+  refuse_unless_writable(options);
+  const std::filesystem::path out = options.body;
+  session.document = {{"hookeye", 1}, {"command", "mesh"}, {"surface", options.surface}};
+  session.document[out.extension() == ".obj" ? "repaired" : "body"] = out.string();
+  const SurfaceMesh surface = body_surface(options, session);
+  const auto make_room = [&] {
+    if (out.has_parent_path()) std::filesystem::create_directories(out.parent_path());
+  };
+  if (out.extension() == ".obj") {
+    make_room();
+    write_surface_obj(out, surface);
+  } else {
+    const TetMesh mesh = fill(surface, options.fill, {options.surface});
+    make_room();
+    write_vtu(out, mesh, {});
+    tell_body(mesh, options, session);
+  }
   session.say("written to {}\n", out.string());
 }
 
@@ -56,7 +100,10 @@ void add_mesh(CLI::App& app, CommandBody& chosen) {
   const auto options = std::make_shared<MeshOptions>();
   command->add_option("SURFACE", options->surface, "Closed triangle surface: obj, ply, stl")
       ->required();
-  command->add_option("-o,--out", options->body, "The body to write: BODY.vtu")->required();
+  command
+      ->add_option("-o,--out", options->body,
+                   "The body to write: BODY.vtu; with --repair also the surface: SURFACE.obj")
+      ->required();
   command->add_option("--edge", options->fill.edge, "Target edge (default: diagonal / 12)")
       ->check(above_zero());
   command->add_option("--order", options->fill.order, "Order of the tetrahedra (default: 2)")
@@ -70,6 +117,14 @@ void add_mesh(CLI::App& app, CommandBody& chosen) {
       ->add_option("--radius-edge", options->fill.radius_edge_ratio,
                    "Largest circumradius over shortest edge to ask for (default: 1.4)")
       ->check(CLI::Range(1.2, 10.0));
+  CLI::Option* repair = command->add_flag(
+      "--repair", options->repair,
+      "Mend what is broken first, and remesh the surface to --edge where that is given");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Width of gaps that --repair closes (default: a ten-thousandth of the diagonal)")
+      ->check(above_zero())
+      ->needs(repair);
   command->callback([&chosen, options] {
     chosen = [options](Session& session) { run_mesh(*options, session); };
   });

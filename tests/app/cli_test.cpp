@@ -189,6 +189,40 @@ TEST_F(Cli, MeshFillsASurfaceThatSimulateCanUse) {
   EXPECT_EQ(hookeye("mesh cube.obj -o body.txt").status, 2);
 }
 
+TEST_F(Cli, MeshRepairsSaysWhatItDidAndWritesSurfaceOrBody) {
+  write_cube("{z: 1}");
+  if (!fs::exists(fs::path(HOOKEYE_PROGRAM).parent_path().parent_path() / "libexec/hookeye/repair"))
+    GTEST_SKIP() << "SKIPPED: this build has no CGAL (apt-get install libcgal-dev)";
+  std::string text = read(folder_ / "cube.obj");
+  text.replace(text.find("f 3 4 8\n"), 8, "");           // a hole
+  text.replace(text.find("f 1 2 6\n"), 8, "f 1 6 2\n");  // and one turned
+  write("broken.obj", text);
+  EXPECT_EQ(hookeye("mesh broken.obj -o body.vtu").status, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "body.vtu"));
+  const Result surface = hookeye("mesh broken.obj --repair --edge 4 -o made/mended.obj");
+  ASSERT_EQ(surface.status, 0) << surface.err;
+  const std::string said = surface.out;
+  const size_t turned = said.find("turned 1 triangles that faced against their neighbours"),
+               filled = said.find("filled 1 holes, the longest 34.1 around, at ("),
+               remeshed = said.find("remeshed to an edge of 4: ");
+  EXPECT_LT(turned, filled) << said;
+  EXPECT_LT(filled, remeshed) << said;
+  EXPECT_LT(remeshed, said.find("written to made/mended.obj")) << said;
+  EXPECT_EQ(hookeye("mesh made/mended.obj -o body.vtu").status, 0);
+  const Result body = hookeye("mesh broken.obj --repair -o again.vtu --json");
+  ASSERT_EQ(body.status, 0) << body.err;
+  EXPECT_NEAR(json::parse(body.out).at("quality").at("volume").get<double>(), 1000.0, 1e-6);
+  EXPECT_EQ(json::parse(body.out).at("said").size(), 2U);
+
+  EXPECT_THAT(hookeye("mesh broken.obj -o mended.obj").err, HasSubstr("a body is written as .vtu"));
+  EXPECT_EQ(hookeye("mesh broken.obj --tolerance 1 -o a.vtu").status, 2) << "without --repair";
+  write("flake.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const Result flake = hookeye("mesh flake.obj --repair -o a.obj");
+  EXPECT_EQ(flake.status, 2);
+  EXPECT_THAT(flake.err, HasSubstr("could not be mended: only 0 % of the surface"));
+  EXPECT_FALSE(fs::exists(folder_ / "a.obj"));
+}
+
 TEST_F(Cli, MeshTellsTheQualityAskedAndReached) {
   write_cube("{z: 1}");
   const auto mesh = [&](const std::string& asked) {
@@ -198,6 +232,7 @@ TEST_F(Cli, MeshTellsTheQualityAskedAndReached) {
   ASSERT_EQ(strict.status, 0) << strict.err;
   EXPECT_THAT(strict.out, HasSubstr("the mesher was asked for angles of 15 degrees and more"));
   EXPECT_THAT(mesh("--min-angle 3").out, Not(HasSubstr("was asked for")));
+  EXPECT_THAT(strict.out, Not(HasSubstr("flat tetrahedra")));
   // TetGen would not come to an end.
   EXPECT_EQ(mesh("--min-angle 30").status, 2);
 }
