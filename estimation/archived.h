@@ -18,8 +18,8 @@ namespace hookeye {
 /// the whole archive is about.)
 Question question_of(const std::string& kind, const ModelForm& form, const VectorXd& p);
 
-/// Where the examples are, in every bit: what is asked next begins there, and another rounding would
-/// make other questions of it.
+/// Where the examples are, in every bit: what is asked next begins there, and another rounding
+/// would make other questions of it.
 nlohmann::json states_json(const Evaluation& evaluation);
 /// Deformed positions by example, 3n each; empty where none is told.
 std::vector<VectorXd> states_from(const nlohmann::json& states, const Scene& scene);

@@ -344,8 +344,9 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     if (failures[e]) failed = true;
     advance();
   };
-  // Candidates may have a finer mesh, whose factor is as large as all of these. A solver that starts
-  // in equilibrium does without one, and to make them anew costs a hundredth of what candidates do.
+  // Candidates may have a finer mesh, whose factor is as large as all of these. A solver that
+  // starts in equilibrium does without one, and to make them anew costs a hundredth of what
+  // candidates do.
   if (!candidates.empty()) {
     for (EquilibriumSolver& solver : impl_->solvers) solver.forget();
     give_back_freed_memory();

@@ -46,8 +46,7 @@ auto from_shares(const Fitted& current, const EffectScore& score, const FitOptio
   if (starts_anywhere(current, score)) return result;
   for (double share : {0.3, 0.1, 0.0}) {
     const auto* failure = std::get_if<NumericalFailure>(&result);
-    if (!failure || cancelled(*failure) || (options.cancel && options.cancel->load()))
-      break;
+    if (!failure || cancelled(*failure) || (options.cancel && options.cancel->load())) break;
     result = run(Extension(current, score, share));
   }
   return result;
