@@ -1,6 +1,7 @@
 #include "estimation/gram.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 
 namespace hookeye {
 
@@ -42,12 +43,22 @@ Eigen::VectorXd lengths(const Eigen::MatrixXd& H) { return H.diagonal().cwiseMax
 
 Eigen::MatrixXd square_root(const Eigen::MatrixXd& H, const Eigen::VectorXd& scale,
                             const Eigen::VectorXd& towards) {
+  if (H.size() == 0) return H;
   const GramEigen of(H, scale);
   const Eigen::VectorXd side = of.V.transpose() * of.unit.cwiseProduct(towards);
   const Eigen::VectorXd root = of.values.cwiseMax(0.0).cwiseSqrt();
   const Eigen::MatrixXd rising =
-      of.scale.asDiagonal() * of.V * (side.array() < 0.0).select(-root, root).matrix().asDiagonal();
-  return rising.rowwise().reverse();
+      of.V * (side.array() < 0.0).select(-root, root).matrix().asDiagonal();
+  // A column far shorter than its scale is rounding of the others there. All roots of H are
+  // rotations of one another: the one that is exact in each column's own length is turned into
+  // this.
+  const GramEigen own(H);
+  const Eigen::MatrixXd exact =
+      own.scale.asDiagonal() * own.V * own.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::BDCSVD<Eigen::MatrixXd> turn(
+      (of.unit.asDiagonal() * exact).transpose() * rising.rowwise().reverse(),
+      Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return exact * (turn.matrixU() * turn.matrixV().transpose());
 }
 
 }  // namespace hookeye

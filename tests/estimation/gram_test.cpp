@@ -50,6 +50,20 @@ TEST(Gram, ASquareRootTurnsWithItsColumns) {
   EXPECT_LT((turned - turn * first).norm(), 1e-9 * first.norm());
 }
 
+/// A camera that looks along z sees x and y; what it knows of z is little, and must not be noise of
+/// the others.
+TEST(Gram, ASquareRootKeepsAColumnFarShorterThanItsScale) {
+  const Columns columns = some_columns();
+  const VectorXd shrink = (VectorXd(5) << 1.0, 1.0, 1e-9, 1.0, 1.0).finished();
+  const MatrixXd H = shrink.asDiagonal() * columns.H * shrink.asDiagonal();
+  VectorXd scale = lengths(columns.H);
+  scale.head(3).setConstant(scale.head(3).norm());
+  const MatrixXd A = square_root(H, scale, VectorXd::Ones(5));
+  const VectorXd back = shrink.cwiseInverse();
+  EXPECT_LT((back.asDiagonal() * A * A.transpose() * back.asDiagonal() - columns.H).norm(),
+            1e-10 * columns.H.norm());
+}
+
 TEST(Gram, APseudoInverseInvertsTheColumnsOfEveryUnit) {
   const Columns columns = some_columns();
   const MatrixXd one = pseudo_inverse(columns.H), mixed = pseudo_inverse(columns.mixed());
