@@ -261,7 +261,10 @@ TEST(Catalogue, VariantsRebuild) {
     const VectorXd a = signature(first.realise(with_values(first, values)), q);
     const VectorXd b = signature(second.realise(with_values(second, values)), q);
     ASSERT_EQ(a.size(), b.size()) << c.label();
-    EXPECT_TRUE(a == b) << c.label() << ": differs by " << (a - b).norm();
+    // Bit-equal, but for an effect that solves equilibria: they start where its last ones were, and
+    // end within their tolerance.
+    const double tolerance = c.effect->name() == "mesh_resolution" ? 1e-6 * a.norm() : 0.0;
+    EXPECT_LE((a - b).norm(), tolerance) << c.label();
     EXPECT_EQ(c.effect->candidate(base_model(), "no such variant"), nullptr) << c.label();
   }
 }
