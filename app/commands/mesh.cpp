@@ -101,8 +101,7 @@ void add_mesh(CLI::App& app, CommandBody& chosen) {
   command->add_option("SURFACE", options->surface, "Closed triangle surface: obj, ply, stl")
       ->required();
   command
-      ->add_option("-o,--out", options->body,
-                   "The body to write: BODY.vtu; with --repair also the surface: SURFACE.obj")
+      ->add_option("-o,--out", options->body, "BODY.vtu, or with --repair the surface: SURFACE.obj")
       ->required();
   command->add_option("--edge", options->fill.edge, "Target edge (default: diagonal / 12)")
       ->check(above_zero());
@@ -117,12 +116,11 @@ void add_mesh(CLI::App& app, CommandBody& chosen) {
       ->add_option("--radius-edge", options->fill.radius_edge_ratio,
                    "Largest circumradius over shortest edge to ask for (default: 1.4)")
       ->check(CLI::Range(1.2, 10.0));
-  CLI::Option* repair = command->add_flag(
-      "--repair", options->repair,
-      "Mend what is broken first, and remesh the surface to --edge where that is given");
+  CLI::Option* repair = command->add_flag("--repair", options->repair,
+                                          "Mend the surface first; remesh it to --edge if given");
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Width of gaps that --repair closes (default: a ten-thousandth of the diagonal)")
+                   "Width of gaps to close (default: diagonal / 10000)")
       ->check(above_zero())
       ->needs(repair);
   command->callback([&chosen, options] {
