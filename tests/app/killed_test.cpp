@@ -64,8 +64,10 @@ TEST_F(Killed, ASearchLosesNothingThatEnded) {
   }
   EXPECT_GT(stopped, 0);
   ASSERT_EQ(search("killed"), 0) << read(folder_ / "err.txt");
+  // A fit that begins at equilibria which were found anew after a stop is another question in its
+  // last digits, and may be worked out again: some are, and never the whole search.
   for (const auto& [kind, count] : anew_["whole"])
-    EXPECT_LE(anew_["killed"][kind], count + stopped) << kind;
+    EXPECT_LT(anew_["killed"][kind], 2 * count + stopped) << kind;
 
   // Equilibria begin elsewhere after a stop and end within their tolerance, which is a thousandth
   // of what a finer mesh changes: words and choices are the same, the last digits need not be.
