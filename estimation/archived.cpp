@@ -59,17 +59,28 @@ json states_json(const Evaluation& evaluation) {
   return out;
 }
 
-std::vector<VectorXd> states_from(const json& states, const Scene& scene) {
-  const Eigen::Index unknowns = scene.body->mesh.X.size();
-  std::vector<VectorXd> out(scene.capture.examples.size());
+Workspace::Place place_from(const json& states, Workspace::Place before) {
+  const Eigen::Index unknowns = before.scene->body->mesh.X.size();
   for (const json& state : states) {
     const auto& bytes = state.at("position").get_binary();
     if (bytes.size() != static_cast<size_t>(unknowns) * sizeof(double)) continue;
-    VectorXd& q = out.at(state.at("example"));
+    VectorXd& q = before.q.at(state.at("example"));
     q.resize(unknowns);
     std::memcpy(q.data(), bytes.data(), bytes.size());
   }
-  return out;
+  return before;
+}
+
+Workspace::Place place_in(const Workspace& workspace, const std::shared_ptr<const Scene>& scene) {
+  Workspace::Place place = workspace.place();
+  if (place.scene == scene) return place;
+  return {scene, std::vector<VectorXd>(scene->capture.examples.size())};
+}
+
+Workspace::Place place_after(Workspace::Place before, const Fitted& fitted) {
+  for (const ExampleEvaluation& example : fitted.evaluation.examples)
+    before.q[example.example] = example.equilibrium->q;
+  return before;
 }
 
 json vector_json(const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "estimation/archive.h"
 #include "estimation/evaluation.h"
+#include "estimation/fit.h"
 
 namespace hookeye {
 
@@ -18,11 +20,10 @@ namespace hookeye {
 /// the whole archive is about.)
 Question question_of(const std::string& kind, const ModelForm& form, const VectorXd& p);
 
-/// Where the examples are, in every bit: what is asked next begins there, and another rounding
-/// would make other questions of it.
+/// Where the examples are, in every bit: what is asked next begins there.
 nlohmann::json states_json(const Evaluation& evaluation);
-/// Deformed positions by example, 3n each; empty where none is told.
-std::vector<VectorXd> states_from(const nlohmann::json& states, const Scene& scene);
+/// `before` with the examples that are told where they are told.
+Workspace::Place place_from(const nlohmann::json& states, Workspace::Place before);
 
 nlohmann::json vector_json(const VectorXd& v);
 VectorXd vector_from(const nlohmann::json& list);
@@ -30,28 +31,51 @@ VectorXd vector_from(const nlohmann::json& list);
 nlohmann::json failure_json(const NumericalFailure& failure);
 std::optional<NumericalFailure> failure_from(const nlohmann::json& answer);
 
+/// What is asked at p, and where from.
+struct Asked {
+  Workspace& workspace;
+  const ModelForm& form;
+  const VectorXd& p;
+  const std::atomic<bool>* cancel;
+  std::function<Question()> question;
+};
+
+/// Where a question of a form of `scene` is asked from: from rest where the workspace was
+/// elsewhere.
+Workspace::Place place_in(const Workspace& workspace, const std::shared_ptr<const Scene>& scene);
+
+/// A fit leaves the workspace in its own equilibria; whatever else was asked, where it was.
+inline Workspace::Place place_after(const Workspace::Place& before, const auto&) { return before; }
+Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
+
 /// The answer of the workspace's archive; else that of `work`, which the archive keeps unless it
-/// was cancelled. `read` may return nothing: then it is worked out.
-template <class T, class Ask, class Work, class Write, class Read>
-std::variant<T, NumericalFailure> archived(Workspace& workspace, const std::atomic<bool>* cancel,
-                                           const Ask& ask, const Work& work, const Write& write,
+/// was cancelled. `read` may return nothing: then it is worked out. Whichever it was, the answer is
+/// the same in every bit, and so is the place where the workspace is left.
+template <class T, class Work, class Write, class Read>
+std::variant<T, NumericalFailure> archived(const Asked& asked, const Work& work, const Write& write,
                                            const Read& read) {
-  Archive* archive = workspace.archive();
-  if (!archive) return work();
-  const Question question = ask();
-  nlohmann::json answer;
-  if (archive->find(question, answer)) {
-    if (auto failure = failure_from(answer)) return *failure;
-    std::optional<std::variant<T, NumericalFailure>> known = read(answer);
-    if (known) return std::move(*known);
+  using Result = std::variant<T, NumericalFailure>;
+  Archive* archive = asked.workspace.archive();
+  const Workspace::Place place = place_in(asked.workspace, asked.form.scene);
+  asked.workspace.start_from(place);
+  const auto leave = [&](Result result) {
+    const T* answer = std::get_if<T>(&result);
+    asked.workspace.start_from(answer ? place_after(place, *answer) : place);
+    return result;
+  };
+  std::optional<Question> question;
+  nlohmann::json known;
+  if (archive && archive->find(question.emplace(asked.question()), known)) {
+    if (auto failure = failure_from(known)) return leave(*failure);
+    if (std::optional<Result> result = read(known)) return leave(std::move(*result));
+    asked.workspace.start_from(place);
   }
-  std::variant<T, NumericalFailure> result = work();
-  if (cancel && *cancel) return result;
-  if (const auto* failure = std::get_if<NumericalFailure>(&result))
-    archive->keep(question, failure_json(*failure));
-  else
-    archive->keep(question, write(std::get<T>(result)));
-  return result;
+  Result result = work();
+  if (archive && !(asked.cancel && *asked.cancel)) {
+    const auto* failure = std::get_if<NumericalFailure>(&result);
+    archive->keep(*question, failure ? failure_json(*failure) : write(std::get<T>(result)));
+  }
+  return leave(std::move(result));
 }
 
 }  // namespace hookeye

@@ -356,7 +356,8 @@ Question question_of_diagnosis(const Fitted& fitted, const DiagnosisOptions& opt
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options) {
   return archived<Diagnosis>(
-      workspace, options.cancel, [&] { return question_of_diagnosis(fitted, options); },
+      {workspace, fitted.form, fitted.p, options.cancel,
+       [&] { return question_of_diagnosis(fitted, options); }},
       [&] { return diagnose_anew(workspace, fitted, options); },
       [](const Diagnosis& diagnosis) { return to_json(diagnosis); },
       [&](const nlohmann::json& known) -> std::optional<Diagnosis> {

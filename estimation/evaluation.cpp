@@ -297,14 +297,13 @@ const Scene& Workspace::scene() const { return *impl_->scene; }
 void Workspace::keep_in(std::shared_ptr<Archive> archive) { archive_ = std::move(archive); }
 Archive* Workspace::archive() const { return archive_.get(); }
 
-void Workspace::start_from(const std::shared_ptr<const Scene>& scene,
-                           const std::vector<VectorXd>& q) {
-  if (scene != impl_->scene) impl_ = std::make_unique<Impl>(scene);
-  for (size_t e = 0; e < q.size(); ++e) {
-    if (q[e].size() == 0) continue;
-    impl_->solvers[e].forget();
-    impl_->last[e] = q[e];
-  }
+Workspace::Place Workspace::place() const { return {impl_->scene, impl_->last}; }
+
+void Workspace::start_from(const Place& place) {
+  if (place.scene != impl_->scene) impl_ = std::make_unique<Impl>(place.scene);
+  for (EquilibriumSolver& solver : impl_->solvers) solver.forget();
+  impl_->last = place.q;
+  impl_->linear = {};
 }
 
 std::variant<Evaluation, NumericalFailure> Workspace::evaluate(

@@ -115,9 +115,16 @@ class Workspace {
       const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
       const std::vector<std::shared_ptr<const Ingredient>>& candidates = {});
 
-  /// The next evaluation of a form of `scene` starts there: deformed positions by example, 3n each.
-  /// Examples of which they are empty start as they would have.
-  void start_from(const std::shared_ptr<const Scene>& scene, const std::vector<VectorXd>& q);
+  /// All that the next evaluation takes over from those before it.
+  struct Place {
+    std::shared_ptr<const Scene> scene;
+    std::vector<VectorXd> q;  ///< deformed positions by example, 3n; empty: starts from rest
+  };
+  Place place() const;
+  /// The next evaluation starts there whatever has been before: factors and derivatives are
+  /// forgotten, so that the same question asked from the same place has the same answer in every
+  /// bit.
+  void start_from(const Place& place);
 
   /// What fits, trials and diagnoses in this workspace are kept in, and found. Null: nothing is.
   void keep_in(std::shared_ptr<Archive> archive);

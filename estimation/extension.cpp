@@ -12,9 +12,13 @@ const Effect* remeshed_by(const Ingredient& ingredient) {
 }
 
 void work_out_anew(ModelForm& form, const VectorXd& p) {
-  for (auto& ingredient : form.ingredients)
+  ModelForm so_far = form;
+  so_far.ingredients.clear();
+  for (auto& ingredient : form.ingredients) {
     if (const Effect* effect = remeshed_by(*ingredient))
-      ingredient = effect->rebuild(form.realise(p), ingredient->variant());
+      ingredient = effect->rebuild(so_far.realise(p.head(so_far.size())), ingredient->variant());
+    so_far.ingredients.push_back(ingredient);
+  }
 }
 
 std::pair<std::shared_ptr<const Ingredient>, VectorXd> entering(const Model& model,

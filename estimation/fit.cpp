@@ -75,19 +75,19 @@ std::variant<Fitted, NumericalFailure> assess_anew(Workspace& workspace, const M
 
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options) {
+  const auto question = [&] {
+    Question out = question_of("state", form, p);
+    out.numbers.push_back(options.most_iterations);
+    return out;
+  };
   return archived<Fitted>(
-      workspace, options.cancel,
-      [&] {
-        Question question = question_of("state", form, p);
-        question.numbers.push_back(options.most_iterations);
-        return question;
-      },
+      {workspace, form, p, options.cancel, question},
       [&] { return assess_anew(workspace, form, p, options); },
       [&](const Fitted& fitted) {
         return nlohmann::json{{"states", states_json(fitted.evaluation)}};
       },
       [&](const nlohmann::json& known) -> std::optional<std::variant<Fitted, NumericalFailure>> {
-        workspace.start_from(form.scene, states_from(known.at("states"), *form.scene));
+        workspace.start_from(place_from(known.at("states"), workspace.place()));
         auto again = assess_anew(workspace, form, p, options);
         if (std::holds_alternative<Fitted>(again) || is_cancelled(options)) return again;
         return {};
@@ -279,8 +279,9 @@ std::variant<Fitted, NumericalFailure> fit_from(Workspace& workspace, const Mode
 
 Model realised(const Fitted& fitted) {
   Model model = fitted.form.realise(fitted.p);
+  model.states.resize(model.examples.size());
   for (const auto& example : fitted.evaluation.examples)
-    if (!example.held_out) model.states.push_back(example.equilibrium);
+    model.states[example.example] = example.equilibrium;
   return model;
 }
 
@@ -343,12 +344,10 @@ std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
   return archived<Fitted>(
-      workspace, options.cancel, [&] { return question_of_fit(form, start, options); },
+      {workspace, form, start, options.cancel,
+       [&] { return question_of_fit(form, start, options); }},
       [&] { return fit_anew(workspace, form, start, options); }, fit_json,
-      [&](const nlohmann::json& known) {
-        form.realise(start);  // some ingredients work out of the first model what they change
-        return fit_from_json(workspace, form, known, options);
-      });
+      [&](const nlohmann::json& known) { return fit_from_json(workspace, form, known, options); });
 }
 
 }  // namespace hookeye

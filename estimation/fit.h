@@ -71,7 +71,7 @@ struct Fitted {
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The fitted model with the deformed states of its fitted examples.
+/// The fitted model with its equilibria.
 Model realised(const Fitted& fitted);
 
 /// Least squares over photos, forces, moments and positions of the fitted examples, from `start`.

@@ -51,8 +51,8 @@ struct Model {
   Vector3d gravity = Vector3d::Zero();
   /// What has been written into it, in order: enough to make the same model of another scene.
   std::vector<std::pair<std::shared_ptr<const Ingredient>, VectorXd>> applied;
-  /// Deformed states of the fitted examples, where they are known (realised() in fit.h): where
-  /// effects look for what the body reaches. Realising solves nothing and leaves it empty.
+  /// Its equilibria by example, without tangents; null: not known. Realising solves nothing and
+  /// leaves it empty; realised() (fit.h) fills it in.
   std::vector<std::shared_ptr<const Equilibrium>> states;
   /// Energy of example e: energy with all weights times examples[e].stiffness.
   EnergyModel energy_of(int example) const;

@@ -26,13 +26,13 @@ std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
   return remeshed_by(*form) ? form : nullptr;
 }
 
-/// Fits `model` on the mesh of `remeshing`, which is added to it.
+/// Fits `model` with `remeshing` on the mesh that it asks for.
 std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, const Model& model,
-                                                       std::shared_ptr<const Ingredient> remeshing,
+                                                       const Ingredient& remeshing,
                                                        const FitOptions& options) {
-  const Effect& effect = *remeshed_by(*remeshing);
-  auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing->variant()));
-  form.ingredients.push_back(std::move(remeshing));
+  const Effect& effect = *remeshed_by(remeshing);
+  auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing.variant()));
+  form.ingredients.push_back(effect.rebuild(form.realise(start), remeshing.variant()));
   VectorXd all = form.initial();
   all.head(start.size()) = start;
   FitOptions from_rest = warm(options);  // no equilibrium is known on this mesh
@@ -133,7 +133,7 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
   }
   const Model model = current.form.realise(current.p);
   if (auto remeshing = remeshing_form(model, score.best, score.values))
-    return fit_on_its_mesh(workspace, model, remeshing, options);
+    return fit_on_its_mesh(workspace, model, *remeshing, options);
   return from_shares(current, score, options, [&](const Extension& extension) {
     return fit_smallest(workspace, extension.form, extension.start, options);
   });
@@ -147,7 +147,7 @@ std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& 
   before.ingredients.pop_back();
   const Model model = before.realise(racer.trial.p.head(racer.trial.p.size() - added));
   if (auto remeshing = remeshing_form(model, scored, racer.trial.p.tail(added)))
-    return fit_on_its_mesh(workspace, model, remeshing, options);
+    return fit_on_its_mesh(workspace, model, *remeshing, options);
   return fit_smallest(workspace, racer.form, racer.trial.p, options);
 }
 

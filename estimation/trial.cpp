@@ -93,13 +93,13 @@ std::variant<Trial, NumericalFailure> step_anew(Workspace& workspace, const Mode
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,
                                                        const FitOptions& options) {
+  const auto question = [&] {
+    Question out = question_of("scale", form, p);
+    out.numbers.push_back(options.huber);
+    return out;
+  };
   return archived<TrialScale>(
-      workspace, options.cancel,
-      [&] {
-        Question question = question_of("scale", form, p);
-        question.numbers.push_back(options.huber);
-        return question;
-      },
+      {workspace, form, p, options.cancel, question},
       [&] { return scale_anew(workspace, form, p, options); },
       [](const TrialScale& scale) {
         return nlohmann::json{{"huber", scale.huber},
@@ -118,14 +118,14 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
                                                const VectorXd& start, const TrialScale& scale,
                                                const FitOptions& options) {
+  const auto question = [&] {
+    Question out = question_of("trial", form, start);
+    for (const double one : {scale.huber, scale.chi, scale.floor, scale.measured_weight})
+      out.numbers.push_back(one);
+    return out;
+  };
   return archived<Trial>(
-      workspace, options.cancel,
-      [&] {
-        Question question = question_of("trial", form, start);
-        for (const double one : {scale.huber, scale.chi, scale.floor, scale.measured_weight})
-          question.numbers.push_back(one);
-        return question;
-      },
+      {workspace, form, start, options.cancel, question},
       [&] { return step_anew(workspace, form, start, scale, options); },
       [](const Trial& trial) {
         return nlohmann::json{{"p", vector_json(trial.p)},

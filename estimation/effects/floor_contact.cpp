@@ -59,14 +59,22 @@ void stand(Model& model, const Plane& plane, double k) {
   for (auto& example : model.examples) example.loading.forces.push_back(force);
 }
 
+/// Deformed positions (3 x nodes) of the fitted examples whose equilibrium is known.
+std::vector<Matrix3Xd> fitted_positions(const Model& model) {
+  const TetMesh& mesh = model.scene->body->mesh;
+  std::vector<Matrix3Xd> all;
+  for (size_t e = 0; e < model.states.size(); ++e)
+    if (model.states[e] && !model.scene->capture.examples[e].validate)
+      all.emplace_back(model.states[e]->q.reshaped(3, mesh.nodes()));
+  return all;
+}
+
 /// How far outward the body moves along `direction` in each fitted example, the farthest first.
 std::vector<double> travels(const Model& model, const Vector3d& direction) {
-  const TetMesh& mesh = model.scene->body->mesh;
   const double rest = reach(*model.scene, direction);
   std::vector<double> all;
-  for (const auto& state : model.states)
-    if (state && state->q.size() == mesh.X.size())
-      all.push_back((direction.transpose() * state->q.reshaped(3, mesh.nodes())).maxCoeff() - rest);
+  for (const Matrix3Xd& x : fitted_positions(model))
+    all.push_back((direction.transpose() * x).maxCoeff() - rest);
   std::sort(all.rbegin(), all.rend());
   return all;
 }
@@ -92,17 +100,13 @@ std::vector<double> gaps_between_axes(const Model& model, const Vector3d& direct
 /// Where the known states press against the plane, in the mean weighted by depth; what is next to
 /// the plane of the rest body's middle, where none does.
 Vector3d pressed(const Model& model, const ScoredPlane& scored) {
-  const TetMesh& mesh = model.scene->body->mesh;
   Vector3d sum = Vector3d::Zero();
   double weight = 0.0;
-  for (const auto& state : model.states) {
-    if (!state || state->q.size() != mesh.X.size()) continue;
-    const auto x = state->q.reshaped(3, mesh.nodes());
-    for (int node = 0; node < mesh.nodes(); ++node) {
+  for (const Matrix3Xd& x : fitted_positions(model))
+    for (Eigen::Index node = 0; node < x.cols(); ++node) {
       const double depth = scored.out.dot(x.col(node)) - scored.position;
       if (depth > 0.0) sum += depth * x.col(node), weight += depth;
     }
-  }
   const BodySize body = body_size(*model.scene);
   const Vector3d centre = weight > 0.0 ? Vector3d(sum / weight) : body.centre;
   return rounded(centre - (scored.out.dot(centre) - scored.position) * scored.out, body.size);

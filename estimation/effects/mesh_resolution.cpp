@@ -66,17 +66,17 @@ class MeshResolution final : public Effect {
     return {estimate(model, linear ? kQuadratic : kByEdge)};
   }
 
-  std::shared_ptr<const Ingredient> rebuild(const Model&,
+  std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    return remeshes(variant) ? refined(variant) : nullptr;
+    return remeshes(variant) ? refined(model, variant) : nullptr;
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model&,
+  std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
     const std::string variant = scored->variant().substr(std::string("change by ").size());
     values.setZero(1);
-    return refined(variant);
+    return refined(model, variant);
   }
 
   bool remeshes(const std::string& variant) const override {
@@ -128,17 +128,18 @@ class MeshResolution final : public Effect {
     spec.derivative = [finer](const VectorXd&, const Model& m, int example,
                               const Equilibrium& equilibrium, int, MechanicsDerivative& out) {
       out.dR_dt.setZero(equilibrium.q.size());
-      nodal_force(finer->force(example, &equilibrium))
+      nodal_force(finer->force(example))
           ->add_residual(m.scene->body->mesh, equilibrium.q, 1.0, out.dR_dt);
       return true;
     };
     return make_ingredient(std::move(spec));
   }
 
-  /// The scene has the finer mesh. What an infinitely fine one would change beyond it is a share of
-  /// what it changed itself (Richardson 1911), which the photos fit: a real body has no mesh, and
-  /// what the finer one still gets wrong would be blamed on a clamp or a stiff place.
-  std::shared_ptr<const Ingredient> refined(const std::string& variant) const {
+  /// `model` lives on the finer mesh, but where the form is only asked for its parameters. What an
+  /// infinitely fine one would change beyond it is a share of what it changed itself (Richardson
+  /// 1911), which the photos fit: a real body has no mesh, and what the finer one still gets wrong
+  /// would be blamed on a clamp or a stiff place.
+  std::shared_ptr<const Ingredient> refined(const Model& model, const std::string& variant) const {
     // Falling in proportion to the edge is the slowest, and with its square the rule; quadratic
     // elements halve the error of linear ones at least, and leave a tenth of it as a rule.
     const bool quadratic = variant == kQuadratic;
@@ -150,22 +151,17 @@ class MeshResolution final : public Effect {
     spec.parameters = {{"mesh_resolution.s", "", "more of what the refinement changed", 0.0, 0.0,
                         most, next, false}};
     spec.touches = {.loading = true};
-    struct Told {
-      std::once_flag once;
-      std::shared_ptr<OtherMesh> mesh;  ///< of the model as it was when first asked for
-    };
-    const auto told = std::make_shared<Told>();
+    const auto told = std::make_shared<OtherMesh>(model, 1.0, 0);
     spec.apply = [told](const VectorXd& s, Model& m) {
-      std::call_once(told->once, [&] { told->mesh = std::make_shared<OtherMesh>(m, 1.0, 0); });
       if (s[0] == 0.0) return;
       for (size_t e = 0; e < m.examples.size(); ++e)
         m.examples[e].loading.forces.push_back(
-            std::make_shared<MeshError>(told->mesh, static_cast<int>(e), -s[0]));
+            std::make_shared<MeshError>(told, static_cast<int>(e), -s[0]));
     };
     spec.derivative = [told](const VectorXd&, const Model& m, int example,
                              const Equilibrium& equilibrium, int, MechanicsDerivative& out) {
       out.dR_dt.setZero(equilibrium.q.size());
-      nodal_force(-told->mesh->force(example, &equilibrium))
+      nodal_force(-told->force(example))
           ->add_residual(m.scene->body->mesh, equilibrium.q, 1.0, out.dR_dt);
       return true;
     };

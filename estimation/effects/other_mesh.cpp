@@ -14,15 +14,11 @@ struct OtherBody {
   Eigen::SparseMatrix<double, Eigen::RowMajor> from_here, to_here;  ///< nodal values there, here
   std::mutex mutex;                                                 ///< of what follows
   std::unique_ptr<EquilibriumSolver> solver;                        ///< null: nobody is solving
-  /// By example, 3 x nodes there: what this mesh changed in the displacements of the other when it
-  /// was solved last. Empty: it was not.
-  std::vector<Matrix3Xd> change;
 
   OtherBody(const Scene& here, double factor, int order)
       : scene(remeshed(here, factor, order, false)),
         from_here(interpolation(here.body->mesh, scene->body->mesh.X)),
-        to_here(interpolation(scene->body->mesh, here.body->mesh.X)),
-        change(here.capture.examples.size()) {}
+        to_here(interpolation(scene->body->mesh, here.body->mesh.X)) {}
 };
 
 namespace {
@@ -56,14 +52,14 @@ OtherMesh::OtherMesh(const Model& model, double factor, int order)
       forces_(model.examples.size()),
       done_(model.examples.size()) {}
 
-const VectorXd& OtherMesh::force(int example, const Equilibrium* here) {
+const VectorXd& OtherMesh::force(int example) {
   Slot& slot = forces_[example];
   // A thread that waits for its own solve must not take another example up meanwhile: that would
   // want what this one has locked, or pile solve upon solve on one stack.
   std::call_once(slot.once, [&] {
     tbb::this_task_arena::isolate([&] {
       try {
-        slot.force = compute(example, here);
+        slot.force = compute(example);
       } catch (const InputError&) {  // a surface that cannot be filled
         slot.force = VectorXd::Zero(3 * model_.scene->body->mesh.nodes());
       }
@@ -96,39 +92,39 @@ std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_there(int example,
                                                                    const Equilibrium& here) {
   const TetMesh &mesh = model_.scene->body->mesh, &theirs = body_->scene->body->mesh;
   const Matrix3Xd u = here.q.reshaped(3, mesh.nodes()) - mesh.X;
-  const Matrix3Xd u_from_here = u * body_->from_here.transpose();
-  const VectorXd start = (theirs.X + u_from_here).reshaped();
-  const std::lock_guard lock(body_->mutex);
-  Matrix3Xd& change = body_->change[example];
-  VectorXd expected;
+  const VectorXd start = (theirs.X + u * body_->from_here.transpose()).reshaped();
   EquilibriumOptions options;
   options.tolerance = 1e-6;  // what a mesh changes need not be known to more than a per mille
   options.factored = false;
-  if (change.size() > 0) {
-    expected = start + VectorXd(change.reshaped());
-    options.expected = &expected;
-  }
+  const std::lock_guard lock(body_->mutex);
   if (!body_->solver) body_->solver = std::make_unique<EquilibriumSolver>(body_->scene->mesh());
   auto there = body_->solver->solve(other_.energy_of(example), other_.examples[example].loading,
                                     options, &start);
   body_->solver->forget();
   drop_idle_solver(example);
-  if (const auto* solved = std::get_if<Equilibrium>(&there))
-    change = solved->q.reshaped(3, theirs.nodes()) - theirs.X - u_from_here;
   return there;
 }
 
-VectorXd OtherMesh::compute(int example, const Equilibrium* known) {
+/// With its tangent.
+std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_here(int example) const {
+  const TetMesh& mesh = model_.scene->body->mesh;
+  const EnergyModel energy = model_.energy_of(example);
+  const Loading& loading = model_.examples[example].loading;
+  const auto known =
+      static_cast<size_t>(example) < model_.states.size() ? model_.states[example] : nullptr;
+  if (!known) return solve_equilibrium(mesh, energy, loading);
+  Equilibrium here = *known;
+  here.K = tangent(mesh, energy, loading, here.q);
+  return here;
+}
+
+VectorXd OtherMesh::compute(int example) {
   const TetMesh& mesh = model_.scene->body->mesh;
   const Loading& loading = model_.examples[example].loading;
   const VectorXd none = VectorXd::Zero(3 * mesh.nodes());
-  std::variant<Equilibrium, NumericalFailure> solved;
-  if (!known) {
-    solved = solve_equilibrium(mesh, model_.energy_of(example), loading);
-    known = std::get_if<Equilibrium>(&solved);
-  }
-  if (!known) return none;
-  const Equilibrium& here = *known;
+  const auto solved = solve_here(example);
+  if (!std::holds_alternative<Equilibrium>(solved)) return none;
+  const Equilibrium& here = std::get<Equilibrium>(solved);
   realise_there();
   const auto result = solve_there(example, here);
   if (!std::holds_alternative<Equilibrium>(result)) return none;

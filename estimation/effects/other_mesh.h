@@ -15,24 +15,25 @@ struct OtherBody;
 
 /// What another mesh of the same body makes of the present model, as nodal forces on this one:
 /// f = K du moves this mesh by du, to where the other mesh has the body (first order), and
-/// changes the reactions of the supports by as much. Solved once an example, when first asked for,
-/// from this mesh's equilibrium and what the other mesh changed for the last model of this scene.
-/// One example at a time: a factor of the other mesh is larger than all else.
+/// changes the reactions of the supports by as much. Solved once an example, when first asked for:
+/// by the model alone, whoever asks and whatever was solved before. One example at a time: a factor
+/// of the other mesh is larger than all else.
 class OtherMesh {
  public:
   /// `factor`, `order`: as remeshed().
   OtherMesh(const Model& model, double factor, int order);
 
   /// 3n [force]; zero where there is no such mesh or no equilibrium, so that the effect cannot be
-  /// tested. `here`: the present model's equilibrium, where it is known. Any thread.
-  const VectorXd& force(int example, const Equilibrium* here = nullptr);
+  /// tested. Any thread.
+  const VectorXd& force(int example);
 
  private:
   struct Slot {
     std::once_flag once;
     VectorXd force;
   };
-  VectorXd compute(int example, const Equilibrium* known);
+  VectorXd compute(int example);
+  std::variant<Equilibrium, NumericalFailure> solve_here(int example) const;
   std::variant<Equilibrium, NumericalFailure> solve_there(int example, const Equilibrium& here);
   void realise_there();
   void drop_idle_solver(int example);

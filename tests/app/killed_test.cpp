@@ -4,16 +4,11 @@
 
 #include <chrono>
 #include <random>
-#include <regex>
 
 #include "app/fitted_run.h"
 
 namespace hookeye::test {
 namespace {
-
-std::string without_digits(const std::string& text) {
-  return std::regex_replace(text, std::regex("[0-9.]+"), "#");
-}
 
 class Killed : public Cli {
  protected:
@@ -64,18 +59,13 @@ TEST_F(Killed, ASearchLosesNothingThatEnded) {
   }
   EXPECT_GT(stopped, 0);
   ASSERT_EQ(search("killed"), 0) << read(folder_ / "err.txt");
-  // A fit that begins at equilibria which were found anew after a stop is another question in its
-  // last digits, and may be worked out again: some are, and never the whole search.
+  // What was under way at a stop is begun again, and nothing else.
   for (const auto& [kind, count] : anew_["whole"])
-    EXPECT_LT(anew_["killed"][kind], 2 * count + stopped) << kind;
+    EXPECT_LE(anew_["killed"][kind], count + stopped) << kind;
 
-  // Equilibria begin elsewhere after a stop and end within their tolerance, which is a thousandth
-  // of what a finer mesh changes: words and choices are the same, the last digits need not be.
   const json whole = timeline("whole"), killed = timeline("killed");
-  for (const char* key : {"verdict", "missing", "tie", "search"})
-    EXPECT_EQ(killed.at(key), whole.at(key));
-  for (const char* key : {"sentence", "hint"})
-    EXPECT_EQ(without_digits(killed.at(key)), without_digits(whole.at(key)));
+  for (const char* key : {"verdict", "missing", "tie", "search", "sentence", "hint"})
+    EXPECT_EQ(killed.at(key), whole.at(key)) << key;
   ASSERT_EQ(killed.at("steps").size(), whole.at("steps").size());
   for (size_t i = 0; i < whole.at("steps").size(); ++i) {
     const json &a = whole.at("steps")[i], &b = killed.at("steps")[i];
@@ -84,7 +74,7 @@ TEST_F(Killed, ASearchLosesNothingThatEnded) {
     for (size_t k = 0; k < a.at("parameters").size(); ++k) {
       const json &was = a.at("parameters")[k], &is = b.at("parameters")[k];
       const double interval = was.at("high").get<double>() - was.at("low").get<double>();
-      EXPECT_NEAR(was.at("value"), is.at("value"), 1e-2 * interval) << was.at("name");
+      EXPECT_NEAR(was.at("value"), is.at("value"), 1e-6 * interval) << was.at("name");
     }
     const fs::path pictures = folder_ / "killed/steps" /
                               ("0" + std::to_string(i) + "-" + b.at("name").get<std::string>());
