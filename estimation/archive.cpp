@@ -66,7 +66,7 @@ bool Archive::find(const Question& question, json& answer) {
       found = true;
     }
   if (found) ++impl_->tallies[question.kind].found;
-  if (asked) asked(question, found);
+  if (on_event) on_event(question, found ? Event::known : Event::anew);
   return found;
 }
 
@@ -77,6 +77,7 @@ void Archive::keep(const Question& question, const json& answer) {
   impl_->by_asked[asked].push_back(
       {question.numbers, impl_->add(std::string(bytes.begin(), bytes.end()))});
   ++impl_->tallies[question.kind].kept;
+  if (on_event) on_event(question, Event::kept);
 }
 
 bool Archive::empty() const { return impl_->by_asked.empty(); }

@@ -36,8 +36,8 @@ class Archive {
     int found = 0, kept = 0;
   };
   const std::map<std::string, Tally>& tallies() const;  ///< by kind, of this process
-  /// Called where an answer was found, and where one is to be worked out.
-  std::function<void(const Question&, bool found)> asked;
+  enum class Event { known, anew, kept };  ///< found; to be worked out; worked out and written
+  std::function<void(const Question&, Event)> on_event;
 
  private:
   struct Impl;

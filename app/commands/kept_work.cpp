@@ -22,8 +22,9 @@ std::string made_for(const Run& run) {
 KeptWork::KeptWork(const Run& run, Bench& bench) : run_(run), bench_(bench) {
   auto archive = std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), made_for(run)));
   from_before_ = !archive->empty();
-  archive->asked = [](const Question& question, bool found) {
-    spdlog::debug("{}: {}", question.kind, found ? "known" : "anew");
+  archive->on_event = [](const Question& question, Archive::Event event) {
+    constexpr const char* kWords[] = {"known", "anew", "kept"};
+    spdlog::debug("{}: {}", question.kind, kWords[static_cast<int>(event)]);
   };
   bench_.workspace.keep_in(std::move(archive));
 }
