@@ -11,6 +11,15 @@ const Effect* remeshed_by(const Ingredient& ingredient) {
   return effect && effect->remeshes(ingredient.variant()) ? effect : nullptr;
 }
 
+std::pair<ModelForm, VectorXd> on_its_mesh(const Model& model, const Ingredient& remeshing) {
+  const Effect& effect = *remeshed_by(remeshing);
+  auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing.variant()));
+  form.ingredients.push_back(effect.rebuild(form.realise(start), remeshing.variant()));
+  VectorXd all = form.initial();
+  all.head(start.size()) = start;
+  return {std::move(form), std::move(all)};
+}
+
 void work_out_anew(ModelForm& form, const VectorXd& p) {
   ModelForm so_far = form;
   so_far.ingredients.clear();

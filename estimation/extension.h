@@ -13,6 +13,9 @@ namespace hookeye {
 /// The effect that has its own mesh in this form. Null: the mesh stays.
 const Effect* remeshed_by(const Ingredient& ingredient);
 
+/// `model` on the mesh that `remeshing` asks for, with it, and where to start: at its null.
+std::pair<ModelForm, VectorXd> on_its_mesh(const Model& model, const Ingredient& remeshing);
+
 /// What the refinement of a mesh changed was worked out of the model that it was added to. `form`
 /// has another effect or form now: it is worked out anew, of this one at `p`.
 void work_out_anew(ModelForm& form, const VectorXd& p);

@@ -30,14 +30,10 @@ std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
 std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, const Model& model,
                                                        const Ingredient& remeshing,
                                                        const FitOptions& options) {
-  const Effect& effect = *remeshed_by(remeshing);
-  auto [form, start] = transfer(model, effect.refit_scene(*model.scene, remeshing.variant()));
-  form.ingredients.push_back(effect.rebuild(form.realise(start), remeshing.variant()));
-  VectorXd all = form.initial();
-  all.head(start.size()) = start;
+  const auto [form, start] = on_its_mesh(model, remeshing);
   FitOptions from_rest = warm(options);  // no equilibrium is known on this mesh
   from_rest.most_iterations = FitOptions{}.most_iterations;
-  return fit(workspace, form, all, from_rest);
+  return fit(workspace, form, start, from_rest);
 }
 
 /// `fitted` with another form of its last effect, which `change` makes of the present one and the

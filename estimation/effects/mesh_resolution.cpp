@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "estimation/effects/other_mesh.h"
 #include "estimation/effects/toolbox.h"
 
@@ -152,7 +154,9 @@ class MeshResolution final : public Effect {
                         most, next, false}};
     spec.touches = {.loading = true};
     const auto told = std::make_shared<OtherMesh>(model, 1.0, 0);
-    spec.apply = [told](const VectorXd& s, Model& m) {
+    spec.apply = [told, body = model.scene->body](const VectorXd& s, Model& m) {
+      if (m.scene->body != body)
+        throw std::logic_error("mesh_resolution: what a refinement changed is of another mesh");
       if (s[0] == 0.0) return;
       for (size_t e = 0; e < m.examples.size(); ++e)
         m.examples[e].loading.forces.push_back(

@@ -285,7 +285,9 @@ async function studio() {
   await page.click('#tab-add');
   await until(page, () => document.querySelector('.job.done, .job.failed'), 300);
   assert.equal(await page.locator('.job.failed').count(), 0, await page.textContent('.job'));
-  await until(page, () => document.querySelectorAll('.steps tbody tr').length === 2);
+  // rows and verdict arrive one after the other
+  await until(page, () => document.querySelectorAll('.steps tbody tr').length === 2 &&
+    !document.querySelector('.verdict').textContent.startsWith('not judged yet'), 60);
   const chis = await page.$$eval('.steps tbody tr', (rows) => rows.map((r) => Number(r.cells[1].textContent)));
   const stored = runJson().steps.map((s) => s.chi_fit);
   assert.ok(chis[1] < 0.7 * chis[0], `the error does not fall: ${chis}`);
