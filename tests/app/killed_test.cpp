@@ -1,8 +1,9 @@
 // A search that is stopped in whatever moment and taken up again: nothing that ended is lost, and
 // it comes to the same.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <chrono>
+#include <optional>
 #include <random>
 
 #include "app/fitted_run.h"
@@ -19,17 +20,39 @@ class Killed : public Cli {
     ASSERT_EQ(made.status, 0) << made.err;
   }
 
+  /// Where a search is stopped: once it has kept so many answers, and a moment later.
+  struct Stop {
+    std::string signal;
+    int kept;
+    double seconds;
+  };
+
   /// Exit status of the search in `run`; what it worked out to the end is added to `kept_`.
-  int search(const std::string& run, const std::string& more = "") {
-    const std::string command = "cd '" + folder_.string() + "' && " + more +
-                                " '" HOOKEYE_PROGRAM "' discover -v capture -o " + run +
-                                " >>out.txt 2>err.txt";
-    const int status = std::system(("sh -c \"" + command + "\" 2>>sh.txt").c_str());
+  int search(const std::string& run, const std::string& before = "",
+             const std::optional<Stop>& stop = {}) {
+    std::string command =
+        fmt::format("{} '{}' discover -v capture -o {} >>out.txt 2>err.txt </dev/null", before,
+                    HOOKEYE_PROGRAM, run);
+    if (stop)
+      command = fmt::format(
+          "{{ {} & }}; program=$!; while kill -0 $program 2>/dev/null && "
+          "[ $(grep -c ': kept' <err.txt) -lt {} ]; do sleep 0.01; done; sleep {}; "
+          "kill -{} $program; wait $program",
+          command, stop->kept, stop->seconds, stop->signal);
+    write("search.sh",
+          fmt::format("cd '{}'; rm -f err.txt; touch err.txt; {}", folder_.string(), command));
+    const int status =
+        std::system(fmt::format("sh '{}/search.sh' 2>/dev/null", folder_.string()).c_str());
     std::istringstream lines(read(folder_ / "err.txt"));
     for (std::string line; std::getline(lines, line);)
-      for (const char* kind : {"fit", "diagnosis", "trial", "scale"})
+      for (const char* kind : {"fit", "state", "diagnosis", "trial", "scale"})
         if (line.find(std::string(kind) + ": kept") != std::string::npos) ++kept_[run][kind];
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  int kept_in(const std::string& run) {
+    int sum = 0;
+    for (const auto& [kind, count] : kept_[run]) sum += count;
+    return sum;
   }
   json timeline(const std::string& run) const {
     return json::parse(read(folder_ / run / "run.json"));
@@ -38,26 +61,21 @@ class Killed : public Cli {
 };
 
 TEST_F(Killed, ASearchLosesNothingThatEnded) {
-  const auto began = std::chrono::steady_clock::now();
   ASSERT_EQ(search("whole"), 0) << read(folder_ / "err.txt");
-  const double took =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   ASSERT_GT(kept_["whole"]["fit"], 2);
 
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  int stopped = 0;
   for (const char* signal : {"KILL", "INT", "KILL"}) {
-    const double after = took * std::uniform_real_distribution<double>(0.1, 0.7)(random);
-    const int status =
-        search("killed", "timeout -s " + std::string(signal) + " " + std::to_string(after) +
-                             (stopped == 1 ? " taskset 1" : ""));
-    if (status == 0) break;
-    EXPECT_THAT(status, testing::AnyOf(137, 124)) << read(folder_ / "err.txt");
-    ++stopped;
+    const int left = kept_in("whole") - kept_in("killed");
+    const Stop stop{signal, std::uniform_int_distribution(0, left / 2)(random),
+                    std::uniform_real_distribution(0.0, 0.3)(random)};
+    const bool one_processor = signal == std::string("INT");
+    ASSERT_EQ(search("killed", one_processor ? "taskset 1" : "", stop), one_processor ? 130 : 137)
+        << stop.kept << " kept, " << stop.seconds << " s\n"
+        << read(folder_ / "err.txt");
   }
-  EXPECT_GT(stopped, 0);
   ASSERT_EQ(search("killed"), 0) << read(folder_ / "err.txt");
   // What was under way at a stop is begun again; nothing is done twice, and nothing else is done.
   for (const auto& [kind, count] : kept_["whole"]) EXPECT_LE(kept_["killed"][kind], count) << kind;
@@ -75,8 +93,8 @@ TEST_F(Killed, ASearchLosesNothingThatEnded) {
       const double interval = was.at("high").get<double>() - was.at("low").get<double>();
       EXPECT_NEAR(was.at("value"), is.at("value"), 1e-6 * interval) << was.at("name");
     }
-    const fs::path pictures = folder_ / "killed/steps" /
-                              ("0" + std::to_string(i) + "-" + b.at("name").get<std::string>());
+    const fs::path pictures =
+        folder_ / "killed/steps" / fmt::format("{:02}-{}", i, b.at("name").get<std::string>());
     EXPECT_TRUE(fs::exists(pictures / "diagnosis.json"));
     EXPECT_EQ(fs::exists(pictures / "removed"),
               fs::exists(folder_ / "whole/steps" / pictures.filename() / "removed"));
