@@ -43,17 +43,25 @@ std::string without_digits(std::string name) {
 
 /// "; did you mean `rest.obj`?" where the folder holds a file of nearly that name.
 std::string nearest_file(const fs::path& missing) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, siblings;  // which differ in their numbers
+  const std::string wanted = missing.filename().string();
   std::error_code error;
   for (fs::directory_iterator it(missing.parent_path(), error), end; !error && it != end;
        it.increment(error)) {
-    if (const std::string name = it->path().filename().string();
-        without_digits(name) != without_digits(missing.filename().string()))
-      names.push_back(name);
-    if (names.size() > 1000) break;
+    const std::string name = it->path().filename().string();
+    const bool sibling = without_digits(name) == without_digits(wanted);
+    (sibling ? siblings : names).push_back(name);
+    if (names.size() + siblings.size() > 1000) break;
+  }
+  if (!siblings.empty()) {
+    std::sort(siblings.begin(), siblings.end());
+    const size_t told = std::min<size_t>(siblings.size(), 4);
+    return fmt::format("; its folder has {}{}",
+                       fmt::join(siblings.begin(), siblings.begin() + told, ", "),
+                       told < siblings.size() ? ", ..." : "");
   }
   std::sort(names.begin(), names.end());
-  const std::string near = nearest_name(missing.filename().string(), names);
+  const std::string near = nearest_name(wanted, names);
   return near.empty() ? "" : fmt::format("; did you mean `{}`?", near);
 }
 

@@ -190,12 +190,14 @@ void warn_of_gaps(const Capture& capture, const Json& examples, Session& session
         "no force is known (no load, no measured force, no weight): the photos fix only ratios of "
         "stiffness, not its size");
   bool held_out = false;
-  for (const auto& example : examples) {
+  for (size_t i = 0; i < examples.size(); ++i) {
+    const auto& example = examples[i];
     held_out |= example["use"] == "validate";
     const auto& free = example["free_rigid_motions"];
     if (!free.empty() && !example["rest"].get<bool>())
-      session.warn(fmt::format("example {} leaves the body free: {}",
-                               example["name"].get<std::string>(), joined(free)));
+      session.warn(fmt::format("{}: example {} leaves the body free: {}; tell its `supports`",
+                               capture.examples[i].place.str(), capture.examples[i].name,
+                               joined(free)));
   }
   if (!held_out && !capture.examples.empty())
     session.warn("no example is held out (use: validate): nothing will judge the fit from outside");

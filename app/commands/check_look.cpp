@@ -73,10 +73,10 @@ std::string figure(const std::filesystem::path& picture, const std::string& capt
 
 std::string caption(const Scene& scene, const PhotoLook& look) {
   const ExampleSpec& example = scene.capture.examples[static_cast<size_t>(look.example)];
-  return fmt::format("{}, {}: overlap {}, texture found {}, off by {} px", example.name,
+  return fmt::format("{}, {}: overlap {}, texture found {}, off by {}", example.name,
                      example.photos[static_cast<size_t>(look.photo)].camera,
                      text(look.overlap, "{:.2f}"), text(100.0 * look.share, "{:.0f} %"),
-                     text(look.shift_px, "{:.1f}"));
+                     text(look.shift_px, "{:.1f} px"));
 }
 
 constexpr const char* kHead = R"(<!doctype html>
@@ -138,8 +138,7 @@ std::filesystem::path write_inspection_page(const Scene& scene, const Inspection
   page += fmt::format("<h1>{}</h1>\n<p><code>{}</code></p>\n",
                       html(scene.capture.title.empty() ? "check" : scene.capture.title),
                       html(scene.capture.file.string()));
-  page +=
-      inspection.warnings.empty() ? "<p>Nothing of what is looked for was found.</p>\n" : "<ul>\n";
+  page += inspection.warnings.empty() ? "<p>None of the usual slips was found.</p>\n" : "<ul>\n";
   for (const auto& warning : inspection.warnings)
     page += fmt::format("<li><code>{}</code>: {}. <em>{}</em></li>\n", html(warning.place.str()),
                         html(warning.seen), html(warning.right));

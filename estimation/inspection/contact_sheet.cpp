@@ -158,8 +158,8 @@ std::string numbers_of(const PhotoLook& look) {
   std::string text;
   const auto add = [&](const std::string& word) { text += (text.empty() ? "" : ", ") + word; };
   if (!std::isnan(look.overlap)) add(fmt::format("overlap {:.2f}", look.overlap));
-  if (!std::isnan(look.share))
-    add(fmt::format("texture found {:.0f} %, off {:.1f} px", 100.0 * look.share, look.shift_px));
+  if (!std::isnan(look.share)) add(fmt::format("texture found {:.0f} %", 100.0 * look.share));
+  if (!std::isnan(look.shift_px)) add(fmt::format("off {:.1f} px", look.shift_px));
   return text;
 }
 

@@ -1,5 +1,8 @@
 #include "estimation/inspection/load_case.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace hookeye::inspection {
 
 namespace {
@@ -13,6 +16,16 @@ bool trusted(Sight& sight, PhotoIndex reference) {
 
 bool is_image(const Sight& sight, PhotoIndex photo) {
   return sight.spec(photo).kind == PhotoSpec::Kind::image;
+}
+
+/// Of both, over the points that both have.
+void remove_mean(std::vector<Vector2d>& seen, std::vector<Vector2d>& expected) {
+  Vector2d of_seen = Vector2d::Zero(), of_expected = Vector2d::Zero();
+  double count = 0.0;
+  for (size_t i = 0; i < seen.size(); ++i)
+    if (expected[i].allFinite()) of_seen += seen[i], of_expected += expected[i], count += 1.0;
+  for (Vector2d& one : seen) one -= of_seen / std::max(count, 1.0);
+  for (Vector2d& one : expected) one -= of_expected / std::max(count, 1.0);
 }
 
 }  // namespace
@@ -41,11 +54,14 @@ LoadCase load_case(Sight& sight, int e) {
   return out;
 }
 
-MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer) {
+MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer, Shift shift) {
   MotionSums sums;
   for (const Motion& motion : seen.motions) {
     const FirstGuess& before = *sight.guess(motion.reference.first);
-    sums.add(motion.seen, first_order_motion(sight, motion, answer - before.linear));
+    std::vector<Vector2d> told = motion.seen;
+    std::vector<Vector2d> expected = first_order_motion(sight, motion, answer - before.linear);
+    if (shift == Shift::removed) remove_mean(told, expected);
+    sums.add(told, expected);
   }
   return sums;
 }

@@ -17,7 +17,10 @@ struct LoadCase {
 /// Motions are against each camera's reference photo. Empty `motions`: nothing can be told.
 LoadCase load_case(Sight& sight, int e);
 
+/// The mean motion of each photo, which a camera that was moved has, too.
+enum class Shift { kept, removed };
 /// Seen against what another answer (displacement to first order, 3 x nv) would look like.
-MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer);
+MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer,
+                   Shift shift = Shift::kept);
 
 }  // namespace hookeye::inspection

@@ -44,9 +44,10 @@ struct InspectionOptions {
   // Where a loaded body moves. Cosines are those of all found points together, seen against
   // expected.
   double least_motion_px = 1.0;  ///< rms: below it a camera's tremble has a direction, too
-  double sure_motion_px = 4.0;   ///< rms from which a direction that nothing explains is told
+  double sure_motion_px = 4.0;   ///< expected rms that cannot stay unseen
+  double sure_astray_px = 2.0;   ///< rms across the expected motion from which it is told where no
+                                 ///< slip explains it: twice what has a direction
   double astray_cosine = 0.5;    ///< below it the motion is another one (measured: 0.86 and more)
-  double lost_cosine = 0.2;      ///< the same where no slip explains it
   double sure_cosine = 0.85;     ///< from it on a slip explains it
   double flat_cosine = 0.94;     ///< facets within 20 degrees of a region's normal are its face
   double most_of_face = 0.85;    ///< a region that covers more of its face was meant so

@@ -51,6 +51,7 @@ class Sight {
   ~Sight();
 
   const Scene& scene() const { return scene_; }
+  const Model& model() const { return model_; }  ///< at its starting values
   const InspectionOptions& options() const { return options_; }
   const ExampleSpec& example(int e) const;
   const PhotoSpec& spec(PhotoIndex photo) const;

@@ -100,13 +100,15 @@ TEST_F(Faults, AFreeRigidMotionIsTold) {
   change("fix: [x, y, z]", "fix: [z]");
   const Result result = hookeye("check .");
   EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.err,
-            "warning: no force is known (no load, no measured force, no weight): the photos fix "
-            "only ratios of stiffness, not its size\n"
-            "warning: example pull leaves the body free: rotation about (0, 0, 1) through "
-            "(5, 5, 5); translation along (1, 0, 0); translation along (0, 1, 0)\n"
-            "warning: no example is held out (use: validate): nothing will judge the fit from "
-            "outside\n");
+  EXPECT_EQ(
+      result.err,
+      "warning: no force is known (no load, no measured force, no weight): the photos fix "
+      "only ratios of stiffness, not its size\n"
+      "warning: ./capture.yaml:14:3: example pull leaves the body free: rotation about (0, 0, 1) "
+      "through (5, 5, 5); translation along (1, 0, 0); translation along (0, 1, 0); tell its "
+      "`supports`\n"
+      "warning: no example is held out (use: validate): nothing will judge the fit from "
+      "outside\n");
 }
 
 /// Published Yeoh constants have such signs; what they mean must be known where the body goes.

@@ -169,6 +169,17 @@ const Slip kSlips[] = {
      "directions", "`base` reaches over the whole of its flat face"},
     {"LoadReversed", [](InspectedCapture& c) { c.change(in("pull", "force: \\[0, 0, "), "$1-"); },
      "directions", "the force on `grip` has the other sign"},
+    {"ForceInTheAxesOfThePart",
+     [](InspectedCapture& c) {
+       c.change(in("side", "force: \\[") + "([-0-9.e]+), ([-0-9.e]+)", "$1-$3, $2");
+     },
+     "directions", "not where the capture would move it"},
+    {"LoadOnWhatIsHeld",
+     [](InspectedCapture& c) { c.change("region: grip, force", "region: base, force"); },
+     "idle_keys", "hold all of region `base`"},
+    {"LightOfALitTexture",
+     [](InspectedCapture& c) { c.change("texture: \\{image[^}]*\\}", "texture: {from: rest}"); },
+     "idle_keys", "the light changes nothing"},
     {"KilonewtonsForNewtons",
      [](InspectedCapture& c) { c.change_numbers("force", [](double f) { return f / 1000; }); },
      "magnitudes", "kN for N"},

@@ -66,6 +66,20 @@ void ask_for_swaps(Sight& sight, std::map<int, LoadCase>& cases, Warnings& warni
   }
 }
 
+/// What is left of the seen motions once the part along the expected ones is out [px^2].
+double left(const MotionSums& sums) {
+  const double cosine = std::max(sums.cosine(), 0.0);
+  return sums.seen2 * (1.0 - cosine * cosine);
+}
+
+/// More goes elsewhere than a camera that was moved between its photos would show.
+bool goes_elsewhere(Sight& sight, const LoadCase& seen, const MotionSums& told) {
+  const InspectionOptions& options = sight.options();
+  return std::sqrt(left(told) / told.count) >= options.sure_astray_px &&
+         against(sight, seen, sight.guess(seen.example)->linear, Shift::removed).cosine() <
+             options.astray_cosine;
+}
+
 /// Signs of loads and motions.
 void ask_for_signs(Sight& sight, const LoadCase& seen, Warnings& warnings) {
   const InspectionOptions& options = sight.options();
@@ -89,17 +103,12 @@ void ask_for_signs(Sight& sight, const LoadCase& seen, Warnings& warnings) {
     sight.doubt_load(e);
     warnings.say(best->place, fmt::format("{}; it does if {} ({:.2f})", what, best->seen, reached),
                  best->right);
-  } else if (told.cosine() < options.lost_cosine && told.seen_px() >= options.sure_motion_px) {
+  } else if (goes_elsewhere(sight, seen, told)) {
     sight.doubt_load(e);
     warnings.say(sight.example(e).place, what,
-                 "look at loads, supports and regions as they are drawn (`check -o DIR`)");
+                 "look at the directions of the loads, which are the world's and not the part's, "
+                 "at supports and at regions (`check -o DIR` draws them)");
   }
-}
-
-/// What is left of the seen motions once the part along the expected ones is out [px^2].
-double left(const MotionSums& sums) {
-  const double cosine = std::max(sums.cosine(), 0.0);
-  return sums.seen2 * (1.0 - cosine * cosine);
 }
 
 struct Grown {
@@ -146,7 +155,7 @@ void ask_directions(Sight& sight, Warnings& warnings) {
   }
   ask_for_swaps(sight, cases, warnings);
   for (const auto& [e, seen] : cases)
-    if (seen.motions.size() == sight.load_case(e).motions.size())
+    if (seen.motions.size() == sight.load_case(e).motions.size() && !sight.load_doubted(e))
       ask_for_signs(sight, seen, warnings);
   ask_for_regions(sight, cases, warnings);
 }
