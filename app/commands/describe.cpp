@@ -43,4 +43,15 @@ std::string mesh_lines(const TetMesh& mesh) {
       q.min_dihedral_deg, q.max_dihedral_deg, q.min_radius_ratio, q.worst_element);
 }
 
+std::string narrow_triangles_line(const TetMesh& mesh) {
+  constexpr double kFlat = 0.05;  // docs/meshing.md
+  const MeshQuality q = quality(mesh);
+  if (q.min_radius_ratio >= kFlat) return {};
+  return fmt::format(
+      "  narrow triangles of the surface make flat tetrahedra: `hookeye mesh --repair --edge "
+      "{:.2g}` "
+      "remeshes it first\n",
+      q.mean_edge);
+}
+
 }  // namespace hookeye

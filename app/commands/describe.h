@@ -12,6 +12,8 @@ namespace hookeye {
 
 nlohmann::ordered_json describe_mesh(const TetMesh& mesh);
 std::string mesh_lines(const TetMesh& mesh);
+/// How `hookeye mesh` mends what narrow triangles of a surface make of the mesh; empty: it is well.
+std::string narrow_triangles_line(const TetMesh& mesh);
 nlohmann::ordered_json describe_vector(const Vector3d& v);
 /// "(1, 0, 2.5)"; what is tiny beside `scale` or its largest component reads as zero.
 std::string vector_text(const Vector3d& v, double scale = 0.0);

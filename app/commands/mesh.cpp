@@ -63,12 +63,7 @@ void tell_body(const TetMesh& mesh, const MeshOptions& options, Session& session
         "  the mesher was asked for angles of {:g} degrees and more (--min-angle) and reached "
         "{:.1f}\n",
         options.fill.min_dihedral_deg, reached.min_dihedral_deg);
-  constexpr double kFlat = 0.05;  // docs/meshing.md
-  if (reached.min_radius_ratio < kFlat && !(options.repair && options.fill.edge > 0.0))
-    session.say(
-        "  narrow triangles of the surface make flat tetrahedra: --repair --edge {:.2g} remeshes "
-        "it first\n",
-        reached.mean_edge);
+  if (!(options.repair && options.fill.edge > 0.0)) session.say("{}", narrow_triangles_line(mesh));
 }
 
 void run_mesh(const MeshOptions& options, Session& session) {
