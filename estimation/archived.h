@@ -49,8 +49,8 @@ inline Workspace::Place place_after(const Workspace::Place& before, const auto&)
 Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
 
 /// The answer of the workspace's archive; else that of `work`, which the archive keeps unless it
-/// was cancelled. `read` may return nothing: then it is worked out. Whichever it was, the answer is
-/// the same in every bit, and so is the place where the workspace is left.
+/// was cancelled. `read` may return nothing: then it is worked out. Whichever it was, the
+/// workspace is left at the same bits; the answer may differ in a last digit by the order of sums.
 template <class T, class Work, class Write, class Read>
 std::variant<T, NumericalFailure> archived(const Asked& asked, const Work& work, const Write& write,
                                            const Read& read) {

@@ -48,9 +48,8 @@ std::string narrow_triangles_line(const TetMesh& mesh) {
   const MeshQuality q = quality(mesh);
   if (q.min_radius_ratio >= kFlat) return {};
   return fmt::format(
-      "  narrow triangles of the surface make flat tetrahedra: `hookeye mesh --repair --edge "
-      "{:.2g}` "
-      "remeshes it first\n",
+      "  narrow triangles of the surface make flat tetrahedra: "
+      "`hookeye mesh --repair --edge {:.2g}` remeshes it first\n",
       q.mean_edge);
 }
 

@@ -220,6 +220,9 @@ const BrokenCase broken_cases[] = {
     {"PhotoMissing", swap("front: photos/pull.png", "front: photos/pul.png"),
      "capture.yaml:55:14: photo `front` of example `pull` is `photos/pul.png`\n"
      "  there is no such file; did you mean `pull.png`?"},
+    {"PhotoOfASeriesMissing", swap("front: photos/pull.png", "front: photos/pull2.png"),
+     "capture.yaml:55:14: photo `front` of example `pull` is `photos/pull2.png`\n"
+     "  there is no such file; its folder has pull.png"},
     {"PhotoTwiceACamera", swap("      front: photos/pull.png", "      left: photos/pull.png"),
      "capture.yaml:56:7: `left` is given twice\n"
      "  it already stands in line 55; keep one of the two"},

@@ -132,7 +132,9 @@ TEST_F(KeptFits, NoFitIsDoneTwice) {
   EXPECT_EQ(second.iterations, first.iterations);
   EXPECT_EQ(second.converged, first.converged);
   for (const bool held_out : {false, true})
-    EXPECT_NEAR(second.evaluation.chi(held_out), first.evaluation.chi(held_out), 1e-6);
+    EXPECT_EQ(second.evaluation.chi(held_out), first.evaluation.chi(held_out));
+  const auto here = workspace_.place(), there = another.place();
+  EXPECT_EQ(here.q, there.q) << "what is asked next begins at the same bits";
   EXPECT_NEAR(second.low[0], first.low[0], 1e-6 * first.low[0]);
   options.coarse_to_fine = false;
   fit(another, base, start, options);
@@ -201,7 +203,9 @@ TEST_F(KeptFits, ADiagnosisAndTheTrialsOfItComeBack) {
       EXPECT_LT((q - second.effects[i].displaced.at(example)).norm(), 1e-6 * q.norm())
           << first.effects[i].effect;
 
+  const auto before = workspace_.place().q;
   const auto raced = race(workspace_, base, first, {});
+  EXPECT_EQ(workspace_.place().q, before) << "trials leave the workspace where it was";
   const int trials = kept("trial");
   ASSERT_GT(trials, 1);
   const auto again = race(workspace_, base, second, {});

@@ -67,6 +67,26 @@ TEST(Inspection, DrawsTheBodyOverEveryPhoto) {
   }
 }
 
+/// A camera that was knocked between its photos moves all of a picture: no load is blamed for it.
+TEST(Inspection, AMovedCameraIsNoWrongLoad) {
+  const InspectedCapture capture;
+  for (const char* photo : {"photos/side_cam0.png", "photos/side_cam1.png"}) {
+    const auto file = capture.folder() / photo;
+    const Image image = read_image(file, Encoding{});
+    Image moved = image;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        moved.values[static_cast<size_t>(y * image.width + x)] = image.at(std::max(x - 40, 0), y);
+    write_image(file, moved);
+  }
+  const Inspection seen = capture.inspect();
+  const auto side = std::find_if(seen.guesses.begin(), seen.guesses.end(), [](const auto& guess) {
+    return guess.example == 2 && std::abs(guess.cosine) < 0.5;
+  });
+  EXPECT_NE(side, seen.guesses.end()) << "the motion is another than expected";
+  EXPECT_THAT(said(seen), testing::Not(HasSubstr("not where the capture would move it")));
+}
+
 struct Slip {
   const char* name;
   void (*make)(InspectedCapture& capture);
