@@ -17,7 +17,7 @@
 #include "app/validators.h"
 #include "capture_io/input_error.h"
 #include "capture_io/scope.h"
-#include "estimation/evaluation.h"
+#include "estimation/evaluation/evaluation.h"
 
 namespace hookeye {
 namespace {

@@ -13,11 +13,11 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "estimation/additive_material.h"
-#include "estimation/diagnosis.h"
-#include "estimation/evaluation.h"
-#include "estimation/normal_equations.h"
-#include "estimation/synth.h"
+#include "estimation/diagnosis/diagnosis.h"
+#include "estimation/evaluation/evaluation.h"
+#include "estimation/evaluation/normal_equations.h"
+#include "estimation/model/additive_material.h"
+#include "estimation/synth/synth.h"
 
 namespace hookeye {
 namespace {

@@ -3,7 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/one_view_floor.h"
-#include "estimation/evaluation.h"
+#include "estimation/evaluation/evaluation.h"
 #include "render/condensed.h"
 #include "render/frame.h"
 #include "render/scene.h"

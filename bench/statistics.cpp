@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/effects/catalogue.h"
 #include "tests/estimation/repeats.h"
 
 namespace hookeye {

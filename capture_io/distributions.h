@@ -7,7 +7,10 @@ namespace hookeye {
 /// freedom, whole or not.
 double student_quantile(double probability, double degrees);
 
-/// The same of chi^2; 0 for no degrees of freedom.
+/// Half a 95 % interval of a normal distribution, in standard deviations.
+constexpr double kNormal95 = 1.959964;
+
+/// Quantile of chi^2; 0 for no degrees of freedom.
 double chi2_quantile(double probability, double degrees);
 
 }  // namespace hookeye

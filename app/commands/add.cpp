@@ -11,8 +11,10 @@
 #include "app/commands/kept_work.h"
 #include "app/interrupt.h"
 #include "app/text.h"
-#include "estimation/effect.h"
-#include "estimation/step_json.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/effect.h"
+#include "estimation/output/step_json.h"
+#include "estimation/search/refit_score.h"
 
 namespace hookeye {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "estimation/effects/catalogue.h"
+
 namespace hookeye {
 namespace {
 
@@ -84,7 +86,7 @@ Step without_effect(Bench& bench, const Step& current, const std::string& name,
   FitOptions options = wanted.fit;
   options.coarse_to_fine = false;
   VectorXd start = Eigen::Map<const VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
-  if (mesh) std::tie(form, start) = transfer(form.realise(start), bench.scene);
+  if (mesh) std::tie(form, start) = transfer(form.realise(start), bench.scene, catalogue());
   step.fitted = value_or_fail(fit(bench.workspace, form, start, options));
   return step;
 }

@@ -7,7 +7,7 @@
 #include "app/commands/describe.h"
 #include "app/commands/run_support.h"
 #include "capture_io/scope.h"
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 
 namespace hookeye {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "capture_io/run.h"
-#include "estimation/page_data.h"
+#include "estimation/output/page_data.h"
 
 namespace hookeye {
 namespace {

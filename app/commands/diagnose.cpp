@@ -4,7 +4,8 @@
 #include "app/commands/commands.h"
 #include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
-#include "estimation/step_json.h"
+#include "estimation/diagnosis/diagnosis_json.h"
+#include "estimation/output/step_json.h"
 
 namespace hookeye {
 namespace {

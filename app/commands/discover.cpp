@@ -11,7 +11,7 @@
 #include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
-#include "estimation/step_json.h"
+#include "estimation/output/step_json.h"
 
 namespace hookeye {
 namespace {

@@ -7,7 +7,8 @@
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
-#include "estimation/declaration.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/declaration.h"
 
 namespace hookeye {
 namespace {

@@ -8,9 +8,10 @@
 #include "app/commands/run_support.h"
 #include "app/commands/tables.h"
 #include "capture_io/json_file.h"
-#include "estimation/additive_material.h"
-#include "estimation/progressive.h"
-#include "estimation/step_json.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/additive_material.h"
+#include "estimation/output/step_json.h"
+#include "estimation/search/progressive.h"
 
 namespace hookeye {
 namespace {
@@ -78,7 +79,8 @@ void run_fit(const FitArguments& arguments, Session& session) {
   }
   ModelForm form = base_form(bench.scene);
   VectorXd start = form.initial();
-  if (!arguments.model.empty()) std::tie(form, start) = read_model(arguments.model, bench.scene);
+  if (!arguments.model.empty())
+    std::tie(form, start) = read_model(arguments.model, bench.scene, catalogue());
   Step step;
   step.name = "base";
   const bool additive = arguments.material == "additive" || has_additive(form);

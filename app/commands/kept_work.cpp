@@ -4,7 +4,7 @@
 
 #include "app/interrupt.h"
 #include "capture_io/fingerprints.h"
-#include "estimation/archive.h"
+#include "estimation/fit/archive.h"
 
 namespace hookeye {
 namespace {

@@ -9,7 +9,9 @@
 #include "app/progress.h"
 #include "app/validators.h"
 #include "capture_io/json_file.h"
-#include "estimation/step_json.h"
+#include "estimation/diagnosis/diagnosis_json.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/plan/plan_json.h"
 
 namespace hookeye {
 namespace {
@@ -52,7 +54,7 @@ struct PlannedStep {
 
 PlannedStep open_step(const Run& run, Bench& bench, size_t index) {
   const auto folder = run.steps().at(index);
-  auto [form, p] = read_model(folder / "model.yaml", bench.scene);
+  auto [form, p] = read_model(folder / "model.yaml", bench.scene, catalogue());
   PlannedStep out;
   out.fitted = value_or_fail(assess(bench.workspace, form, p, fit_options()));
   const auto file = folder / "diagnosis.json";

@@ -7,7 +7,7 @@
 #include "app/commands/solve.h"
 #include "app/interrupt.h"
 #include "capture_io/scope.h"
-#include "estimation/photo_evaluation.h"
+#include "estimation/evaluation/photo_evaluation.h"
 
 namespace hookeye {
 namespace {

@@ -10,11 +10,14 @@
 #include "app/progress.h"
 #include "app/report/answer.h"
 #include "capture_io/json_file.h"
-#include "estimation/contest.h"
-#include "estimation/doubts.h"
-#include "estimation/page_data.h"
-#include "estimation/removed.h"
-#include "estimation/step_json.h"
+#include "estimation/diagnosis/diagnosis_json.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/fit/at_floor.h"
+#include "estimation/model/doubts.h"
+#include "estimation/output/page_data.h"
+#include "estimation/output/removed.h"
+#include "estimation/output/step_json.h"
+#include "estimation/search/contest.h"
 
 namespace hookeye {
 namespace {
@@ -102,7 +105,7 @@ Step step_of(const Run& run, Bench& bench, size_t index, const FitOptions& optio
   Step step;
   step.name = entry.at("name");
   if (!entry.at("added").is_null()) step.added = entry.at("added");
-  auto [form, p] = read_model(run.steps().at(index) / "model.yaml", bench.scene);
+  auto [form, p] = read_model(run.steps().at(index) / "model.yaml", bench.scene, catalogue());
   step.fitted = value_or_fail(assess(bench.workspace, form, p, options));
   step.fitted.converged = entry.value("converged", true);
   step.fitted.iterations = entry.value("iterations", 0);

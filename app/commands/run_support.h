@@ -7,7 +7,7 @@
 #include "app/invocation.h"
 #include "app/session.h"
 #include "capture_io/run.h"
-#include "estimation/discover.h"
+#include "estimation/search/discover.h"
 
 namespace hookeye {
 

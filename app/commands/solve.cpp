@@ -6,12 +6,13 @@
 #include "app/progress.h"
 #include "app/session.h"
 #include "capture_io/scope.h"
+#include "estimation/effects/catalogue.h"
 
 namespace hookeye {
 
 Model realise_model(const std::string& file, const std::shared_ptr<const Scene>& scene) {
   if (!file.empty()) {
-    const auto [form, p] = read_model(file, scene);
+    const auto [form, p] = read_model(file, scene, catalogue());
     return form.realise(p);
   }
   const ModelForm form = base_form(scene);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye {

@@ -1,5 +1,5 @@
 // hookeye synth: synthetic photos with a hidden effect.
-#include "estimation/synth.h"
+#include "estimation/synth/synth.h"
 
 #include <CLI/CLI.hpp>
 

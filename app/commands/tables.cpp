@@ -7,9 +7,11 @@
 #include <cmath>
 
 #include "app/text.h"
-#include "estimation/contest.h"
-#include "estimation/step_json.h"
-#include "estimation/verdict.h"
+#include "estimation/diagnosis/diagnosis_json.h"
+#include "estimation/fit/at_floor.h"
+#include "estimation/output/step_json.h"
+#include "estimation/search/contest.h"
+#include "estimation/search/verdict.h"
 
 namespace hookeye {
 namespace {

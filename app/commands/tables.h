@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "estimation/discover.h"
+#include "estimation/search/discover.h"
 
 namespace hookeye {
 

@@ -14,7 +14,8 @@
 #include "app/text.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
-#include "estimation/diagnosis.h"
+#include "estimation/diagnosis/diagnosis.h"
+#include "estimation/fit/at_floor.h"
 
 namespace hookeye {
 

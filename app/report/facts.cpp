@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "estimation/fit.h"
+#include "estimation/fit/fit.h"
 #include "render/renderer.h"
 
 namespace hookeye {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "capture_io/json_file.h"
-#include "estimation/page_data.h"
+#include "estimation/output/page_data.h"
 
 #ifdef HOOKEYE_HAS_PAGE
 // Symbols that `ld -r -b binary` makes of page.html (app/CMakeLists.txt).

@@ -13,8 +13,9 @@
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
 #include "capture_io/run.h"
-#include "estimation/effect.h"
-#include "estimation/synth.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/effect.h"
+#include "estimation/synth/synth.h"
 
 namespace hookeye::blind {
 namespace {

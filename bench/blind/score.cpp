@@ -8,7 +8,8 @@
 #include <set>
 
 #include "bench/blind/draw.h"
-#include "estimation/effect.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/effect.h"
 
 namespace hookeye::blind {
 

@@ -9,7 +9,7 @@
 
 #include "bench/blind/draw.h"
 #include "capture_io/run.h"
-#include "estimation/synth.h"
+#include "estimation/synth/synth.h"
 #include "tests/invariance/transformed.h"
 
 namespace hookeye::test {

@@ -18,10 +18,10 @@
 #include <iostream>
 #include <opencv2/imgproc.hpp>
 
-#include "estimation/additive_material.h"
-#include "estimation/normal_equations.h"
-#include "estimation/photo_evaluation.h"
-#include "estimation/progressive.h"
+#include "estimation/evaluation/normal_equations.h"
+#include "estimation/evaluation/photo_evaluation.h"
+#include "estimation/model/additive_material.h"
+#include "estimation/search/progressive.h"
 
 namespace hookeye {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 
 namespace hookeye {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "estimation/base_ingredients.h"
 #include "estimation/effects/toolbox.h"
+#include "estimation/model/base_ingredients.h"
 
 namespace hookeye {
 

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "capture_io/input_error.h"
+#include "estimation/effects/catalogue.h"
 #include "meshing/interpolation.h"
 
 namespace hookeye {
@@ -82,7 +83,7 @@ void OtherMesh::drop_idle_solver(int example) {
 void OtherMesh::realise_there() {
   std::call_once(once_, [&] {
     auto body = other_body(model_.scene, factor_, order_);
-    const auto [form, p] = transfer(model_, body->scene);
+    const auto [form, p] = transfer(model_, body->scene, catalogue());
     other_ = form.realise(p);
     body_ = std::move(body);
   });

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <vector>
 
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye {

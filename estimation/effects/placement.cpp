@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 
-#include "estimation/base_ingredients.h"
 #include "estimation/effects/toolbox.h"
+#include "estimation/model/base_ingredients.h"
 
 namespace hookeye {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-#include "estimation/base_ingredients.h"
+#include "estimation/model/base_ingredients.h"
 #include "meshing/extent.h"
 
 namespace hookeye {

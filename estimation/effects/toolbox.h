@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "estimation/additive_function.h"
-#include "estimation/effect.h"
+#include "estimation/model/additive_function.h"
+#include "estimation/model/effect.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye {

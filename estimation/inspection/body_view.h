@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 #include "render/renderer.h"
 
 namespace hookeye::inspection {

@@ -7,7 +7,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "estimation/evaluation.h"
+#include "estimation/evaluation/evaluation.h"
 #include "meshing/extent.h"
 
 namespace hookeye::inspection {

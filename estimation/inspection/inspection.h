@@ -9,7 +9,7 @@
 
 #include "capture_io/input_error.h"
 #include "estimation/inspection/options.h"
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 
 namespace hookeye {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/evaluation.h"
+#include "estimation/evaluation/evaluation.h"
 #include "meshing/extent.h"
 
 namespace hookeye::inspection {

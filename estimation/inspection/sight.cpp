@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimation/evaluation.h"
+#include "estimation/evaluation/evaluation.h"
 #include "estimation/inspection/load_case.h"
 
 namespace hookeye::inspection {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "estimation/photo_pyramid.h"
+#include "estimation/model/photo_pyramid.h"
 
 namespace hookeye::inspection {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimation/inspection/options.h"
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 
 namespace hookeye::inspection {
 

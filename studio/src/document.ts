@@ -109,7 +109,7 @@ export interface StressCurve {
   high: (number | null)[];
   visited: [number, number];
 }
-/** What the fit makes of the material (estimation/material_card.h). */
+/** What the fit makes of the material (estimation/output/material_card.h). */
 export interface Material {
   cards: {
     region: string;

@@ -76,7 +76,7 @@ export function effectsOf(entry: StepEntry | undefined): EffectScore[] {
 export function wasTested(effect: EffectScore): boolean {
   return effect.testable !== false && effect.evidence !== undefined;
 }
-/** Log Bayes factor below which no effect is named (estimation/diagnosis.h: kNameable). */
+/** Log Bayes factor below which no effect is named (estimation/diagnosis/diagnosis.h: kNameable). */
 export function gateOf(entry: StepEntry | undefined): number {
   return Math.max(5, entry?.diagnosis?.gate ?? timelineOf(entry)?.gate ?? 0);
 }

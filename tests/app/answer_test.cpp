@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "app/cli.h"
+#include "estimation/fit/at_floor.h"
 
 namespace hookeye::test {
 namespace {

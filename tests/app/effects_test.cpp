@@ -2,7 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "app/cli.h"
-#include "estimation/effect.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/effect.h"
 
 namespace hookeye::test {
 namespace {

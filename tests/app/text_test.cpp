@@ -5,7 +5,8 @@
 
 #include "app/cli.h"
 #include "app/commands/tables.h"
-#include "estimation/step_json.h"
+#include "estimation/diagnosis/diagnosis_json.h"
+#include "estimation/output/step_json.h"
 
 namespace hookeye::test {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
-#include "estimation/recipe.h"
+#include "estimation/synth/recipe.h"
 
 namespace hookeye::blind {
 namespace {

@@ -1,6 +1,6 @@
 #include "estimation/effects_scene.h"
 
-#include "estimation/declaration.h"
+#include "estimation/model/declaration.h"
 #include "simulation/equilibrium.h"
 #include "support/temporary_folder.h"
 

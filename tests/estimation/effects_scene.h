@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "estimation/effect.h"
+#include "estimation/model/effect.h"
 
 namespace hookeye::test {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "estimation/discover.h"
+#include "estimation/search/discover.h"
 #include "tests/estimation/small_capture.h"
 
 namespace hookeye::test {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <random>
 
-#include "estimation/photo_evaluation.h"
+#include "estimation/evaluation/photo_evaluation.h"
 #include "simulation/equilibrium.h"
 
 namespace hookeye::test {

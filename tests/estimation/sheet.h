@@ -9,8 +9,8 @@
 #include <string>
 #include <variant>
 
-#include "estimation/fit.h"
-#include "estimation/model.h"
+#include "estimation/fit/fit.h"
+#include "estimation/model/model.h"
 #include "simulation/energy_model.h"
 
 namespace hookeye::test {

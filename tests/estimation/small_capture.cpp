@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "estimation/synth.h"
+#include "estimation/synth/synth.h"
 
 namespace hookeye::test {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "estimation/discover.h"
+#include "estimation/search/discover.h"
 #include "tests/support/temporary_folder.h"
 
 namespace hookeye::test {

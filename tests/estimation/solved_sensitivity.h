@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimation/effects_scene.h"
-#include "estimation/evaluation.h"
+#include "estimation/evaluation/evaluation.h"
 
 namespace hookeye::test {
 

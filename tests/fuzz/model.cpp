@@ -1,7 +1,8 @@
 // model.yaml of a run's step, against a small body.
-#include "estimation/model.h"
+#include "estimation/model/model.h"
 
 #include "capture_io/capture.h"
+#include "estimation/effects/catalogue.h"
 #include "fuzz.h"
 
 namespace hookeye::fuzz {
@@ -28,6 +29,7 @@ std::shared_ptr<const Scene> scene() {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto scene = hookeye::fuzz::scene();
-  return hookeye::fuzz::on_file("model.yaml", data, size,
-                                [](const auto& file) { hookeye::read_model(file, scene); });
+  return hookeye::fuzz::on_file("model.yaml", data, size, [](const auto& file) {
+    hookeye::read_model(file, scene, catalogue());
+  });
 }

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "estimation/synth.h"
+#include "estimation/synth/synth.h"
 
 namespace hookeye::test {
 

@@ -1,6 +1,6 @@
 #include "tests/invariance/leaning_blob.h"
 
-#include "estimation/synth.h"
+#include "estimation/synth/synth.h"
 #include "tests/invariance/transformed.h"
 #include "tests/support/temporary_folder.h"
 

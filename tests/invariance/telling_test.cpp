@@ -9,7 +9,7 @@
 #include <optional>
 #include <thread>
 
-#include "estimation/discover.h"
+#include "estimation/search/discover.h"
 #include "tests/invariance/leaning_blob.h"
 #include "tests/invariance/transformed.h"
 #include "tests/support/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "estimation/photo_evaluation.h"
+#include "estimation/evaluation/photo_evaluation.h"
 #include "simulation/blocks.h"
 
 namespace hookeye::real {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "estimation/diagnosis.h"
+#include "estimation/diagnosis/diagnosis.h"
 #include "real/captures.h"
 
 namespace hookeye::real {

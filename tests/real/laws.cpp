@@ -5,8 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "estimation/additive_material.h"
-#include "estimation/progressive.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/additive_material.h"
+#include "estimation/search/progressive.h"
 #include "real/cases.h"
 
 namespace hookeye::real {
@@ -73,7 +74,8 @@ void compare_laws(const fs::path& data, const fs::path& out) {
     Case shown;
     shown.scene = load_scene(read_capture(other));
     shown.workspace = std::make_unique<Workspace>(shown.scene);
-    const auto [form, p] = transfer(sheet.fitted.form.realise(sheet.fitted.p), shown.scene);
+    const auto [form, p] =
+        transfer(sheet.fitted.form.realise(sheet.fitted.p), shown.scene, catalogue());
     shown.fitted = value(assess(*shown.workspace, form, p));
     const double zero = holes.load_cell_zero_N;
     fmt::print("{:12} {:6}  {:.4f} {:5.2f} % | {:.4f} {:5.2f} % | {:.4f} {:5.2f} %\n", law.name,

@@ -5,7 +5,7 @@
 
 #include <exception>
 
-#include "estimation/discover.h"
+#include "estimation/search/discover.h"
 #include "real/cases.h"
 #include "real/pictures.h"
 

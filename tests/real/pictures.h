@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "estimation/compare_picture.h"
+#include "estimation/output/compare_picture.h"
 
 namespace hookeye::real {
 

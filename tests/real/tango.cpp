@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "estimation/photo_pyramid.h"
+#include "estimation/model/photo_pyramid.h"
 #include "real/captures.h"
 #include "real/plate.h"
 #include "real/silhouette.h"

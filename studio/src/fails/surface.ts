@@ -1,4 +1,4 @@
-// The body's surface of one step and example, as the program wrote it (estimation/page_data.h).
+// The body's surface of one step and example, as the program wrote it (estimation/output/page_data.h).
 import type {StepEntry} from '../document';
 import {keysOf} from '../format';
 import {units} from '../state';

@@ -1,5 +1,5 @@
 // Where to look when no effect of the catalogue explains what is left: forces that would, drawn on
-// the body (estimation/free_form.h).
+// the body (estimation/diagnosis/free_form.h).
 import {signal} from '@preact/signals';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {sequential, type Ramp} from '../colours';

@@ -1,7 +1,7 @@
 // Which effects cannot be told apart: single linkage of the cosines between their signatures.
 import type {EffectScore} from '../document';
 
-/** Cosines are told from here on (estimation/diagnosis.cpp). */
+/** Cosines are told from here on (estimation/diagnosis/diagnosis.cpp). */
 export const leastCosine = 0.9;
 
 /** Cosine of two effects, either may have told of it; undefined: below what is told. */

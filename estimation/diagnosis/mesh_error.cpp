@@ -1,0 +1,153 @@
+#include "estimation/diagnosis/mesh_error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "estimation/effects/catalogue.h"
+
+namespace hookeye {
+
+namespace {
+
+/// Those that `mesh_shift` takes beyond their intervals for noise.
+std::string moved_by_mesh(const Fitted& fitted, const VectorXd& mesh_shift) {
+  const auto parameters = fitted.form.parameters();
+  std::vector<std::string> moved;
+  for (int i = 0; i < mesh_shift.size(); ++i) {
+    const double half = 0.5 * (fitted.high[i] - fitted.low[i]);
+    if (std::abs(mesh_shift[i]) > half)
+      moved.push_back(fmt::format("{} by {:+.2g}{}{}", parameters[i].name, mesh_shift[i],
+                                  parameters[i].unit.empty() ? "" : " ", parameters[i].unit));
+  }
+  return fmt::format("{}", fmt::join(moved, ", "));
+}
+
+/// Mean square of what fitted measured values change by the column `at` times `amount`, the first
+/// columns moving by `shift`.
+double change_of_measured(const Evaluation& evaluation, Eigen::Index at, double amount,
+                          const VectorXd& shift) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& measured : example.measured) {
+      if (example.held_out) continue;
+      sum +=
+          (measured.J.leftCols(shift.size()) * shift + amount * measured.J.col(at)).squaredNorm();
+      count += 3.0;
+    }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+/// The share of a refinement that a model has fitted, and sums in which its column is the last of
+/// the base: the others are what it and all candidates are projected against.
+struct FittedShare {
+  Eigen::Index at = 0, last = 0;
+  double next = 0.0;  ///< share that the next refinement would change
+  Eigen::MatrixXd H;
+  ProjectedHypothesis column;
+};
+
+std::optional<FittedShare> fitted_share(const Fitted& fitted, const Eigen::MatrixXd& H) {
+  FittedShare out;
+  for (const auto& ingredient : fitted.form.ingredients) {
+    const auto parameters = ingredient->parameters();
+    const Effect* effect = find_effect(ingredient->name());
+    if (effect && parameters.size() == 1 && effect->remeshes(ingredient->variant())) {
+      out.last = fitted.form.size() - 1;
+      out.next = parameters[0].typical;
+      out.H = H;
+      out.H.row(out.at).swap(out.H.row(out.last));
+      out.H.col(out.at).swap(out.H.col(out.last));
+      Hypothesis change;
+      change.first = static_cast<int>(out.last), change.count = 1;
+      change.typical = VectorXd::Ones(1);
+      out.column = project(out.H, static_cast<int>(out.last), change);
+      return out;
+    }
+    out.at += static_cast<Eigen::Index>(parameters.size());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+const Candidate* mesh_candidate(const std::vector<Candidate>& candidates,
+                                const VectorXd& evidence) {
+  const Candidate* out = nullptr;
+  double most = -1.0;
+  for (size_t i = 0; i < candidates.size(); ++i)
+    if (candidates[i].effect->group() == EffectGroup::numerical && evidence[i] > most)
+      out = &candidates[i], most = evidence[i];
+  return out;
+}
+
+void tell_of_mesh(const Fitted& fitted, const Evaluation& evaluation, const DiagnosisSums& sums,
+                  const Candidate& mesh, Diagnosis& out) {
+  const int base = fitted.form.size();
+  const bool linear = fitted.form.scene->body->mesh.order == 1;
+  const double to_the_limit = 1.0 / (1.0 - (linear ? 0.1 : kFinerEdge * kFinerEdge));
+  VectorXd next = VectorXd::Zero(base);
+  if (base > 0) next = -project(sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
+  out.mesh_shift = to_the_limit * next;
+  out.mesh_in_measured =
+      change_of_measured(evaluation, mesh.hypothesis.first, to_the_limit, out.mesh_shift);
+  const std::string moved = moved_by_mesh(fitted, next);
+  if (!moved.empty())
+    out.mesh_note = fmt::format(
+        "{} would move {}; the intervals allow for it (add mesh_resolution to fit on it)",
+        linear ? std::string("quadratic tetrahedra")
+               : fmt::format("a finer mesh, {} times the edge,", kFinerEdge),
+        moved);
+}
+
+void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
+                          const DiagnosisSums& sums, Diagnosis& out) {
+  const auto share = fitted_share(fitted, sums.fitted.JtJ);
+  if (!share) return;
+  const double next = share->next;
+  out.mesh_fall = std::pow(next, 2) * share->column.M(0, 0) / std::max(sums.photo_count, 1.0);
+  VectorXd by_share = VectorXd::Zero(share->last + 1);
+  by_share.head(share->last) = -share->column.to_base.col(0);
+  std::swap(by_share[share->at], by_share[share->last]);
+  VectorXd change = next * by_share;
+  change[share->at] += next;
+  const Eigen::MatrixXd& held_out = sums.seen_held_out.JtJ;
+  if (sums.held_count > 0.0)
+    out.mesh_fall_held_out =
+        change.dot(held_out.topLeftCorner(change.size(), change.size()) * change) / sums.held_count;
+  const double left = next / (1.0 - next) - fitted.p[share->at];
+  out.mesh_shift = left * by_share;
+  VectorXd others = out.mesh_shift;
+  others[share->at] = 0.0;
+  out.mesh_in_measured = change_of_measured(evaluation, share->at, left, others);
+  const std::string moved = moved_by_mesh(fitted, (1.0 - next) * out.mesh_shift);
+  if (!moved.empty())
+    out.mesh_note = fmt::format(
+        "a still finer mesh would move {}, by what the refinement changed; the intervals allow for "
+        "it",
+        moved);
+}
+
+double imitated_by_mesh(const Fitted& fitted, const DiagnosisSums& sums,
+                        const Hypothesis& hypothesis) {
+  const auto share = fitted_share(fitted, sums.fitted.JtJ);
+  if (!share) return 0.0;
+  const ProjectedHypothesis effect = project(share->H, static_cast<int>(share->last), hypothesis);
+  const VectorXd change = share->next * share->H.col(share->last);
+  return std::max(effect.fall(change), effect.fall(-change)) / std::max(sums.photo_count, 1.0);
+}
+
+void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
+  const auto parameters = fitted.form.parameters();
+  fitted.mesh_reach = diagnosis.mesh_shift;
+  for (int i = 0; i < fitted.mesh_reach.size(); ++i) {
+    const double reach = fitted.mesh_reach[i];
+    double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
+    end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
+  }
+}
+
+}  // namespace hookeye

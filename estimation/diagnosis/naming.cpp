@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "estimation/diagnosis/diagnosis.h"
+#include "estimation/effects/catalogue.h"
+
+namespace hookeye {
+
+double least_fall(const Diagnosis& diagnosis, const std::string& effect, bool held_out) {
+  const auto score = std::find_if(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                  [&](const auto& one) { return one.effect == effect; });
+  return std::max(renderers_err_by(diagnosis.floor), held_out ? diagnosis.mesh_fall_held_out
+                                                     : score == diagnosis.effects.end()
+                                                         ? diagnosis.mesh_fall
+                                                         : score->mesh_fall);
+}
+
+bool sensors_alone(const Ingredient& ingredient) {
+  const Touches touches = ingredient.touches();
+  return touches.measured && !touches.energy && !touches.loading && !touches.photos;
+}
+
+bool brightness_alone(const Ingredient& ingredient) {
+  const Touches touches = ingredient.touches();
+  return touches.photos && !touches.energy && !touches.loading && !touches.cameras;
+}
+
+std::vector<std::string> leaders(const Diagnosis& diagnosis) {
+  std::vector<const EffectScore*> named;
+  for (const EffectScore& score : diagnosis.effects)
+    if (nameable(score, diagnosis)) named.push_back(&score);
+  std::vector<std::string> out;
+  for (const EffectScore* score : named) {
+    const EffectScore* first = named.front();
+    const bool ties = score->evidence > first->evidence - kTie || score->bic > first->bic;
+    if (score == first || (ties && !numerical(score->effect) && !numerical(first->effect)))
+      out.push_back(score->effect);
+  }
+  return out;
+}
+
+std::string conclusion(const Diagnosis& diagnosis) {
+  const auto all = leaders(diagnosis);
+  if (all.empty()) return "nothing of the catalogue stands out";
+  if (all.size() == 1) return all.front() + " leads";
+  return fmt::format(
+      "{} leads, and {} cannot be told from it by these scores: `hookeye discover` refits all of "
+      "them, `hookeye plan` names loads and views that would separate them",
+      all.front(), fmt::join(all.begin() + 1, all.end(), ", "));
+}
+
+bool numerical(const std::string& effect) {
+  const Effect* found = find_effect(effect);  // null: not of the catalogue (DiagnosisOptions::also)
+  return found && found->group() == EffectGroup::numerical;
+}
+
+bool sensors_speak(double fall, const Diagnosis& diagnosis) {
+  return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= kNameable;
+}
+
+bool held_out_say_so(const EffectScore& score, const Diagnosis& diagnosis) {
+  if (numerical(score.effect) || score.explains_held_out <= 0.5) return false;
+  return diagnosis.held_out_missed ||
+         (diagnosis.held_out_over && score.evidence >= kNameable &&
+          score.fall_held_out >= least_fall(diagnosis, score.effect, true));
+}
+
+bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
+  if (!score.testable || score.evidence < diagnosis.gate) return false;
+  if (held_out_say_so(score, diagnosis)) return true;
+  return score.evidence >= kNameable &&
+         ((score.best && sensors_alone(*score.best)) ||
+          score.fall >= least_fall(diagnosis, score.effect) ||
+          (!numerical(score.effect) && sensors_speak(score.measured_fall, diagnosis)));
+}
+
+}  // namespace hookeye

@@ -1,0 +1,395 @@
+#include "estimation/evaluation/evaluation.h"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "estimation/evaluation/columns.h"
+#include "estimation/evaluation/photo_evaluation.h"
+
+namespace hookeye {
+
+double PhotoEvaluation::chi() const { return count > 0 ? std::sqrt(r2 / count) : 0.0; }
+
+const ExampleEvaluation* Evaluation::find(int example) const {
+  for (const auto& one : examples)
+    if (one.example == example) return &one;
+  return nullptr;
+}
+
+namespace {
+
+double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out,
+                 double PhotoEvaluation::*r2) {
+  double sum = 0.0, count = 0.0;
+  for (const auto& example : examples)
+    if (example.held_out == held_out)
+      for (const auto& photo : example.photos) sum += photo.*r2, count += photo.count;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+bool without_photos(const std::vector<ExampleEvaluation>& examples) {
+  return std::all_of(examples.begin(), examples.end(),
+                     [](const auto& example) { return example.photos.empty(); });
+}
+
+}  // namespace
+
+double Evaluation::measured_chi(bool held_out) const {
+  double sum = 0.0, count = 0.0;
+  for (const auto& example : examples)
+    if (example.held_out == held_out)
+      for (const auto& measured : example.measured) sum += measured.r.squaredNorm(), count += 3.0;
+  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
+}
+
+double Evaluation::chi(bool held_out) const {
+  if (without_photos(examples)) return measured_chi(held_out);
+  return root_mean(examples, held_out, &PhotoEvaluation::r2);
+}
+
+double Evaluation::linear_chi(bool held_out) const {
+  if (without_photos(examples)) return measured_chi(held_out);
+  return root_mean(examples, held_out, &PhotoEvaluation::linear_r2);
+}
+
+double Evaluation::rms_px(bool held_out) const {
+  double sum = 0.0, n = 0.0;
+  for (const auto& example : examples)
+    if (example.held_out == held_out)
+      for (const auto& photo : example.photos) {
+        const double cells = static_cast<double>(photo.flow.cells.size());
+        sum += cells * std::pow(photo.flow.rms_px(), 2);
+        n += cells;
+      }
+  return n > 0.0 ? std::sqrt(sum / n) : 0.0;
+}
+
+double Evaluation::motion_px() const {
+  double sum = 0.0, n = 0.0;
+  for (const auto& example : examples)
+    for (const auto& photo : example.photos) {
+      sum += photo.count * photo.motion_px * photo.motion_px;
+      n += photo.count;
+    }
+  return n > 0.0 ? std::sqrt(sum / n) : 0.0;
+}
+
+Camera camera_at_level(const Camera& camera, int level) {
+  Camera coarse = camera;
+  const double s = std::pow(0.5, level);
+  coarse.width >>= level;
+  coarse.height >>= level;
+  coarse.fx *= s;
+  coarse.fy *= s;
+  // pixel centres are integers: coordinate c of the fine image is (c + 1/2) s - 1/2 of the coarse
+  coarse.cx = (camera.cx + 0.5) * s - 0.5;
+  coarse.cy = (camera.cy + 0.5) * s - 0.5;
+  return coarse;
+}
+
+std::vector<FlowStatistics> photo_statistics(const std::vector<PhotoEvaluation>& photos) {
+  std::vector<FlowStatistics> out;
+  for (size_t begin = 0, end = 0; begin < photos.size(); begin = end) {
+    std::vector<const FlowField*> channels;
+    for (; end < photos.size() && photos[end].photo == photos[begin].photo; ++end)
+      channels.push_back(&photos[end].flow);
+    for (FlowStatistics& one : flow_statistics(channels)) out.push_back(one);
+  }
+  return out;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
+}
+
+namespace {
+
+/// The other way round: before something that takes more than all before it.
+void give_back_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+/// Where the equilibria of an evaluation with derivatives go with the parameters, to first order.
+struct Linear {
+  std::vector<std::shared_ptr<const Ingredient>> ingredients;
+  VectorXd p;
+  std::vector<VectorXd> q;         ///< by example; empty: was not solved
+  std::vector<Eigen::MatrixXd> S;  ///< dq/dp
+
+  /// Empty: not known.
+  std::optional<VectorXd> at(const ModelForm& form, const VectorXd& there, int e) const {
+    if (q.empty() || ingredients != form.ingredients || q[e].size() == 0) return {};
+    return q[e] + S[e] * (there - p);
+  }
+};
+
+}  // namespace
+
+struct Workspace::Impl {
+  std::shared_ptr<const Scene> scene;
+  std::vector<EquilibriumSolver> solvers;  ///< one per example
+  std::vector<VectorXd> last;  ///< by example: q of the last evaluation in which all had one
+  Linear linear;               ///< of the last evaluation with derivatives, without candidates
+  std::vector<PhotoComparer> comparers;  ///< one per example
+
+  explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
+    for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
+      solvers.emplace_back(scene->mesh());
+      last.emplace_back();
+      comparers.emplace_back(scene, static_cast<int>(e));
+    }
+  }
+
+  /// Examples of which nothing was seen or measured are candidates of a plan: no equilibrium of
+  /// theirs is asked for, and one that has none stops nothing.
+  std::vector<int> wanted(const EvaluationOptions& options) const {
+    std::vector<int> examples = options.only;
+    if (!examples.empty()) return examples;
+    for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
+      const ExampleSpec& example = scene->capture.examples[e];
+      if (example.photos.empty() && example.measured.empty()) continue;
+      if (example.validate ? options.held_out : options.fitted)
+        examples.push_back(static_cast<int>(e));
+    }
+    return examples;
+  }
+
+  /// The example whose photos are the texture; -1: none.
+  int reference() const {
+    const BodySpec& body = scene->capture.body;
+    return body.texture == BodySpec::Texture::rest ? scene->example_index(body.texture_example)
+                                                   : -1;
+  }
+
+  /// Equilibrium and sensitivities of one example. `expected`: where it may be; `cancelled` is
+  /// polled.
+  std::optional<NumericalFailure> solve(const Model& model, const ColumnSet* columns, int e,
+                                        const EvaluationOptions& options,
+                                        const std::optional<VectorXd>& expected,
+                                        const std::function<bool()>& cancelled,
+                                        ExampleEvaluation& out, ExampleColumns& derivative) {
+    EquilibriumOptions equilibrium_options;
+    if (expected) equilibrium_options.expected = &*expected;
+    equilibrium_options.factored = columns != nullptr;
+    equilibrium_options.tolerance = options.tolerance;
+    equilibrium_options.most_iterations = options.most_iterations;
+    equilibrium_options.cancelled = cancelled;
+    auto solved = solvers[e].solve(model.energy_of(e), model.examples[e].loading,
+                                   equilibrium_options, last[e].size() ? &last[e] : nullptr);
+    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
+      failure->example = scene->capture.examples[e].name;
+      return *failure;
+    }
+    auto equilibrium = std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+    out.equilibrium = equilibrium;
+    if (!columns) return {};
+    derivative = columns->of_example(model, e, *equilibrium);
+    out.S = sensitivities(*equilibrium, model.examples[e].loading, derivative.dR, derivative.dqc);
+    equilibrium->factor.reset();  // the largest of all: models that are kept would keep it
+    return {};
+  }
+
+  /// Where the next evaluation starts. Where one example has no equilibrium, the others may or may
+  /// not have been solved already: all go back, so that the same fit takes the same way each time.
+  void settle(const std::vector<int>& examples, const std::vector<ExampleEvaluation>& solved,
+              bool failed) {
+    for (int e : examples) {
+      if (failed)
+        solvers[e].forget();
+      else
+        last[e] = solved[e].equilibrium->q;
+    }
+  }
+
+  void keep_linear(const ModelForm& form, const VectorXd& p,
+                   const std::vector<ExampleEvaluation>& solved) {
+    linear = {form.ingredients, p, {}, {}};
+    for (const ExampleEvaluation& one : solved) {
+      linear.q.push_back(one.S.size() ? one.equilibrium->q : VectorXd());
+      linear.S.push_back(one.S);
+    }
+  }
+};
+
+namespace {
+
+/// Predictions of forces, moments and positions with their derivatives.
+std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model& model, int e,
+                                                 const ExampleEvaluation& example,
+                                                 const ExampleColumns* columns) {
+  std::vector<MeasuredEvaluation> all;
+  const auto& specs = scene.capture.examples[e].measured;
+  const Equilibrium& equilibrium = *example.equilibrium;
+  for (size_t i = 0; i < specs.size(); ++i) {
+    const MeasuredSpec& spec = specs[i];
+    MeasuredEvaluation one;
+    one.example = e;
+    one.index = static_cast<int>(i);
+    if (spec.kind == MeasuredSpec::Kind::force) {
+      const Region& region = scene.body->regions.at(spec.region);
+      one.predicted = support_force(equilibrium, region) + model.examples[e].force_offset;
+      if (columns)
+        one.J = d_support_force(equilibrium, region, columns->dR, example.S) + columns->d_offset;
+    } else if (spec.kind == MeasuredSpec::Kind::moment) {
+      const Region& region = scene.body->regions.at(spec.region);
+      one.predicted = support_moment(equilibrium, region, spec.about);
+      if (columns)
+        one.J = d_support_moment(equilibrium, region, spec.about, columns->dR, example.S);
+    } else {
+      SurfacePoint point;
+      locate_on_boundary(scene.body->mesh, spec.point, &point);
+      const VectorXd N = shape_functions(scene.body->mesh.order, point.barycentric);
+      Vector3d x = Vector3d::Zero();
+      if (columns) one.J.setZero(3, example.S.cols());
+      for (int a = 0; a < N.size(); ++a) {
+        const int node = scene.body->mesh.elements(a, point.element);
+        x += N[a] * equilibrium.q.segment<3>(3 * node);
+        if (columns) one.J += N[a] * model.placement.linear() * example.S.middleRows(3 * node, 3);
+      }
+      one.predicted = model.placement * x;
+      if (columns)
+        for (int j = 0; j < one.J.cols(); ++j)
+          one.J.col(j) +=
+              Eigen::Map<const Eigen::Matrix3d>(columns->d_placement.col(j).data()) * x +
+              columns->d_placement.col(j).tail<3>();
+    }
+    one.r = (one.predicted - spec.value) / spec.sigma;
+    if (columns) one.J /= spec.sigma;
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+/// It has served its turn, and models that are kept would keep it: 16 MB of 10,000 nodes a load
+/// case.
+void drop_tangent(ExampleEvaluation& example) {
+  if (!example.equilibrium) return;
+  auto kept = std::make_shared<Equilibrium>();
+  const Equilibrium& whole = *example.equilibrium;
+  kept->q = whole.q;
+  kept->R = whole.R;
+  kept->W_ff = whole.W_ff;  // few values
+  kept->newton_iterations = whole.newton_iterations;
+  kept->factorizations = whole.factorizations;
+  kept->stable = whole.stable;
+  example.equilibrium = std::move(kept);
+}
+
+}  // namespace
+
+Workspace::Workspace(std::shared_ptr<const Scene> scene)
+    : impl_(std::make_unique<Impl>(std::move(scene))) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&&) noexcept = default;
+const Scene& Workspace::scene() const { return *impl_->scene; }
+void Workspace::keep_in(std::shared_ptr<Archive> archive) { archive_ = std::move(archive); }
+Archive* Workspace::archive() const { return archive_.get(); }
+
+Workspace::Place Workspace::place() const { return {impl_->scene, impl_->last}; }
+
+void Workspace::start_from(const Place& place) {
+  if (place.scene != impl_->scene) impl_ = std::make_unique<Impl>(place.scene);
+  for (EquilibriumSolver& solver : impl_->solvers) solver.forget();
+  impl_->last = place.q;
+  impl_->linear = {};
+}
+
+std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
+    const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
+    const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
+  if (form.scene != impl_->scene) impl_ = std::make_unique<Impl>(form.scene);
+  const Model model = form.realise(p);
+  std::optional<ColumnSet> columns;
+  if (options.derivatives) columns.emplace(form, p, candidates);
+
+  const Capture& capture = impl_->scene->capture;
+  const int reference = impl_->reference();
+  const std::vector<int> wanted = impl_->wanted(options);
+  const size_t examples = capture.examples.size();
+  std::vector<ExampleEvaluation> solved(examples);
+  std::vector<ExampleColumns> derivative(examples);
+  std::vector<std::optional<NumericalFailure>> failures(examples);
+  std::vector<int> to_solve = wanted;
+  if (reference >= 0 && std::find(wanted.begin(), wanted.end(), reference) == wanted.end())
+    to_solve.push_back(reference);
+  auto cancelled = [&] { return options.cancel && options.cancel->load(); };
+  std::atomic<int> done = 0;
+  std::atomic<bool> failed = false;
+  const int all = static_cast<int>(to_solve.size() + wanted.size());
+  auto advance = [&] {
+    const int now = ++done;
+    if (options.progress) options.progress(now, all);
+  };
+  // One example without an equilibrium is enough: nobody looks at the others.
+  const std::function<bool()> pointless = [&] { return failed || cancelled(); };
+  const auto solve = [&](int e) {
+    if (pointless()) return;
+    failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options,
+                               impl_->linear.at(form, p, e), pointless, solved[e], derivative[e]);
+    if (!candidates.empty()) impl_->solvers[e].forget();
+    if (failures[e] && hookeye::cancelled(*failures[e])) failures[e].reset();
+    if (failures[e]) failed = true;
+    advance();
+  };
+  // Candidates may have a finer mesh, whose factor is as large as all of these. A solver that
+  // starts in equilibrium does without one, and to make them anew costs a hundredth of what
+  // candidates do.
+  if (!candidates.empty()) {
+    for (EquilibriumSolver& solver : impl_->solvers) solver.forget();
+    give_back_freed_memory();
+  }
+  const auto compare = [&](int e, const ReferenceState& reference_state) {
+    if (pointless()) return;
+    solved[e].example = e;
+    solved[e].held_out = capture.examples[e].validate;
+    const ExampleColumns* d = columns ? &derivative[e] : nullptr;
+    solved[e].photos = impl_->comparers[e].compare(model, solved[e], reference_state, d, options);
+    solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d);
+    if (e != reference_state.example) {  // at which others look
+      derivative[e] = {};
+      drop_tangent(solved[e]);
+    }
+    advance();
+  };
+  const auto for_each = [](const std::vector<int>& examples, const auto& body) {
+    tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) { body(examples[i]); });
+  };
+  // All look at the reference state. Without one every example goes on to its photos by itself, and
+  // no core waits for the slowest equilibrium.
+  if (reference < 0) {
+    for_each(wanted, [&](int e) {
+      solve(e);
+      compare(e, {});
+    });
+  } else {
+    for_each(to_solve, solve);
+    const ReferenceState state{reference, &solved[reference],
+                               columns ? &derivative[reference] : nullptr};
+    for_each(wanted, [&](int e) { compare(e, state); });
+  }
+  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+  if (reference >= 0) drop_tangent(solved[reference]);
+  impl_->settle(to_solve, solved, failed);
+  for (int e : to_solve)
+    if (failures[e]) return *failures[e];
+  if (columns && candidates.empty()) impl_->keep_linear(form, p, solved);
+  Evaluation out;
+  out.columns = columns ? columns->size() : 0;
+  out.measured_weight = options.measured_weight;
+  for (int e : wanted) out.examples.push_back(std::move(solved[e]));
+  return out;
+}
+
+}  // namespace hookeye

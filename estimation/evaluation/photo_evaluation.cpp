@@ -1,0 +1,398 @@
+#include "estimation/evaluation/photo_evaluation.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "estimation/images/registration.h"
+
+namespace hookeye {
+
+RenderOptions render_options(const Scene& scene) {
+  RenderOptions options;
+  options.smooth_normals = !scene.capture.body.flat_shading;
+  return options;
+}
+
+namespace {
+
+/// Photos of coarse levels are means over squares of pixels: a wider filter with rays enough to see
+/// every speckle once (a box has 2.5 times the variance of the 1.5 px window). A texture that is a
+/// photo went through the camera's aperture once already: one ray a pixel, or the model would be
+/// blurred twice and every motion come out too long.
+RenderOptions at_level(RenderOptions options, int level, const Texture& texture,
+                       bool single_rays = false) {
+  if (level == 0 && (single_rays || texture.source == Texture::Source::photo))
+    options.rays_per_axis = 1, options.filter_width_px = 1.0;
+  if (level == 0) return options;
+  options.rays_per_axis = std::min(1 + 3 * level, 15);
+  options.filter_width_px = 2.4;
+  return options;
+}
+
+}  // namespace
+
+struct PhotoComparer::Impl {
+  std::shared_ptr<const Scene> scene;
+  int example;
+  Renderer renderer;
+  std::vector<std::vector<std::vector<PhotoPlane>>> pyramids;  ///< [photo][plane][level]
+  static constexpr int kLevels = 6;
+
+  Impl(std::shared_ptr<const Scene> s, int e)
+      : scene(std::move(s)), example(e), renderer(scene->body->surface.mesh) {}
+
+  const PhotoPlane& plane(int photo, int plane, int level) {
+    if (pyramids.empty())
+      for (const Photo& one : scene->photos[example]) {
+        std::vector<std::vector<PhotoPlane>> planes;
+        for (size_t k = 0; k < one.planes.size(); ++k)
+          planes.push_back(photo_pyramid(one, static_cast<int>(k), kLevels));
+        pyramids.push_back(std::move(planes));
+      }
+    return pyramids[photo][plane][std::min(level, kLevels - 1)];
+  }
+};
+
+PhotoComparer::PhotoComparer(std::shared_ptr<const Scene> scene, int example)
+    : impl_(std::make_unique<Impl>(std::move(scene), example)) {}
+PhotoComparer::PhotoComparer(PhotoComparer&&) noexcept = default;
+PhotoComparer::~PhotoComparer() = default;
+
+namespace {
+
+PhotoState state_at_level(const PhotoState& state, int level) {
+  PhotoState coarse = state;
+  coarse.camera = camera_at_level(state.camera, level);
+  coarse.blur_variance *= std::pow(0.25, level);
+  return coarse;
+}
+
+bool is_silhouette(const Scene& scene, int example, int photo) {
+  return scene.capture.examples[example].photos[photo].kind == PhotoSpec::Kind::silhouette;
+}
+
+/// Index of the reference example's photo by the same camera, -1: none.
+int reference_photo(const Scene& scene, int reference, const std::string& camera) {
+  const auto& photos = scene.capture.examples[reference].photos;
+  for (size_t k = 0; k < photos.size(); ++k)
+    if (photos[k].camera == camera) return static_cast<int>(k);
+  return -1;
+}
+
+/// Colour source of one photo. False: this photo cannot be compared (no reference photo).
+bool choose_texture(const Scene& scene, const Model& model, int example, int photo, int plane,
+                    int level, Texture& texture) {
+  const BodySpec& body = scene.capture.body;
+  if (is_silhouette(scene, example, photo) || body.texture == BodySpec::Texture::uniform ||
+      body.texture == BodySpec::Texture::none)
+    return true;
+  if (body.texture == BodySpec::Texture::image) {
+    texture.source = Texture::Source::image;
+    const bool by_channel = scene.capture.examples[example].photos[photo].rgb;
+    const auto& sizes = scene.albedo[by_channel && scene.albedo.size() > 1 ? plane : 0];
+    // rays of level 3 and 5 are about 1 and 2 pixels apart: texels as large
+    texture.image = sizes[std::min<size_t>(level >= 5 ? 2 : level >= 3 ? 1 : 0, sizes.size() - 1)];
+    return true;
+  }
+  const int reference = scene.example_index(body.texture_example);
+  const int k =
+      reference_photo(scene, reference, scene.capture.examples[example].photos[photo].camera);
+  if (k < 0 || reference == example) return false;
+  const Photo& source = scene.photos[reference][k];
+  texture.source = Texture::Source::photo;
+  texture.photo = {std::shared_ptr<const Scene>(model.scene), &source.planes[plane]};
+  texture.photo_valid = {std::shared_ptr<const Scene>(model.scene), &source.valid};
+  texture.reference_camera = model.examples[reference].photos[k].camera;
+  texture.reference_gain = model.examples[reference].photos[k].gain;
+  return true;
+}
+
+/// Silhouettes are rendered as plain coverage: no light, and no sky that concave parts miss.
+PhotoState coverage_state(PhotoState state) {
+  state.gain = 1.0;
+  state.shaded = false;
+  state.sun.setZero();
+  state.specular = 0.0;
+  state.background = 0.0;
+  state.backdrop = nullptr;
+  return state;
+}
+
+VertexSensitivity vertex_sensitivity(const Renderer& renderer, const RenderSurface& surface,
+                                     const Matrix3Xd& x, const Eigen::MatrixXd& S,
+                                     const Eigen::MatrixXd* S_reference, bool normals) {
+  const auto on_vertices = [&](const RowMatrix& nodal) {
+    RowMatrix out = RowMatrix::Zero(3 * surface.W.rows(), nodal.cols());
+    for (int v = 0; v < surface.W.outerSize(); ++v)
+      for (decltype(surface.W)::InnerIterator w(surface.W, v); w; ++w)
+        out.middleRows<3>(3 * w.row()) += w.value() * nodal.middleRows<3>(3 * w.col());
+    return out;
+  };
+  VertexSensitivity out;
+  out.position = on_vertices(S);
+  if (normals) out.second = renderer.normal_derivative(x) * out.position;
+  if (S_reference) out.second = on_vertices(*S_reference);
+  return out;
+}
+
+/// The texture is looked up with the reference photo's camera and divided by its gain, and a
+/// parameter may change those as well (a set-up placed elsewhere, a focal length). The camera's
+/// motion x_c' = exp([w]x) x_c + v is the opposite of one of the reference points, and so is a
+/// zoom.
+void add_reference_photo(const Camera& camera, const Matrix3Xd& x_reference,
+                         const Eigen::MatrixXd& by_reference_photo, VertexSensitivity* S) {
+  const auto& d = by_reference_photo;
+  if (d.topRows(kLogGain + 1).isZero(0.0)) return;
+  S->photo.row(kLogGain) -= d.row(kLogGain);
+  Camera local = camera;
+  local.R.setIdentity();
+  local.t.setZero();
+  for (int v = 0; v < x_reference.cols(); ++v) {
+    const Vector3d p = camera.R * x_reference.col(v) + camera.t;
+    Camera::Jacobian3 by_point;
+    Camera::Jacobian7 by_camera;
+    local.project(p, &by_point, &by_camera);
+    Vector3d zoom = Vector3d::Zero();
+    zoom.head<2>() = by_point.leftCols<2>().inverse() * by_camera.col(6);
+    for (int j = 0; j < d.cols(); ++j)
+      S->second.block<3, 1>(3 * v, j) +=
+          camera.R.transpose() *
+          (d.block<3, 1>(kRotate, j).cross(p) + d.block<3, 1>(kMove, j) + d(kZoom, j) * zoom);
+  }
+}
+
+/// Where the photo shows something that is not the told background although the model has none
+/// there: such pixels count, else a body that left the model's silhouette would cost nothing.
+bool shows_body(const PhotoPlane& photo, size_t i, const PhotoState& state) {
+  return std::abs(photo.I.values[i] - state.behind(i)) > 6.0 * photo.sigma.values[i];
+}
+
+struct Comparison {
+  Image residual;  ///< NaN: does not count
+  double r2 = 0.0, count = 0.0;
+};
+
+/// Sum of Huber's losses; huber 0: of squares.
+double loss(const Image& residual, double huber) {
+  double sum = 0.0;
+  for (const float value : residual.values) {
+    if (std::isnan(value)) continue;
+    const double r = std::abs(value);
+    sum += huber > 0.0 && r > huber ? huber * (2.0 * r - huber) : r * r;
+  }
+  return sum;
+}
+
+/// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
+const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Image* larger) {
+  if (texture.source != Texture::Source::photo) return photo.sigma;
+  *larger = photo.sigma;
+  for (float& s : larger->values) s *= std::sqrt(2.0f);
+  return *larger;
+}
+
+Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
+                          bool silhouette, bool mask, const PhotoState& state) {
+  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+  Comparison out;
+  out.residual = Image{photo.I.width, photo.I.height, 1, {}};
+  out.residual.values.resize(photo.I.pixels());
+  const auto telling = mask ? telling_pixels(rendering.I, photo.I) : std::vector<unsigned char>();
+  size_t count = 0;
+  for (size_t i = 0; i < photo.I.pixels(); ++i) {
+    const float coverage = rendering.coverage.values[i];
+    const bool counts = mask         ? telling[i] != 0
+                        : silhouette ? coverage > 0.0f || shows_body(photo, i, state)
+                                     : coverage > 1.0f - 1e-6f;
+    out.residual.values[i] = kNone;
+    if (!counts || (!photo.valid.empty() && !photo.valid[i])) continue;
+    const float r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
+    out.residual.values[i] = r;
+    out.r2 += double(r) * r;
+    ++count;
+  }
+  out.count = static_cast<double>(count);
+  return out;
+}
+
+/// Square root of Huber's weight by iteratively reweighted squares.
+double root_weight(double residual, double huber) {
+  return huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
+}
+
+/// B^T(w r) of all pixels, 0 where nothing counts that blur reaches.
+Image adjoint(const Image& residuals, const Image& sigma, double blur_variance, double huber) {
+  Image out{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
+  for (size_t i = 0; i < out.values.size(); ++i) {
+    const double residual = residuals.values[i];
+    if (std::isnan(residual)) continue;
+    const double weight = root_weight(residual, huber);
+    out.values[i] = static_cast<float>(weight * weight * residual / sigma.values[i]);
+  }
+  return blur_variance > 0.0 ? blur(out, blur_variance) : out;
+}
+
+/// Of pixels that the derivative has no row of.
+SumsBehind sums_behind(const ImageDerivative& dI, const Image& residuals, const Image& sigma,
+                       const Image& Bt_r, double huber) {
+  std::vector<unsigned char> has_row(sigma.pixels(), 0);
+  dI.for_each_pixel([&](size_t, int pixel) { has_row[pixel] = 1; });
+  SumsBehind out;
+  for (size_t i = 0; i < has_row.size(); ++i) {
+    if (has_row[i]) continue;
+    out.Bt_r += Bt_r.values[i];
+    const double residual = residuals.values[i];
+    if (!std::isnan(residual))
+      out.ww += std::pow(root_weight(residual, huber) / sigma.values[i], 2);
+  }
+  return out;
+}
+
+/// Normal equations of the counted pixels.
+NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
+                             const SurfaceMesh& surface, const PhotoState& state, double huber,
+                             CondensedColumns columns) {
+  const ImageDerivative& dI = rendering.dI;
+  const auto count = static_cast<Eigen::Index>(dI.pixels());
+  VectorXd r = VectorXd::Zero(count), w = r, Bt_r = r;
+  const Image all = adjoint(residuals, sigma, state.blur_variance, huber);
+  dI.for_each_pixel([&](size_t k, int pixel) {
+    Bt_r[k] = all.values[pixel];
+    const double residual = residuals.values[pixel];
+    if (std::isnan(residual)) return;
+    const double weight = root_weight(residual, huber);
+    r[k] = weight * residual;
+    w[k] = weight / sigma.values[pixel];
+  });
+  const bool level = columns.photo && !state.backdrop;
+  return NodeNormalEquations::accumulate(
+      surface, dI, r, w, Bt_r, columns,
+      level ? sums_behind(dI, residuals, sigma, all, huber) : SumsBehind{});
+}
+
+}  // namespace
+
+Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const VectorXd* q_reference,
+                                int photo, int plane, const RenderOptions& options) {
+  const Scene& scene = *impl_->scene;
+  Texture texture;
+  choose_texture(scene, model, impl_->example, photo, plane, 0, texture);
+  const RenderSurface& surface = scene.body->surface;
+  const Matrix3Xd x = surface.deformed(scene.body->mesh, q);
+  Matrix3Xd x_reference;
+  if (q_reference) x_reference = surface.deformed(scene.body->mesh, *q_reference);
+  PhotoState state = model.examples[impl_->example].photos[photo];
+  const auto& photos = scene.photos[impl_->example];
+  if (photo < static_cast<int>(photos.size()) && !photos[photo].backdrop.empty())
+    state.backdrop = {std::shared_ptr<const Scene>(impl_->scene), &photos[photo].backdrop[plane]};
+  if (is_silhouette(scene, impl_->example, photo)) state = coverage_state(state);
+  return impl_->renderer.render(x, q_reference ? &x_reference : nullptr, texture, state,
+                                at_level(options, 0, texture), true);
+}
+
+std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
+                                                    const ExampleEvaluation& example,
+                                                    const ReferenceState& reference,
+                                                    const ExampleColumns* columns,
+                                                    const EvaluationOptions& options) {
+  std::vector<PhotoEvaluation> all;
+  const Scene& scene = *impl_->scene;
+  const int e = impl_->example;
+  if (scene.photos[e].empty() || e == reference.example) return all;
+  const RenderSurface& surface = scene.body->surface;
+  const Matrix3Xd x = surface.deformed(scene.body->mesh, example.equilibrium->q);
+  Matrix3Xd x_reference;
+  if (reference.state)
+    x_reference = surface.deformed(scene.body->mesh, reference.state->equilibrium->q);
+  const RenderOptions base_options = render_options(scene);
+  const bool has_light = scene.capture.body.texture != BodySpec::Texture::rest;
+  VertexSensitivity S;
+  if (columns)
+    S = vertex_sensitivity(impl_->renderer, surface, x, example.S,
+                           reference.state ? &reference.state->S : nullptr, has_light);
+  const RowMatrix second_on_vertices = S.second;
+  Rendering rendering;  // one for all photos: its memory is used again
+  Image larger_sigma;
+
+  for (size_t k = 0; k < scene.photos[e].size(); ++k)
+    for (size_t plane = 0; plane < scene.photos[e][k].planes.size(); ++plane) {
+      Texture texture;
+      if (!choose_texture(scene, model, e, static_cast<int>(k), static_cast<int>(plane),
+                          options.level, texture))
+        continue;
+      const bool mask_photo = is_silhouette(scene, e, static_cast<int>(k));
+      const bool silhouette = mask_photo || scene.capture.examples[e].photos[k].background.kind !=
+                                                BackgroundSpec::Kind::ignore;
+      // A photo texture is interpolated from the full-size photo at every level.
+      const PhotoPlane& photo =
+          impl_->plane(static_cast<int>(k), static_cast<int>(plane), options.level);
+      PhotoState state = state_at_level(model.examples[e].photos[k], options.level);
+      state.backdrop = photo.backdrop;
+      if (mask_photo) state = coverage_state(state);
+      RenderOptions render_options =
+          at_level(base_options, options.level, texture, options.single_rays);
+      render_options.derivatives = columns != nullptr;
+      render_options.parallel = true;
+      const auto moves = [&](PhotoColumn column) {
+        return columns != nullptr && !columns->dphoto[k].row(column).isZero(0.0);
+      };
+      render_options.photo_derivative = columns != nullptr && !columns->dphoto[k].isZero(0.0);
+      render_options.gloss_derivative = moves(kSpecular);
+      render_options.blur_derivative = moves(kBlur);
+      render_options.centres = options.pictures;
+      // Where there is blur, masked pixels are seen in their neighbours.
+      impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
+                             render_options, silhouette,
+                             state.blur_variance > 0.0 ? nullptr : &photo.valid, &rendering);
+      const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
+      const Comparison comparison =
+          compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state);
+      PhotoEvaluation one;
+      one.example = e;
+      one.photo = static_cast<int>(k);
+      one.plane = static_cast<int>(plane);
+      one.r2 = comparison.r2;
+      one.count = comparison.count;
+      std::optional<Registration> registered;
+      if (options.pictures || options.registered)
+        registered = mask_photo
+                         ? register_silhouettes(rendering.I, photo.I, photo.valid,
+                                                comparison.residual, sigma)
+                         : register_pictures(rendering.I, photo.I, comparison.residual, sigma);
+      if (registered) one.motion_px = registered->rms_px;
+      const Image& residual = registered ? registered->linear : comparison.residual;
+      if (columns) {
+        S.photo = columns->dphoto[k];
+        S.photo.row(kBlur) *= std::pow(0.25, options.level);  // px^2 of this level
+        if (reference.columns && texture.source == Texture::Source::photo) {
+          S.second = second_on_vertices;
+          const int source =
+              reference_photo(scene, reference.example, model.examples[e].photos[k].camera.name);
+          add_reference_photo(texture.reference_camera, x_reference,
+                              reference.columns->dphoto[source], &S);
+        }
+        if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
+        one.sums = condense(rendering, residual, sigma, surface.mesh, state, options.huber,
+                            {S.second.size() > 0, !S.photo.isZero(0.0)})
+                       .reduce(S);
+      }
+      one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);
+      if (options.pictures) {
+        one.flow = residual_flow(rendering.I, residual, sigma, !mask_photo);
+        one.aligned = residual_flow(rendering.I, registered ? registered->residual : residual,
+                                    sigma, !mask_photo);
+        one.linear_r2 = loss(residual, 0.0);
+        one.triangle = std::move(rendering.triangle);
+      }
+      if (options.pictures || options.residuals) {
+        one.model = std::move(rendering.I);
+        one.residual = options.registered ? residual : comparison.residual;
+      }
+      all.push_back(std::move(one));
+    }
+  return all;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,81 @@
+// Fits, trials and diagnoses as questions to an archive, and their answers. Internal to those.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimation/evaluation/evaluation.h"
+#include "estimation/fit/archive.h"
+#include "estimation/fit/fit.h"
+
+namespace hookeye {
+
+/// About the form at p: ingredients with their variants, bounds and starts, the mesh, and which
+/// examples are held out. Numbers are in units of what matters. (The rest of the capture is what
+/// the whole archive is about.)
+Question question_of(const std::string& kind, const ModelForm& form, const VectorXd& p);
+
+/// Where the examples are, in every bit: what is asked next begins there.
+nlohmann::json states_json(const Evaluation& evaluation);
+/// `before` with the examples that are told where they are told.
+Workspace::Place place_from(const nlohmann::json& states, Workspace::Place before);
+
+nlohmann::json vector_json(const VectorXd& v);
+VectorXd vector_from(const nlohmann::json& list);
+
+nlohmann::json failure_json(const NumericalFailure& failure);
+std::optional<NumericalFailure> failure_from(const nlohmann::json& answer);
+
+/// What is asked at p, and where from.
+struct Asked {
+  Workspace& workspace;
+  const ModelForm& form;
+  const VectorXd& p;
+  const std::atomic<bool>* cancel;
+  std::function<Question()> question;
+};
+
+/// Where a question of a form of `scene` is asked from: from rest where the workspace was
+/// elsewhere.
+Workspace::Place place_in(const Workspace& workspace, const std::shared_ptr<const Scene>& scene);
+
+/// A fit leaves the workspace in its own equilibria; whatever else was asked, where it was.
+inline Workspace::Place place_after(const Workspace::Place& before, const auto&) { return before; }
+Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
+
+/// The answer of the workspace's archive; else that of `work`, which the archive keeps unless it
+/// was cancelled. `read` may return nothing: then it is worked out. Whichever it was, the
+/// workspace is left at the same bits; the answer may differ in a last digit by the order of sums.
+template <class T, class Work, class Write, class Read>
+std::variant<T, NumericalFailure> archived(const Asked& asked, const Work& work, const Write& write,
+                                           const Read& read) {
+  using Result = std::variant<T, NumericalFailure>;
+  Archive* archive = asked.workspace.archive();
+  const Workspace::Place place = place_in(asked.workspace, asked.form.scene);
+  asked.workspace.start_from(place);
+  const auto leave = [&](Result result) {
+    const T* answer = std::get_if<T>(&result);
+    asked.workspace.start_from(answer ? place_after(place, *answer) : place);
+    return result;
+  };
+  std::optional<Question> question;
+  nlohmann::json known;
+  if (archive && archive->find(question.emplace(asked.question()), known)) {
+    if (auto failure = failure_from(known)) return leave(*failure);
+    if (std::optional<Result> result = read(known)) return leave(std::move(*result));
+    asked.workspace.start_from(place);
+  }
+  Result result = work();
+  if (archive && !(asked.cancel && *asked.cancel)) {
+    const auto* failure = std::get_if<NumericalFailure>(&result);
+    archive->keep(*question, failure ? failure_json(*failure) : write(std::get<T>(result)));
+  }
+  return leave(std::move(result));
+}
+
+}  // namespace hookeye

@@ -1,0 +1,97 @@
+// The reduced fit: Ceres moves the parameters, pixels never reach it (method.md, Fit).
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "estimation/evaluation/evaluation.h"
+
+namespace hookeye {
+
+struct FitProgress {
+  std::string stage;  ///< "1/8 size", "motion", "'pull' alone", "full size", "final"
+  int iteration = 0, of = 0;
+  double chi = 0.0;
+};
+
+/// From the equilibria of the model that a rival is held against, twice what a step may take: one
+/// without an equilibrium in a held-out example was sought for minutes.
+constexpr int kRivalIterations = 2 * kStepIterations;
+
+struct FitOptions {
+  int max_iterations = 20;
+  bool coarse_to_fine = true;
+  /// Huber's threshold in multiples of the photos' own misfit (median absolute residual over that
+  /// of unit noise, at least 1): outliers of a misfit model are judged against its misfit.
+  double huber = 4.0;
+  /// chi of the fitted photos that a rival has come to already: a fit that falls so slowly that it
+  /// would not get there in twenty steps more ends. 0: there is none.
+  double aim_chi = 0.0;
+  /// Newton iterations of an example's equilibrium where the fit has ended, held-out ones' too
+  /// (EquilibriumOptions::most_iterations). Of a rival that may be given up: kRivalIterations.
+  int most_iterations = EquilibriumOptions{}.most_iterations;
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(const FitProgress&)> progress;
+};
+
+/// One step of the progressive estimation of an additive material (progressive.h).
+struct RefinementStage {
+  std::string what;                       ///< "start", "control point E11 = 0.21", "addend E22"
+  double evidence = 0.0;                  ///< log evidence before the refit
+  int values = 0;                         ///< control values
+  double misfit_fit = 0.0;                ///< sum of squares over noise after the refit
+  std::optional<double> misfit_held_out;  ///< empty: nothing is held out
+  /// Least over the accepted steps [stress].
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+  bool kept = false;
+};
+
+/// A fitted model with its pictures and normal equations at full size.
+struct Fitted {
+  ModelForm form;
+  VectorXd p;
+  /// 95 % intervals, not fooled by correlated residuals; of the mesh they know once
+  /// reach_for_mesh() has been there.
+  VectorXd low, high;
+  /// What the intervals have more on one side because of the mesh; empty: nothing.
+  VectorXd mesh_reach;
+  std::vector<std::string> undetermined;  ///< sentences: what these data cannot fix
+  Evaluation evaluation;                  ///< fitted and held-out, pictures and derivatives
+  int iterations = 0;
+  bool converged = false;
+  std::vector<RefinementStage> refinements;  ///< additive material only
+  /// The same, its last stage: least over the accepted steps. Not a number: another material.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The fitted model with its equilibria.
+Model realised(const Fitted& fitted);
+
+/// Least squares over photos, forces, moments and positions of the fitted examples, from `start`.
+/// Where that ends pictures apart by more than their patterns span, or the start has no
+/// equilibrium, moduli that were told wrong by up to two orders of magnitude are looked for and it
+/// starts there. Throws std::logic_error for a wrong size of start.
+std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
+                                           const VectorXd& start, const FitOptions& options = {});
+
+/// p with the numbers that concern held-out examples alone (Parameter::example) fitted to those,
+/// all others as they are. fit() ends with it.
+std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
+                                                         const ModelForm& form, const VectorXd& p,
+                                                         const FitOptions& options = {});
+
+/// The starting point again without moving anything: pictures, intervals, what is undetermined.
+std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
+                                              const VectorXd& p, const FitOptions& options = {});
+
+/// Misfit that Huber's threshold is measured in: 1.48 median |r| of the fitted photos' pictures.
+double misfit_scale(const Evaluation& evaluation);
+
+/// A look without derivatives at 1 / 2^level of the size.
+EvaluationOptions only_pictures(int level, const FitOptions& options);
+
+}  // namespace hookeye

@@ -1,0 +1,84 @@
+#include "estimation/fit/lost_ellipticity.h"
+
+#include <Eigen/Eigenvalues>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "simulation/ellipticity.h"
+
+namespace hookeye {
+
+using nlohmann::json;
+
+namespace {
+
+/// dP/dF of the whole model.
+Matrix9d stiffness_of(const EnergyModel& energy, int e, const Matrix3d& F) {
+  const double g = energy.swelling.size() ? energy.swelling[e] : 1.0;
+  Matrix9d D = Matrix9d::Zero();
+  for (const auto& part : energy.parts)
+    D += (part.weight.size() ? part.weight[e] : 1.0) * g * part.dP_dF(e, F / g);
+  return D;
+}
+
+/// Of an element's points the most strained and the most compressed: Green strain has no limit in
+/// tension and ends at -1/2 in compression, where laws fail first.
+std::vector<Matrix3d> extremes(const Matrix3d* F, size_t points) {
+  double most = -1.0, least = std::numeric_limits<double>::infinity();
+  size_t strained = 0, compressed = 0;
+  for (size_t i = 0; i < points; ++i) {
+    const Matrix3d C = F[i].transpose() * F[i];
+    const double strain = (C - Matrix3d::Identity()).norm();
+    const double stretch2 = Eigen::SelfAdjointEigenSolver<Matrix3d>()
+                                .computeDirect(C, Eigen::EigenvaluesOnly)
+                                .eigenvalues()[0];
+    if (strain > most) most = strain, strained = i;
+    if (stretch2 < least) least = stretch2, compressed = i;
+  }
+  if (strained == compressed) return {F[strained]};
+  return {F[strained], F[compressed]};
+}
+
+}  // namespace
+
+LostEllipticity lost_ellipticity(const TetMesh& mesh, const EnergyModel& energy,
+                                 const VectorXd& q) {
+  constexpr int kStarts = 8;  // a sweep
+  LostEllipticity out{std::numeric_limits<double>::infinity(), -1, Matrix9d::Zero(), 0};
+  const auto all = deformation_gradients(mesh, q);
+  const size_t points = all.size() / static_cast<size_t>(mesh.size());
+  for (int e = 0; e < mesh.size(); ++e) {
+    bool here = false;
+    for (const Matrix3d& F : extremes(all.data() + static_cast<size_t>(e) * points, points)) {
+      const Matrix9d D = stiffness_of(energy, e, F);
+      const double value = ellipticity(D, kStarts).smallest;
+      here = here || value <= 0.0;
+      if (value < out.smallest) out.smallest = value, out.element = e, out.dP_dF = D;
+    }
+    out.elements += here;
+  }
+  return out;
+}
+
+json lost_ellipticity(const Scene& scene, const Fitted& fitted) {
+  const Model realised = fitted.form.realise(fitted.p);
+  std::optional<LostEllipticity> worst;
+  json out;
+  int lost = 0;
+  for (const auto& example : fitted.evaluation.examples) {
+    const auto here = lost_ellipticity(scene.body->mesh, realised.energy_of(example.example),
+                                       example.equilibrium->q);
+    lost += here.elements;
+    if (worst && here.smallest >= worst->smallest) continue;
+    worst = here;
+    out["example"] = scene.capture.examples[example.example].name;
+    out["element"] = here.element;
+  }
+  if (!worst) return out;
+  out["smallest"] = ellipticity(worst->dP_dF).smallest;  // looked at again, with all starts
+  out["elements_lost"] = lost;
+  return out;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,114 @@
+#include "estimation/model/declaration.h"
+
+#include <deque>
+#include <map>
+#include <regex>
+
+namespace hookeye {
+
+namespace {
+
+/// The variant with every number in it struck: what its form is, wherever it stands. Digits within
+/// a name ("cam0") stay.
+std::string kind_of(const std::string& variant) {
+  static const std::regex number(R"(-?\b\d+(\.\d+)?(e[-+]?\d+)?\b)");
+  return std::regex_replace(variant, number, "#");
+}
+
+/// Collects forms by kind, and those that they lead to.
+class Forms {
+ public:
+  Forms(const Effect& effect, const Model& model) : effect_(effect), model_(model) {}
+
+  /// A form of the scored ones, or of those that a refit goes on to from one seen before.
+  void take(const std::shared_ptr<const Ingredient>& form, const VectorXd& values, bool refit) {
+    if (!form) return;
+    const auto [at, fresh] = seen_.try_emplace(kind_of(form->variant()), all_.size());
+    if (!fresh) {
+      all_[at->second].ways += all_[at->second].refit == refit;
+      return;
+    }
+    all_.push_back({form->variant(), 1, refit, form->parameters(),
+                    effect_.sentence(model_, *form, typical_values(*form))});
+    open_.push_back({form, values, refit});
+  }
+
+  std::vector<DeclaredForm> with_refits() {
+    while (!open_.empty()) {
+      const Open one = open_.front();
+      open_.pop_front();
+      if (!one.refit) {
+        VectorXd values = one.values;
+        const auto refitted = effect_.refit_form(model_, one.form, values);
+        if (refitted != one.form) take(refitted, values, true);
+      }
+      go_on_from(one);
+    }
+    for (DeclaredForm& form : all_)
+      if (form.refit) form.ways = 1;
+    return std::move(all_);
+  }
+
+ private:
+  struct Open {
+    std::shared_ptr<const Ingredient> form;
+    VectorXd values;
+    bool refit;
+  };
+
+  void go_on_from(const Open& one) {
+    for (const auto& further : effect_.further_forms(model_, *one.form, one.values))
+      take(further.form, further.values, true);
+    VectorXd values = one.values;
+    if (auto smaller = effect_.smaller_form(model_, *one.form, values)) take(smaller, values, true);
+    values = one.values;
+    if (auto plainer = effect_.plainer_form(model_, *one.form, values)) take(plainer, values, true);
+  }
+
+  const Effect& effect_;
+  const Model& model_;
+  std::map<std::string, size_t> seen_;
+  std::deque<Open> open_;
+  std::vector<DeclaredForm> all_;
+};
+
+}  // namespace
+
+std::string group_name(EffectGroup group) {
+  switch (group) {
+    case EffectGroup::material:
+      return "material";
+    case EffectGroup::loads:
+      return "loads";
+    case EffectGroup::supports:
+      return "supports";
+    case EffectGroup::history:
+      return "history";
+    case EffectGroup::measurement:
+      return "measurement";
+    default:
+      return "numerical";
+  }
+}
+
+VectorXd typical_values(const Ingredient& ingredient) {
+  const auto parameters = ingredient.parameters();
+  VectorXd values(parameters.size());
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    values[i] = parameters[i].value + parameters[i].typical;
+    if (values[i] > parameters[i].high) values[i] = parameters[i].value - parameters[i].typical;
+  }
+  return values;
+}
+
+Declaration declare(const Effect& effect, const Model& model) {
+  Declaration out{&effect, {}, {}};
+  Forms forms(effect, model);
+  const Ingredients scored = effect.candidates(model, &out.why_not);
+  for (const auto& one : scored) forms.take(one, typical_values(*one), false);
+  out.forms = forms.with_refits();
+  if (!out.forms.empty()) out.why_not.clear();
+  return out;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,50 @@
+#include "estimation/model/effect.h"
+
+namespace hookeye {
+
+const Effect* Catalogue::find(const std::string& name) const {
+  for (const Effect* effect : effects_)
+    if (effect->name() == name) return effect;
+  return nullptr;
+}
+
+std::shared_ptr<const Ingredient> Effect::candidate(const Model& model,
+                                                    const std::string& variant) const {
+  if (auto built = rebuild(model, variant)) return built;
+  for (auto& one : candidates(model, nullptr))
+    if (one->variant() == variant) return one;
+  return nullptr;
+}
+
+std::shared_ptr<const Ingredient> Effect::rebuild(const Model&, const std::string&) const {
+  return nullptr;
+}
+
+bool Effect::remeshes(const std::string&) const { return false; }
+
+std::shared_ptr<const Scene> Effect::refit_scene(const Scene&, const std::string&) const {
+  return nullptr;
+}
+
+std::shared_ptr<const Ingredient> Effect::smaller_form(const Model&, const Ingredient&,
+                                                       Eigen::VectorXd&) const {
+  return nullptr;
+}
+
+std::shared_ptr<const Ingredient> Effect::plainer_form(const Model&, const Ingredient&,
+                                                       Eigen::VectorXd&) const {
+  return nullptr;
+}
+
+std::vector<Effect::Further> Effect::further_forms(const Model&, const Ingredient&,
+                                                   const Eigen::VectorXd&) const {
+  return {};
+}
+
+std::shared_ptr<const Ingredient> Effect::refit_form(const Model&,
+                                                     std::shared_ptr<const Ingredient> scored,
+                                                     Eigen::VectorXd&) const {
+  return scored;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,403 @@
+#include "estimation/search/discover.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "estimation/diagnosis/diagnosis_sums.h"
+#include "estimation/fit/archive.h"
+#include "estimation/fit/at_floor.h"
+#include "estimation/search/contest.h"
+#include "estimation/search/fit_to_all.h"
+#include "estimation/search/last_questions.h"
+#include "estimation/search/measured_explained.h"
+#include "estimation/search/pairs.h"
+#include "estimation/search/swaps.h"
+#include "estimation/search/widening.h"
+
+namespace hookeye {
+
+std::vector<std::string> effects_in(const ModelForm& form) {
+  std::vector<std::string> names;
+  for (size_t i = base_form(form.scene).ingredients.size(); i < form.ingredients.size(); ++i)
+    if (const std::string name = form.ingredients[i]->name();
+        std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  return names;
+}
+
+Contested contested(const Step& step) {
+  const Evaluation& left = step.fitted.evaluation;
+  return {step.added,      step.dropped,   step.rivals,
+          left.chi(false), left.chi(true), measured_r2(left)};
+}
+
+TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& floor) {
+  TakenByNames out;
+  const auto over = [&](double chi) { return std::max(0.0, chi * chi - floor.chi * floor.chi); };
+  for (size_t k = 1; k < steps.size(); ++k) {
+    const Contested &before = steps[k - 1], &after = steps[k];
+    if (numerical(after.added) ||
+        std::any_of(after.dropped.begin(), after.dropped.end(), numerical))
+      continue;
+    out.fit += over(before.chi_fit) - over(after.chi_fit);
+    out.held_out += over(before.chi_validate) - over(after.chi_validate);
+    out.measured += before.measured_r2 - after.measured_r2;
+  }
+  return out;
+}
+
+namespace {
+
+/// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
+/// found beside it, the later steps have decided.
+void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& missing) {
+  const auto has = [&](const std::string& name) {
+    return std::find(missing.begin(), missing.end(), name) != missing.end();
+  };
+  if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
+    tie.clear();
+}
+
+/// Nothing is worked out twice in one search, whether or not what it comes to outlives it.
+class OwnArchive {
+ public:
+  explicit OwnArchive(Workspace& workspace) : workspace_(workspace), own_(!workspace.archive()) {
+    if (own_) workspace_.keep_in(std::make_shared<Archive>());
+  }
+  OwnArchive(const OwnArchive&) = delete;
+  OwnArchive& operator=(const OwnArchive&) = delete;
+  ~OwnArchive() {
+    if (own_) workspace_.keep_in(nullptr);
+  }
+
+ private:
+  Workspace& workspace_;
+  bool own_;
+};
+
+/// All that a search fits may be given up but for its base.
+DiscoverOptions of_rivals(DiscoverOptions options) {
+  options.fit.most_iterations = kRivalIterations;
+  return options;
+}
+
+/// The loop: one step after the other, until nothing is left to add or to swap.
+class Search {
+ public:
+  Search(Workspace& workspace, const DiscoverOptions& options, const DiscoverEvents& events)
+      : workspace_(workspace),
+        options_(of_rivals(options)),
+        events_(events),
+        base_(base_form(workspace.scene().shared_from_this()).ingredients.size()),
+        wider_(workspace, options_.fit, events) {}
+
+  std::variant<Discovery, NumericalFailure> run(Step first) {
+    out_.tie = options_.tie;
+    const auto start = std::ssize(first.fitted.form.ingredients);
+    out_.steps.push_back(std::move(first));
+    // Swaps add nothing, and each betters the score; were they to go in circles, this ends it.
+    const size_t most_steps = 1 + 3 * static_cast<size_t>(std::max(options_.max_effects, 0));
+    while (true) {
+      if (auto failure = diagnose_newest()) return *failure;
+      if (together_) {
+        stand_in(*std::exchange(together_, std::nullopt));
+        continue;
+      }
+      auto to_all = fit_to_all(workspace_, newest().fitted, newest().diagnosis, options_.fit);
+      if (auto* failure = std::get_if<NumericalFailure>(&to_all)) return *failure;
+      out_.all = std::get<std::optional<FitToAll>>(std::move(to_all));
+      if (out_.steps.size() >= most_steps) break;
+      const auto added = std::ssize(newest().fitted.form.ingredients) - start;
+      const int room = options_.max_effects - static_cast<int>(added);
+      auto went_on = next_step(room);
+      if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
+      if (std::get<bool>(went_on)) continue;
+      auto asked = asked_last(room);
+      if (auto* failure = std::get_if<NumericalFailure>(&asked)) return *failure;
+      if (!std::get<bool>(asked)) break;
+    }
+    // Questions that were stopped have no answer: neither has the run.
+    if (!cancelled()) ask_all_again();
+    if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+    return finish();
+  }
+
+ private:
+  /// Whether there is a step more.
+  using WentOn = std::variant<bool, NumericalFailure>;
+
+  Step& newest() { return out_.steps.back(); }
+  const FitToAll* all() const { return out_.all ? &*out_.all : nullptr; }
+  bool cancelled() const { return options_.fit.cancel && *options_.fit.cancel; }
+
+  /// A step with other effects than the last contest chose: who lost it has lost to another model.
+  void stand_in(Step step) {
+    losers_.clear();
+    last_contest_.forget();
+    out_.steps.push_back(std::move(step));
+  }
+
+  std::optional<NumericalFailure> diagnose_newest() {
+    Step& step = newest();
+    auto diagnosis = diagnose(workspace_, step.fitted, options_.diagnosis);
+    if (auto* failure = std::get_if<NumericalFailure>(&diagnosis)) return *failure;
+    step.diagnosis = std::get<Diagnosis>(std::move(diagnosis));
+    reach_for_mesh(step.fitted, step.diagnosis);
+    out_.floor = step.diagnosis.floor;
+    if (events_.step) events_.step(step);
+    drop_pictures(step.fitted);
+    return {};
+  }
+
+  /// `room`: for how many effects more.
+  WentOn next_step(int room) {
+    mesh_refitted_ = false;
+    refused_.clear();
+    auto widened = widened_form(false);
+    if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
+    if (std::get<bool>(widened)) return true;
+    Step& step = newest();
+    if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis, all())) return false;
+    if (auto better = swap_for_better(workspace_, step.fitted, out_.floor, base_, refused_swaps_,
+                                      options_, events_)) {
+      stand_in(swapped_step(std::move(*better)));
+      return true;
+    }
+    auto refitted =
+        refit_leaders(workspace_, step, last_contest_.beaten(out_.steps), options_, events_);
+    if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
+    Contest& contest = std::get<Contest>(refitted);
+    mesh_refitted_ = std::any_of(contest.refits.begin(), contest.refits.end(),
+                                 [](const Refit& refit) { return numerical(refit.effect); });
+    if (contest.refits.empty()) return false;
+    if (mesh_refitted_ && !numerical(contest.refits.front().effect)) {
+      auto wide = widened_form(true);  // the mesh has been asked, and is not what is missing
+      if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
+    }
+    if (auto failure = wider_.mend(contest, step, out_.floor)) return *failure;
+    if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
+                                       refused_swaps_, options_, events_);
+        found && refused_by(step, found->second.in).empty()) {
+      add_two(*found->first, contest, swapped_step(std::move(found->second)));
+      return true;
+    }
+    refused_ = why_refused(step, contest.before, contest.refits.front());
+    if (!refused_.empty()) return add_pair(contest, room);
+    add_winner(contest);
+    return true;
+  }
+
+  /// Before another effect is asked for those that stand are asked for a wider form, the newest
+  /// first; a mesh that stands out and may be all that is missing is settled before them, or has
+  /// been asked. (A form has to take half of what is left, too.)
+  WentOn widened_form(bool mesh_was_asked) {
+    const Step& step = newest();
+    const auto& all = step.fitted.form.ingredients;
+    for (const EffectScore& score : step.diagnosis.effects)
+      if (!mesh_was_asked && may_be_all(score.effect, step.diagnosis) &&
+          nameable(score, step.diagnosis))
+        return false;
+    for (size_t at = all.size(); at-- > base_;) {
+      const std::string name = all[at]->name();
+      if (numerical(name) ||
+          (at_floor(step.fitted, out_.floor, kLeftByRenderers) && !wider_.came_to(*all[at])))
+        continue;
+      auto result = wider_.ask(step.fitted, at, out_.floor);
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+      auto& wide = std::get<std::optional<Fitted>>(result);
+      if (!wide) continue;
+      out_.steps.push_back(step_with(name, std::move(*wide), {name}));
+      return true;
+    }
+    return false;
+  }
+
+  void add_two(const Refit& first, Contest& contest, Step second) {
+    Step leading;
+    leading.name = leading.added = first.effect;
+    leading.rivals = rivals_of(contest, first.score);
+    leading.raced = raced(contest.racers);
+    leading.fitted = first.fitted;
+    together_ = std::move(second);
+    stand_in(std::move(leading));
+  }
+
+  /// Where the best alone does not stand.
+  WentOn add_pair(Contest& contest, int room) {
+    const Step& step = newest();
+    if (room < 2) return false;
+    auto beside = refit_beside_best(workspace_, step, contest, options_, events_);
+    if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
+    auto& pair = std::get<std::optional<Pair>>(beside);
+    if (!pair) {
+      if (explains_photos(step.fitted, step.diagnosis.floor) &&
+          measured_explained(step.fitted, step.diagnosis))
+        return false;
+      auto tried = refit_pairs(workspace_, step, contest, options_, events_);
+      if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
+      pair = std::get<std::optional<Pair>>(std::move(tried));
+      if (!pair || !why_refused(step, contest.before, pair->second).empty()) return false;
+    }
+    refused_.clear();
+    add_two(pair->first, contest,
+            step_with(std::move(pair->second.effect), std::move(pair->second.fitted)));
+    return true;
+  }
+
+  void add_winner(Contest& contest) {
+    Refit& winner = contest.refits.front();
+    Step next;
+    next.name = next.added = winner.effect;
+    next.raced = raced(contest.racers);
+    next.rivals = rivals_of(contest, winner.score);
+    std::vector<const Refit*> equals;
+    for (const auto& rival : contest.refits)
+      if (&rival != &winner && rival.score > winner.score - kTie) equals.push_back(&rival);
+    next.fitted = std::move(winner.fitted);
+    losers_.clear();
+    if (spoils_held_out(next.fitted, out_.floor))
+      losers_.assign(contest.refits.begin() + 1, contest.refits.end());
+    for (Refit& loser : losers_) drop_pictures(loser.fitted);
+    if (next.fitted.form.ingredients.size() > base_ + 1)
+      if (auto lighter = backward(workspace_, next.fitted, out_.floor, base_, options_)) {
+        next.dropped = {lighter->effect}, next.fitted = std::move(lighter->fitted);
+        std::erase_if(equals, [&](const Refit* rival) {
+          return !equals_after_swap(workspace_, rival->fitted, next.fitted, lighter->effect,
+                                    out_.floor, options_.fit);
+        });
+      }
+    settle_tie(out_.tie, effects_in(next.fitted.form));
+    if (out_.tie.size() > 1) {
+      if (auto asked = ask_tie_again(workspace_, next.fitted, out_.tie, out_.floor, base_,
+                                     refused_swaps_, options_, events_)) {
+        out_.tie = std::move(asked->tie);
+        if (asked->better) together_ = swapped_step(std::move(*asked->better));
+      }
+    }
+    if (!equals.empty() && out_.tie.empty()) out_.tie.push_back(next.added);
+    for (const Refit* rival : equals) out_.tie.push_back(rival->effect);
+    last_contest_.won(next.added, out_.steps.size() - 1, std::move(contest.racers));
+    out_.steps.push_back(std::move(next));
+  }
+
+  /// Puts the step, if there is one, behind the others.
+  WentOn taken(LastAnswer answer) {
+    if (auto* failure = std::get_if<NumericalFailure>(&answer)) return *failure;
+    auto& step = std::get<std::optional<Step>>(answer);
+    if (step) out_.steps.push_back(std::move(*step));
+    return step.has_value();
+  }
+
+  /// Where nothing can be added: last_questions.h.
+  WentOn asked_last(int room) {
+    const auto stays = [](const WentOn& result) {
+      return std::holds_alternative<bool>(result) && !std::get<bool>(result);
+    };
+    if (room > 0 && !mesh_refitted_ && !out_.all)
+      if (auto result = taken(settled_mesh(workspace_, newest(), options_, events_));
+          !stays(result))
+        return result;
+    if (auto result = widened_form(true); !stays(result)) return result;
+    auto lighter = without_idle(workspace_, newest().fitted, out_.floor, base_, options_, events_);
+    if (lighter && idle_.insert(lighter->dropped.back()).second) {
+      stand_in(std::move(*lighter));
+      return true;
+    }
+    if (reopened()) return true;
+    const std::vector<Refit> losers = std::exchange(losers_, {});
+    if (out_.all) return false;
+    return taken(wider_loser(workspace_, newest(), losers, options_, events_));
+  }
+
+  /// Whether another won a contest that was held again.
+  bool reopened() {
+    auto asked =
+        contests_again(workspace_, out_.steps, base_, asked_, refused_swaps_, options_, events_);
+    if (asked.better) {
+      stand_in(swapped_step(std::move(*asked.better)));
+      settle_tie(out_.tie, effects_in(newest().fitted.form));
+      return true;
+    }
+    if (out_.tie.empty()) out_.tie = std::move(asked.tie);
+    return false;
+  }
+
+  /// Where held-out photos were missed by values alone, they tell rivals apart by being fitted.
+  void ask_all_again() {
+    if (!out_.all) return;
+    settle_tie(out_.tie, effects_in(newest().fitted.form));
+    out_.tie = tie_of_all(workspace_, *out_.all, whole_run(), out_.tie, out_.floor, base_, options_,
+                          events_);
+  }
+
+  std::vector<Contested> whole_run() const {
+    std::vector<Contested> steps = options_.past;
+    for (const Step& step : out_.steps) steps.push_back(contested(step));
+    return steps;
+  }
+
+  /// What speaks against photos that are at the floor.
+  std::string in_doubt(const Step& last) const {
+    // What was taken back took nothing, however its refits round.
+    const bool named = !std::all_of(out_.missing.begin(), out_.missing.end(), numerical);
+    std::string stays;
+    if (named)
+      stays = more_stays(last.fitted, last.diagnosis, taken_by_names(whole_run(), out_.floor));
+    return stays.empty() ? moved_at_rest(last.fitted, last.diagnosis) : stays;
+  }
+
+  Discovery finish() {
+    std::string why;
+    const Step& last = newest();
+    out_.missing = effects_in(last.fitted.form);
+    settle_tie(out_.tie, out_.missing);
+    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
+    if (out_.verdict != Verdict::unexplained && !out_.all)
+      if (const std::string doubt = in_doubt(last); !doubt.empty())
+        out_.verdict = Verdict::unexplained, why += doubt;
+    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
+    return std::move(out_);
+  }
+
+  Workspace& workspace_;
+  const DiscoverOptions options_;
+  const DiscoverEvents& events_;
+  const size_t base_;  ///< ingredients of the capture's own model
+  Discovery out_;
+  std::string refused_;         ///< why the best of the last contest was not added
+  bool mesh_refitted_ = false;  ///< in the last contest
+  RefusedSwaps refused_swaps_;
+  WiderForms wider_;
+  LastContest last_contest_;
+  std::vector<Refit> losers_;     ///< of the last contest, where its winner spoilt held-out photos
+  std::optional<Step> together_;  ///< second of a pair, once the first is written
+  std::set<std::string> idle_;    ///< were dropped once; who comes back stays
+  AskedAgain asked_;
+};
+
+}  // namespace
+
+std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
+                                                        const DiscoverOptions& options,
+                                                        const DiscoverEvents& events) {
+  const OwnArchive archive(workspace);
+  return Search(workspace, options, events).run(std::move(first));
+}
+
+std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const ModelForm& form,
+                                                   const VectorXd& start,
+                                                   const DiscoverOptions& options,
+                                                   const DiscoverEvents& events) {
+  const OwnArchive archive(workspace);
+  auto base = fit(workspace, form, start, options.fit);
+  if (auto* failure = std::get_if<NumericalFailure>(&base)) return *failure;
+  Step step;
+  step.name = "base";
+  step.fitted = std::get<Fitted>(std::move(base));
+  return discover_from(workspace, std::move(step), options, events);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,39 @@
+#include "estimation/search/measured_explained.h"
+
+#include <fmt/format.h>
+
+#include "estimation/fit/evidence.h"
+
+namespace hookeye {
+
+bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::string* why) {
+  const double noise2 = 1.0 + diagnosis.mesh_in_measured;
+  bool fine = true;
+  double worst = 0.0;
+  for (const bool held_out : {false, true}) {
+    double sum = 0.0, count = 0.0;
+    for (const auto& example : fitted.evaluation.examples)
+      for (const auto& measured : example.measured) {
+        if (example.held_out != held_out) continue;
+        sum += measured.r.squaredNorm(), count += 3.0;
+        if (measured.r.norm() <= worst) continue;
+        worst = measured.r.norm();
+        const auto& spec = fitted.form.scene->capture.examples[example.example];
+        const MeasuredSpec& told = spec.measured[measured.index];
+        if (why)
+          *why = fmt::format(
+              "{} in '{}' is {:.3g} times its told noise off",
+              told.kind == MeasuredSpec::Kind::position
+                  ? "a measured position"
+                  : fmt::format("the {} measured on '{}'",
+                                told.kind == MeasuredSpec::Kind::force ? "force" : "moment",
+                                told.region),
+              spec.name, worst);
+      }
+    if (count > 0.0 && sum / noise2 > chi2_point(count)) fine = false;
+  }
+  if (fine && why) why->clear();
+  return fine;
+}
+
+}  // namespace hookeye

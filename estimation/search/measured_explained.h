@@ -1,0 +1,16 @@
+// Whether the sensors are explained too.
+#pragma once
+
+#include <string>
+
+#include "estimation/diagnosis/diagnosis.h"
+
+namespace hookeye {
+
+/// Forces, moments and positions, of fitted and of held-out examples each, are no further off than
+/// their told noise and what a finer mesh would change in them allow: the sum of squares is below
+/// the 99.9 % point of its distribution. `why` names the worst where they are not.
+bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
+                        std::string* why = nullptr);
+
+}  // namespace hookeye

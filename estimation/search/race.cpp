@@ -1,0 +1,222 @@
+#include "estimation/search/race.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "estimation/fit/at_floor.h"
+#include "estimation/search/extension.h"
+
+namespace hookeye {
+
+namespace {
+
+constexpr size_t kSecondRound = 4;
+
+/// After its second step, or where it stands if there is none.
+const Trial& newest(const Racer& racer) { return racer.next ? *racer.next : racer.trial; }
+
+/// Which of two forms of an effect gets farther on fitted and held-out photos together; one that
+/// takes from the fitted ones not half of what the other does gets nowhere, and has spoilt no
+/// held-out photo for that alone.
+bool gets_farther(const Racer& one, const Racer& other, const TrialScale& scale) {
+  const auto taken = [&](const Racer& racer) {
+    return scale.chi * scale.chi - std::pow(newest(racer).chi_fit, 2);
+  };
+  if (taken(one) < 0.5 * taken(other)) return false;
+  if (taken(other) < 0.5 * taken(one)) return true;
+  const auto chi = [](const Racer& racer) {
+    return newest(racer).chi_fit + newest(racer).chi_validate;
+  };
+  return chi(one) < chi(other);
+}
+
+/// The racer with `won` before its effect, at the null or where a form without a way back to it
+/// starts. `before`: what both were scored on.
+Racer joined_by(const Racer& alone, const Fitted& before, const EffectScore& won) {
+  Model model = alone.form.realise(alone.trial.p);
+  model.states = realised(before).states;
+  auto [ingredient, values] = entering(model, won, 0.0);
+  Racer both = alone;
+  both.next.reset();
+  const auto own = static_cast<Eigen::Index>(alone.form.ingredients.back()->parameters().size());
+  both.form.ingredients.insert(both.form.ingredients.end() - 1, std::move(ingredient));
+  const VectorXd& p = alone.trial.p;
+  both.trial.p.resize(p.size() + values.size());
+  both.trial.p << p.head(p.size() - own), values, p.tail(own);
+  return both;
+}
+
+/// Steps once more from where the racer stands.
+std::variant<Trial, NumericalFailure> step_on(Workspace& workspace, const Racer& racer,
+                                              const TrialScale& scale, const FitOptions& options) {
+  if (racer.next) return *racer.next;
+  return try_step(workspace, racer.form, racer.trial.p, scale, options);
+}
+/// The racer's second step, where there is one.
+std::optional<NumericalFailure> run_on(Workspace& workspace, Racer& racer, const TrialScale& scale,
+                                       const FitOptions& options,
+                                       const std::function<void(const Racer&)>& tried) {
+  auto result = step_on(workspace, racer, scale, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&result))
+    return cancelled(*failure) ? std::optional(*failure) : std::nullopt;
+  racer.trial = std::get<Trial>(std::move(result));
+  if (tried) tried(racer);
+  return {};
+}
+
+void sort_by_success(std::vector<Racer>& racers) {
+  std::stable_sort(racers.begin(), racers.end(),
+                   [](const Racer& a, const Racer& b) { return a.chi() < b.chi(); });
+}
+
+/// Photos of `left` keep at most a tenth of what `start` had over the floor, fitted and held-out.
+bool explains_nearly_all(const Trial& left, const TrialScale& start) {
+  const double floor2 = start.floor * start.floor;
+  const auto nearly = [&](double after, double before) {
+    return after * after - floor2 <= 0.1 * std::max(0.0, before * before - floor2);
+  };
+  return nearly(left.chi_fit, start.chi) && nearly(left.chi_validate, start.chi_validate);
+}
+
+/// The first explains nearly all, and this one promises less than half of what the first did and
+/// would be out of its reach with that: it could only come from there to tie, as a double whose
+/// first step does not look like it. Not asked of what moves no photo.
+bool no_rival(const EffectScore& score, const Diagnosis& diagnosis, const Racer& first,
+              const TrialScale& start) {
+  const EffectScore& led = diagnosis.effects.front();
+  if (first.effect != led.effect || !explains_nearly_all(newest(first), start) ||
+      sensors_alone(*score.best) || ties_with_first(diagnosis, score.effect) ||
+      score.explains > 0.5 * led.explains)
+    return false;
+  const double chi2 = start.chi * start.chi, floor2 = start.floor * start.floor;
+  return std::sqrt(chi2 - score.explains * (chi2 - floor2)) > 3.0 * newest(first).chi_fit;
+}
+
+}  // namespace
+
+bool ties_with_first(const Diagnosis& diagnosis, const std::string& effect) {
+  return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
+    return score.effect == effect && score.evidence > diagnosis.effects.front().evidence - kTie;
+  });
+}
+
+bool Racer::at_floor() const {
+  const double most = kAtFloor * trial.floor;
+  return trial.chi_fit <= most && trial.chi_validate <= most;
+}
+
+double Racer::structured() const {
+  const double f2 = trial.floor * trial.floor, least = kLeftByRenderers * kLeftByRenderers - 1.0;
+  const auto over = [&](double chi) { return std::sqrt(std::max(chi * chi - f2, least * f2)); };
+  return over(trial.chi_fit) + (trial.chi_validate > 0.0 ? over(trial.chi_validate) : 0.0);
+}
+
+std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& current,
+                                            const EffectScore& score, const TrialScale& scale,
+                                            const FitOptions& options) {
+  std::variant<Racer, NumericalFailure> best = NumericalFailure{"", 0.0, "no start"};
+  for (const EffectScore* form : {&score, score.other_form.get()}) {
+    if (!form) continue;
+    ModelForm started;
+    TrialScale own = scale;
+    // There the first step may begin worse than the model without, and what it leaves decides.
+    if (starts_anywhere(current, *form)) own.chi = std::numeric_limits<double>::infinity();
+    auto result = from_shares(current, *form, options, [&](const Extension& extension) {
+      started = extension.form;
+      return try_step(workspace, started, extension.start, own, options);
+    });
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (form == &score || cancelled(*failure)) best = *failure;
+      if (cancelled(*failure)) break;
+      continue;
+    }
+    Racer racer{score.effect, std::move(started), std::get<Trial>(std::move(result)), {}};
+    auto* other = std::get_if<Racer>(&best);
+    if (other)
+      for (Racer* one : {other, &racer}) {
+        auto further = step_on(workspace, *one, scale, options);
+        if (const auto* failure = std::get_if<NumericalFailure>(&further)) {
+          if (cancelled(*failure)) return *failure;
+        } else {
+          one->next = std::get<Trial>(std::move(further));
+        }
+      }
+    if (!other || gets_farther(racer, *other, scale)) best = std::move(racer);
+  }
+  return best;
+}
+
+std::variant<std::vector<Racer>, NumericalFailure> race(
+    Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
+    const FitOptions& options, const std::function<void(const Racer&)>& tried) {
+  std::vector<Racer> racers;
+  const auto scale = trial_scale(workspace, current.form, current.p, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+  for (const EffectScore& score : diagnosis.effects) {
+    if (!nameable(score, diagnosis)) continue;
+    if (!racers.empty() && no_rival(score, diagnosis, racers.front(), std::get<TrialScale>(scale)))
+      continue;
+    auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
+    if (auto* failure = std::get_if<NumericalFailure>(&entered)) {
+      if (cancelled(*failure)) return *failure;
+      continue;
+    }
+    racers.push_back(std::get<Racer>(std::move(entered)));
+    if (tried) tried(racers.back());
+    if (racers.size() > 1 || &score == &diagnosis.effects.back()) continue;
+    // The first is asked for its second step at once: who need not run shows then.
+    auto further = step_on(workspace, racers.front(), std::get<TrialScale>(scale), options);
+    if (auto* trial = std::get_if<Trial>(&further))
+      racers.front().next = std::move(*trial);
+    else if (cancelled(std::get<NumericalFailure>(further)))
+      return std::get<NumericalFailure>(further);
+  }
+  sort_by_success(racers);
+  const Racer first = racers.empty() ? Racer() : racers.front();
+  for (size_t i = 0; i < racers.size() && (racers.size() > 1 || first.next); ++i) {
+    // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
+    const std::string& effect = racers[i].effect;
+    if (effect != diagnosis.effects.front().effect &&
+        (i >= kSecondRound ||
+         (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect))))
+      continue;
+    if (auto stopped = run_on(workspace, racers[i], std::get<TrialScale>(scale), options, tried))
+      return *stopped;
+  }
+  sort_by_success(racers);
+  return racers;
+}
+
+std::variant<std::vector<Racer>, NumericalFailure> race_beside(
+    Workspace& workspace, const Fitted& before, const EffectScore& won,
+    const std::vector<Racer>& racers, const FitOptions& options,
+    const std::function<void(const Racer&)>& tried) {
+  std::vector<Racer> beside;
+  const auto scale = trial_scale(workspace, before.form, before.p, options);
+  if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+  for (const Racer& alone : racers) {
+    const auto& own = alone.form.ingredients.back();
+    if (alone.effect == won.effect || numerical(alone.effect) || sensors_alone(*own)) continue;
+    Racer racer = joined_by(alone, before, won);
+    auto result =
+        try_step(workspace, racer.form, racer.trial.p, std::get<TrialScale>(scale), options);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (cancelled(*failure)) return *failure;
+      continue;
+    }
+    racer.trial = std::get<Trial>(std::move(result));
+    if (tried) tried(racer);
+    beside.push_back(std::move(racer));
+  }
+  sort_by_success(beside);
+  for (size_t i = 0; i < std::min(beside.size(), kSecondRound); ++i) {
+    if (auto stopped = run_on(workspace, beside[i], std::get<TrialScale>(scale), options, tried))
+      return *stopped;
+  }
+  sort_by_success(beside);
+  return beside;
+}
+
+}  // namespace hookeye

@@ -1,0 +1,153 @@
+#include "estimation/search/refit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "capture_io/distributions.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/search/discover.h"
+#include "estimation/search/extension.h"
+#include "estimation/search/kept_stiffness.h"
+#include "estimation/search/refit_score.h"
+
+namespace hookeye {
+
+namespace {
+
+FitOptions warm(const FitOptions& options) {
+  FitOptions out = options;
+  out.coarse_to_fine = false;
+  return out;
+}
+
+/// The refit form of `scored`, when it lives on a mesh of its own. Null: it does not.
+std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
+                                                 const std::shared_ptr<const Ingredient>& scored,
+                                                 VectorXd values) {
+  auto form = find_effect(scored->name())->refit_form(model, scored, values);
+  return remeshed_by(*form) ? form : nullptr;
+}
+
+/// Fits `model` with `remeshing` on the mesh that it asks for.
+std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, const Model& model,
+                                                       const Ingredient& remeshing,
+                                                       const FitOptions& options) {
+  const auto [form, start] = on_its_mesh(model, remeshing);
+  FitOptions from_rest = warm(options);  // no equilibrium is known on this mesh
+  from_rest.most_iterations = FitOptions{}.most_iterations;
+  return fit(workspace, form, start, from_rest);
+}
+
+/// `fitted` with another form of its last effect, which `change` makes of the present one and the
+/// model before it. Empty: it makes none.
+std::optional<std::pair<ModelForm, VectorXd>> with_other_form(
+    const Fitted& fitted,
+    std::shared_ptr<const Ingredient> (Effect::*change)(const Model&, const Ingredient&,
+                                                        VectorXd& values) const) {
+  const Ingredient& last = *fitted.form.ingredients.back();
+  const auto own = static_cast<Eigen::Index>(last.parameters().size());
+  const VectorXd before = fitted.p.head(fitted.p.size() - own);
+  ModelForm other = fitted.form;
+  other.ingredients.pop_back();
+  VectorXd values = fitted.p.tail(own);
+  auto form = (find_effect(last.name())->*change)(other.realise(before), last, values);
+  if (!form) return std::nullopt;
+  const auto parameters = form->parameters();
+  for (int i = 0; i < values.size(); ++i)
+    values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
+  other.ingredients.push_back(std::move(form));
+  VectorXd there(before.size() + values.size());
+  there << before, values;
+  there = with_stiffness_of(fitted.form.realise(fitted.p), other, std::move(there));
+  return std::pair{std::move(other), std::move(there)};
+}
+
+/// One of the last effect's numbers that `plainer` does without is off its null by more than five
+/// standard deviations: that is worth 25/2 of log-likelihood, and two numbers cost log N.
+bool pays_for_itself(const Fitted& fitted, const Ingredient& plainer) {
+  constexpr double kDeviations = 5.0;
+  const auto kept = plainer.parameters(), all = fitted.form.ingredients.back()->parameters();
+  const Eigen::Index first = fitted.p.size() - static_cast<Eigen::Index>(all.size());
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (std::any_of(kept.begin(), kept.end(), [&](auto& p) { return p.name == all[i].name; }))
+      continue;
+    const Eigen::Index k = first + static_cast<Eigen::Index>(i);
+    const double deviation = 0.5 * (fitted.high[k] - fitted.low[k]) / kNormal95;
+    if (std::abs(fitted.p[k] - all[i].value) > kDeviations * deviation) return true;
+  }
+  return false;
+}
+
+/// The plainer form of the last effect where what it does without does not pay for itself
+/// (refit_score), else `fitted`.
+std::variant<Fitted, NumericalFailure> fit_plainest(Workspace& workspace, Fitted fitted,
+                                                    const FitOptions& options) {
+  const auto other = with_other_form(fitted, &Effect::plainer_form);
+  if (!other || pays_for_itself(fitted, *other->first.ingredients.back())) return fitted;
+  auto second = fit(workspace, other->first, other->second, warm(options));
+  if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
+    if (cancelled(*failure)) return *failure;
+    return fitted;
+  }
+  const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
+  const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
+  return refit_score(std::get<Fitted>(second), yardstick) >= refit_score(fitted, yardstick)
+             ? second
+             : fitted;
+}
+
+/// Fits; then the smaller form of the last effect, where it has one, from where the larger ended.
+/// The smaller one is kept where it misses no more. The plainer form of either comes last.
+std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const ModelForm& form,
+                                                    const VectorXd& start,
+                                                    const FitOptions& options) {
+  auto result = fit(workspace, form, start, warm(options));
+  auto* larger = std::get_if<Fitted>(&result);
+  if (!larger) return result;
+  const auto other = with_other_form(*larger, &Effect::smaller_form);
+  if (!other) return fit_plainest(workspace, std::move(*larger), options);
+  // far from there: coarse to fine
+  auto second = fit(workspace, other->first, other->second, options);
+  if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
+    if (cancelled(*failure)) return *failure;
+    return fit_plainest(workspace, std::move(*larger), options);
+  }
+  Fitted& smaller = std::get<Fitted>(second);
+  return fit_plainest(workspace, std::move(misfit(smaller) <= misfit(*larger) ? smaller : *larger),
+                      options);
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
+                                                  const EffectScore& score,
+                                                  const FitOptions& options) {
+  if (score.other_form) {
+    const auto scale = trial_scale(workspace, current.form, current.p, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+    const auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
+    if (const auto* racer = std::get_if<Racer>(&entered)) return refit(workspace, *racer, options);
+    if (cancelled(std::get<NumericalFailure>(entered))) return std::get<NumericalFailure>(entered);
+  }
+  const Model model = current.form.realise(current.p);
+  if (auto remeshing = remeshing_form(model, score.best, score.values))
+    return fit_on_its_mesh(workspace, model, *remeshing, options);
+  return from_shares(current, score, options, [&](const Extension& extension) {
+    return fit_smallest(workspace, extension.form, extension.start, options);
+  });
+}
+
+std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& racer,
+                                             const FitOptions& options) {
+  const auto& scored = racer.form.ingredients.back();
+  const auto added = static_cast<Eigen::Index>(scored->parameters().size());
+  ModelForm before = racer.form;
+  before.ingredients.pop_back();
+  const Model model = before.realise(racer.trial.p.head(racer.trial.p.size() - added));
+  if (auto remeshing = remeshing_form(model, scored, racer.trial.p.tail(added)))
+    return fit_on_its_mesh(workspace, model, *remeshing, options);
+  return fit_smallest(workspace, racer.form, racer.trial.p, options);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,342 @@
+#include "estimation/search/swaps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "capture_io/distributions.h"
+#include "estimation/effects/catalogue.h"
+#include "estimation/fit/at_floor.h"
+#include "estimation/search/extension.h"
+#include "estimation/search/refit_score.h"
+
+namespace hookeye {
+
+std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
+
+std::string forms_of(const ModelForm& form) {
+  std::string out;
+  for (const auto& one : form.ingredients) out += form_of(*one) + ", ";
+  return out;
+}
+
+Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
+  Eigen::Index offset = 0;
+  for (size_t k = 0; k < ingredient; ++k)
+    offset += static_cast<Eigen::Index>(form.ingredients[k]->parameters().size());
+  return offset;
+}
+
+namespace {
+
+/// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
+/// with which no effect is idle.
+bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Parameter>& own) {
+  for (size_t k = 0; k < own.size(); ++k) {
+    const auto i = offset + static_cast<Eigen::Index>(k);
+    const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * kNormal95);
+    if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Parted parted_from(const Fitted& fitted, size_t i) {
+  const Eigen::Index offset = offset_of(fitted.form, i);
+  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
+  Parted out{fitted.form, VectorXd(fitted.p.size() - n)};
+  out.form.ingredients.erase(out.form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
+  out.p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
+  work_out_anew(out.form, out.p);
+  return out;
+}
+
+namespace {
+
+/// `fitted` without its ingredient `i`, fitted again from where it stands or, where that is nearer,
+/// from where the capture's own parameters started: a modulus may have made up for the effect by
+/// factors. Coarse to fine where both are far off.
+std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
+                                  const FitOptions& options) {
+  const auto [form, stands] = parted_from(fitted, i);
+  VectorXd told = stands;
+  const Eigen::Index own =
+      std::min(offset_of(fitted.form, i), base_form(form.scene).initial().size());
+  told.head(own) = form.initial().head(own);
+  double least = std::numeric_limits<double>::infinity();
+  VectorXd start = stands;
+  for (const VectorXd& p : {stands, told}) {
+    const auto there = assess(workspace, form, p, options);
+    const auto* known = std::get_if<Fitted>(&there);
+    if (known && misfit(*known) < least) least = misfit(*known), start = p;
+  }
+  FitOptions from_there = options;
+  from_there.coarse_to_fine = least > 2.0 * misfit(fitted);
+  auto result = fit(workspace, form, start, from_there);
+  if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
+  return {};
+}
+
+}  // namespace
+
+std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
+                              size_t first_effect, const DiscoverOptions& options) {
+  const Yardstick yardstick{&current, &floor, measured_noise2(current)};
+  const double full = refit_score(current, yardstick);
+  for (size_t i = first_effect; i + 1 < current.form.ingredients.size(); ++i) {
+    const Ingredient& one = *current.form.ingredients[i];
+    if (remeshed_by(one) || stands(current, offset_of(current.form, i), one.parameters())) continue;
+    auto lighter = fit_without(workspace, current, i, options.fit);
+    if (!lighter) continue;
+    const double score = refit_score(*lighter, yardstick);
+    if (score > full - kTie) return Refit{one.name(), std::move(*lighter), score};
+  }
+  return {};
+}
+
+std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted,
+                                      const Floor& floor, size_t first_effect,
+                                      const DiscoverOptions& options) {
+  const auto& all = fitted.form.ingredients;
+  if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
+  for (size_t i = first_effect; i < all.size(); ++i) {
+    const auto own = all[i]->parameters();
+    const Eigen::Index offset = offset_of(fitted.form, i);
+    bool null = !remeshed_by(*all[i]);
+    for (size_t k = 0; k < own.size(); ++k) {
+      const auto at = offset + static_cast<Eigen::Index>(k);
+      null = null && fitted.low[at] <= own[k].value && own[k].value <= fitted.high[at];
+    }
+    if (!null) continue;
+    auto lighter = fit_without(workspace, fitted, i, options.fit);
+    if (lighter && at_floor(*lighter, floor))
+      return Refit{all[i]->name(), std::move(*lighter), 0.0};
+  }
+  return {};
+}
+
+bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,
+                       const std::string& dropped, const Floor& floor, const FitOptions& options) {
+  const Yardstick yardstick{&winner, &floor, measured_noise2(winner)};
+  const double enough = refit_score(winner, yardstick) - kTie;
+  if (refit_score(rival, yardstick) > enough) return true;
+  for (size_t i = 0; i < rival.form.ingredients.size(); ++i)
+    if (rival.form.ingredients[i]->name() == dropped) {
+      const auto lighter = fit_without(workspace, rival, i, options);
+      return lighter && refit_score(*lighter, yardstick) > enough;
+    }
+  return false;
+}
+
+namespace {
+
+/// Which a refused swap answers.
+std::string question(const ModelForm& form, const Ingredient& dropped, const std::string& effect) {
+  return forms_of(form) + ": " + effect + " in place of " + form_of(dropped);
+}
+
+bool same_form(const Ingredient& one, const Ingredient& other) {
+  return form_of(one) == form_of(other);
+}
+
+/// What ties with the leader where `dropped` is not in the model, but for itself.
+std::vector<const EffectScore*> doubles_of(const Ingredient& dropped, const Diagnosis& diagnosis) {
+  std::vector<const EffectScore*> out;
+  for (const EffectScore& score : diagnosis.effects)
+    if (nameable(score, diagnosis) && !numerical(score.effect) &&
+        score.evidence > diagnosis.effects.front().evidence - kTie &&
+        (!same_form(*score.best, dropped) || score.other_form))
+      out.push_back(&score);
+  return out;
+}
+
+/// A model without one of its effects, and what the catalogue says of it then.
+struct Without {
+  const Ingredient& dropped;
+  Fitted fitted;
+  Diagnosis diagnosis;
+};
+
+bool may_leave(const Ingredient& ingredient) {
+  return find_effect(ingredient.name()) && !remeshed_by(ingredient);
+}
+
+std::optional<Without> diagnosed(Workspace& workspace, const Ingredient& dropped,
+                                 std::optional<Fitted> lighter, const DiscoverOptions& options) {
+  if (!lighter) return {};
+  auto diagnosis = diagnose(workspace, *lighter, options.diagnosis);
+  if (!std::holds_alternative<Diagnosis>(diagnosis)) return {};
+  return Without{dropped, std::move(*lighter), std::get<Diagnosis>(std::move(diagnosis))};
+}
+
+/// The refit of a swap, announced to who watches. Empty: it failed.
+template <class Fit>
+std::optional<Refit> told_of_swap(const std::string& in, const std::string& out,
+                                  const DiscoverEvents& events, const Fit& fit) {
+  const std::string words = in + (in == out ? ", started again" : " in place of " + out);
+  auto result = announced(events, words, fit);
+  auto* refitted = std::get_if<Fitted>(&result);
+  if (!refitted) return {};
+  return Refit{in, std::move(*refitted), 0.0};
+}
+
+std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
+                                  const EffectScore& score, const DiscoverOptions& options,
+                                  const DiscoverEvents& events) {
+  return told_of_swap(score.effect, without.dropped.name(), events,
+                      [&] { return add_effect(workspace, without.fitted, score, options.fit); });
+}
+
+}  // namespace
+
+Step swapped_step(Swap swap) {
+  return step_with(std::move(swap.in.effect), std::move(swap.in.fitted), {std::move(swap.out)});
+}
+
+std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, const Floor& floor,
+                                    size_t first_effect, RefusedSwaps& refused,
+                                    const DiscoverOptions& options, const DiscoverEvents& events) {
+  std::optional<Swap> best;
+  if (fitted.form.ingredients.size() < first_effect + 2 || at_floor(fitted, floor)) return best;
+  double enough = kNameable;
+  for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
+    if (best && at_floor(best->in.fitted, floor)) break;
+    const Ingredient& dropped = *fitted.form.ingredients[i];
+    if (!may_leave(dropped)) continue;
+    const auto lighter =
+        diagnosed(workspace, dropped, fit_without(workspace, fitted, i, options.fit), options);
+    if (!lighter) continue;
+    for (const EffectScore* score : doubles_of(dropped, lighter->diagnosis)) {
+      const std::string asked = question(fitted.form, dropped, score->effect);
+      if (refused.contains(asked)) continue;
+      auto refit = in_its_place(workspace, *lighter, *score, options, events);
+      if (!refit) continue;
+      refit->score = score_above(refit->fitted, fitted, floor);
+      if (refit->score < kNameable || same_form(*refit->fitted.form.ingredients.back(), dropped))
+        refused.emplace(asked, RefusedSwap{refit->fitted.form, refit->fitted.p});
+      else if (refit->score >= enough)
+        enough = refit->score, best = Swap{dropped.name(), std::move(*refit)};
+    }
+  }
+  return best;
+}
+
+namespace {
+
+/// Steps in half-size pictures stall where three times what `last` has over the floor remains: the
+/// distance from which nobody in a race came to win (Racer::out_of_reach_of).
+bool falls_short(Workspace& workspace, Racer racer, const Racer& last, const TrialScale& scale,
+                 const FitOptions& options) {
+  const auto far = [&] { return racer.structured() > 3.0 * last.structured(); };
+  if (!far()) return false;
+  auto result = follow(workspace, racer.form, racer.trial.p, scale, options);
+  auto* followed = std::get_if<Followed>(&result);
+  if (!followed || !followed->stalled) return false;
+  racer.trial = std::move(followed->trial);
+  return far();
+}
+
+/// Those of `effects` that are within reach of the first of them where it is dropped, or may tie
+/// with it where no more is to be had, refitted, if they may come to what `last` leaves.
+std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without, const Fitted& last,
+                                  const std::vector<std::string>& effects, bool ties_alone,
+                                  const DiscoverOptions& options, const DiscoverEvents& events) {
+  std::vector<Refit> out;
+  Diagnosis asked = without.diagnosis;
+  std::erase_if(asked.effects, [&](const EffectScore& score) {
+    return std::find(effects.begin(), effects.end(), score.effect) == effects.end();
+  });
+  auto raced = race(workspace, without.fitted, asked, options.fit);
+  auto* racers = std::get_if<std::vector<Racer>>(&raced);
+  const auto scale = trial_scale(workspace, last.form, last.p, options.fit);
+  const auto* now = std::get_if<TrialScale>(&scale);
+  if (!racers || !now) return out;
+  const Racer stands{
+      effects.front(), last.form, Trial{last.p, now->chi, now->chi_validate, now->floor}, {}};
+  for (const Racer& racer : *racers) {
+    const Racer& first = racers->front();
+    const bool behind = ties_alone ? !racer.may_tie_with(first) : racer.out_of_reach_of(first);
+    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)) ||
+        falls_short(workspace, racer, stands, *now, options.fit))
+      continue;
+    auto refitted = told_of_swap(racer.effect, effects.front(), events,
+                                 [&] { return refit(workspace, racer, options.fit); });
+    if (refitted) out.push_back(std::move(*refitted));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
+                                      const std::vector<std::string>& tie, const Floor& floor,
+                                      size_t first_effect, const RefusedSwaps& refused,
+                                      const DiscoverOptions& options,
+                                      const DiscoverEvents& events) {
+  const auto& all = last.form.ingredients;
+  size_t i = first_effect;
+  while (i < all.size() && all[i]->name() != tie.front()) ++i;
+  if (i == all.size() || !may_leave(*all[i])) return {};
+  std::vector<Refit> refits;
+  std::vector<std::string> open = {tie.front()};
+  for (auto rival = tie.begin() + 1; rival != tie.end(); ++rival) {
+    const auto known = refused.find(question(last.form, *all[i], *rival));
+    if (known == refused.end()) {
+      open.push_back(*rival);
+      continue;
+    }
+    auto there = assess(workspace, known->second.form, known->second.p, options.fit);
+    if (auto* fitted = std::get_if<Fitted>(&there))
+      refits.push_back({*rival, std::move(*fitted), 0.0});
+  }
+  if (open.size() > 1) {
+    // As it stands, what the first explained is what is missing: who equals it explains that.
+    const auto [form, stands] = parted_from(last, i);
+    auto there = assess(workspace, form, stands, options.fit);
+    auto* lighter = std::get_if<Fitted>(&there);
+    const auto without = diagnosed(
+        workspace, *all[i], lighter ? std::optional(std::move(*lighter)) : std::nullopt, options);
+    if (!without) return {};
+    const bool ties_alone = at_floor(last, floor, kLeftByRenderers);
+    for (Refit& refit :
+         refit_in_reach(workspace, *without, last, open, ties_alone, options, events))
+      refits.push_back(std::move(refit));
+  }
+  TieAsked out;
+  for (Refit& refit : refits) {
+    refit.score = score_above(refit.fitted, last, floor);
+    if (refit.score > -kTie) out.tie.push_back(refit.effect);
+    if (refit.score > kTie && (!out.better || refit.score > out.better->in.score))
+      out.better = Swap{tie.front(), std::move(refit)};
+  }
+  if (out.better)
+    out.tie.clear();
+  else if (!out.tie.empty())
+    out.tie.insert(out.tie.begin(), tie.front());
+  return out;
+}
+
+std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
+    Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
+    RefusedSwaps& refused, const DiscoverOptions& options, const DiscoverEvents& events) {
+  if (std::any_of(refits.begin(), refits.end(),
+                  [&](const Refit& refit) { return at_floor(refit.fitted, floor); }))
+    return {};
+  const auto found = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
+    return spoils_held_out(refit.fitted, floor);
+  });
+  if (found == refits.end()) return {};
+  auto swap =
+      swap_for_better(workspace, found->fitted, floor, first_effect, refused, options, events);
+  if (!swap) return {};
+  const Yardstick yardstick{&swap->in.fitted, &floor, measured_noise2(swap->in.fitted)};
+  swap->in.score = refit_score(swap->in.fitted, yardstick);
+  if (std::any_of(refits.begin(), refits.end(), [&](const Refit& refit) {
+        return refit_score(refit.fitted, yardstick) > swap->in.score - kNameable;
+      }))
+    return {};
+  return std::pair{&*found, std::move(*swap)};
+}
+
+}  // namespace hookeye

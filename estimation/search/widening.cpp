@@ -1,0 +1,264 @@
+#include "estimation/search/widening.h"
+
+#include <algorithm>
+#include <set>
+
+#include "estimation/effects/catalogue.h"
+#include "estimation/fit/at_floor.h"
+#include "estimation/search/extension.h"
+#include "estimation/search/kept_stiffness.h"
+#include "estimation/search/refit_score.h"
+#include "estimation/search/swaps.h"
+
+namespace hookeye {
+
+namespace {
+
+VectorXd values_of(const Fitted& fitted, size_t at) {
+  return fitted.p.segment(
+      offset_of(fitted.form, at),
+      static_cast<Eigen::Index>(fitted.form.ingredients[at]->parameters().size()));
+}
+
+/// The model without the ingredient.
+Model model_without(const Fitted& fitted, size_t at) {
+  const Parted without = parted_from(fitted, at);
+  return without.form.realise(without.p);
+}
+
+/// The effect's further forms; where others were added after it, first the smaller one, which the
+/// refit had asked while they were missing (a stiff place, and what a field took on of a clamp).
+std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
+  const Ingredient& narrow = *fitted.form.ingredients[at];
+  const Effect* effect = find_effect(narrow.name());
+  if (!effect) return {};
+  Model without = model_without(fitted, at);
+  without.states = realised(fitted).states;
+  const VectorXd own = values_of(fitted, at);
+  auto forms = effect->further_forms(without, narrow, own);
+  VectorXd fewer = own;
+  if (at + 1 < fitted.form.ingredients.size())
+    if (auto smaller = effect->smaller_form(without, narrow, fewer))
+      forms.insert(forms.begin(), {std::move(smaller), std::move(fewer)});
+  return forms;
+}
+
+/// The model with another form of its ingredient, and where to start it.
+struct Reformed {
+  ModelForm form;
+  VectorXd start;
+};
+
+Reformed reformed(const Fitted& narrow, size_t at, const Effect::Further& further) {
+  ModelForm form = narrow.form;
+  form.ingredients[at] = further.form;
+  const Eigen::Index first = offset_of(narrow.form, at), own = values_of(narrow, at).size();
+  VectorXd start(narrow.p.size() - own + further.values.size());
+  start << narrow.p.head(first), further.values, narrow.p.tail(narrow.p.size() - first - own);
+  const auto parameters = form.parameters();
+  for (Eigen::Index i = 0; i < start.size(); ++i)
+    start[i] = std::clamp(start[i], parameters[i].low, parameters[i].high);
+  start = with_stiffness_of(narrow.form.realise(narrow.p), form, std::move(start));
+  work_out_anew(form, start);
+  return {std::move(form), std::move(start)};
+}
+
+std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow,
+                                              const Reformed& other, const FitOptions& options) {
+  // From farther off than twice the narrow form's misfit, motions may be beyond full-size pictures.
+  const auto there = assess(workspace, other.form, other.start, options);
+  if (const auto* failure = std::get_if<NumericalFailure>(&there)) return *failure;
+  FitOptions from_there = options;
+  from_there.coarse_to_fine = misfit(std::get<Fitted>(there)) > 2.0 * misfit(narrow);
+  return fit(workspace, other.form, other.start, from_there);
+}
+
+double over_floor(const Fitted& fitted, const Floor& floor) {
+  return over_floor(fitted, floor, false) + over_floor(fitted, floor, true);
+}
+
+/// In the further form; where that starts from another's end, `first` is that one.
+std::variant<Fitted, NumericalFailure> fit_further(Workspace& workspace, const Fitted& narrow,
+                                                   size_t at, const Effect::Further& further,
+                                                   const Reformed& first,
+                                                   const FitOptions& options) {
+  auto result = fit_in(workspace, narrow, first, options);
+  const auto* way = std::get_if<Fitted>(&result);
+  if (!way || !further.by_way_of) return result;
+  const Reformed last = reformed(*way, at, {further.form, values_of(*way, at)});
+  return fit_in(workspace, narrow, last, options);
+}
+
+/// Half-size pictures, where a few steps cost what one does of a fit, show what pays() asks for,
+/// with a margin: the steps have stalled and four fifths of what is over the floor are left.
+bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale& narrow,
+                  const FitOptions& options) {
+  if (narrow.floor <= 0.0) return false;
+  const auto result = follow(workspace, other.form, other.start, narrow, options);
+  const auto* followed = std::get_if<Followed>(&result);
+  const Trial now{{}, narrow.chi, narrow.chi_validate, narrow.floor};
+  return followed && followed->stalled && over_floor(followed->trial) > 0.8 * over_floor(now);
+}
+
+/// Half-size pictures show that the steps stall where three times what `now` has over the floor
+/// remains, from where nobody in a race came to win (Racer::out_of_reach_of).
+bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale& now,
+                  const FitOptions& options) {
+  const auto result = follow(workspace, other.form, other.start, now, options);
+  const auto* followed = std::get_if<Followed>(&result);
+  const auto over = [&](const Trial& trial) {
+    return Racer{"", other.form, trial, {}}.structured();
+  };
+  return followed && followed->stalled &&
+         over(followed->trial) > 3.0 * over({{}, now.chi, now.chi_validate, now.floor});
+}
+
+/// Most of what was left goes with the form; where another effect is missing, a little more than
+/// its values cost goes with any. Held-out photos speak against it with what they are missed by
+/// beyond what renderers leave: by likelihood they tell less than that, as a modulus that moves
+/// within its interval changes.
+bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor, bool same_claim) {
+  return (same_claim || over_floor(wide, floor) < 0.5 * over_floor(narrow, floor)) &&
+         score_above(wide, narrow, floor) > kTie &&
+         (wide.evaluation.chi(true) <= kLeftByRenderers * floor.chi ||
+          held_out_allows(wide, narrow, floor));
+}
+
+/// The wide form's plainer one, where it has one that scores as well: all constants of a material
+/// that has axes of symmetry.
+std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wide, size_t at,
+                                                const Floor& floor, const FitOptions& options,
+                                                const DiscoverEvents& events) {
+  const Ingredient& ingredient = *wide.form.ingredients[at];
+  VectorXd values = values_of(wide, at);
+  const auto form =
+      find_effect(ingredient.name())->plainer_form(model_without(wide, at), ingredient, values);
+  if (!form) return wide;
+  const std::string words = form->name() + " as '" + form->variant() + "'";
+  auto result = announced(events, words, [&] {
+    return fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
+  });
+  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
+    if (cancelled(*failure)) return *failure;
+    return wide;
+  }
+  const Fitted& plain = std::get<Fitted>(result);
+  const Yardstick yardstick{&wide, &floor, std::min(measured_noise2(wide), measured_noise2(plain))};
+  return refit_score(plain, yardstick) >= refit_score(wide, yardstick) ? result : wide;
+}
+
+}  // namespace
+
+std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
+                                               const Floor& floor, const FitOptions& options,
+                                               const DiscoverEvents& events) {
+  const std::string first = narrow.form.ingredients[at]->variant();
+  std::set<std::string> tried = {first};
+  for (bool better = true; better && !at_floor(narrow, floor, kLeftByRenderers);) {
+    better = false;
+    const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
+    if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+    Fitted best = narrow;
+    for (const auto& further : further_forms(narrow, at)) {
+      const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
+      if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second)
+        continue;
+      if (better && at_floor(best, floor, kLeftByRenderers)) break;
+      const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
+      const auto& way = further.by_way_of;
+      const Reformed first =
+          reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
+      if (!further.same_claim &&
+          gets_nowhere(workspace, first, std::get<TrialScale>(scale), options))
+        continue;
+      FitOptions farther = options;
+      farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
+      auto result = announced(events, words, [&] {
+        return fit_further(workspace, narrow, at, further, first, farther);
+      });
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+        if (cancelled(*failure)) return *failure;
+        continue;
+      }
+      Fitted& wide = std::get<Fitted>(result);
+      if (!pays(wide, best, floor, further.same_claim)) continue;
+      best = std::move(wide);
+      better = true;
+    }
+    narrow = std::move(best);
+  }
+  if (narrow.form.ingredients[at]->variant() == first && !at_floor(narrow, floor, kLeftByRenderers))
+    return narrow;
+  return plainest(workspace, std::move(narrow), at, floor, options, events);
+}
+
+std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitted& fitted,
+                                                                      size_t at,
+                                                                      const Floor& floor) {
+  const std::string narrow = form_of(*fitted.form.ingredients[at]);
+  if (!asked_.insert({forms_of(fitted.form), at}).second) return std::nullopt;
+  auto result = widened(workspace_, fitted, at, floor, options_, events_);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  Fitted& wide = std::get<Fitted>(result);
+  const std::string form = form_of(*wide.form.ingredients[at]);
+  if (form == narrow && wide.p == fitted.p) return std::nullopt;
+  came_to_.insert(form);
+  return std::move(wide);
+}
+
+std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& step,
+                                                 const Floor& floor) {
+  auto& refits = contest.refits;
+  const auto spoiler = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
+    return spoils_held_out(refit.fitted, floor) && !numerical(refit.effect);
+  });
+  if (spoiler == refits.end() || std::any_of(refits.begin(), refits.end(), [&](const Refit& refit) {
+        return at_floor(refit.fitted, floor);
+      }))
+    return {};
+  auto result = ask(spoiler->fitted, spoiler->fitted.form.ingredients.size() - 1, floor);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (auto& wide = std::get<std::optional<Fitted>>(result)) {
+    spoiler->fitted = std::move(*wide);
+    rank(contest, step);
+  }
+  return {};
+}
+
+std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
+                                         const Floor& floor, size_t first_effect,
+                                         const FitOptions& options, const DiscoverEvents& events) {
+  const auto& all = fitted.form.ingredients;
+  if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
+  const auto scale = trial_scale(workspace, fitted.form, fitted.p, options);
+  const auto* now = std::get_if<TrialScale>(&scale);
+  if (!now) return {};
+  for (size_t i = first_effect; i < all.size(); ++i) {
+    if (!find_effect(all[i]->name()) || remeshed_by(*all[i])) continue;
+    Fitted without = fitted;
+    const Parted rest = parted_from(fitted, i);
+    without.form = rest.form, without.p = rest.p;
+    for (size_t at = first_effect; at < rest.form.ingredients.size(); ++at) {
+      const Ingredient& larger = *rest.form.ingredients[at];
+      const Effect* effect = find_effect(larger.name());
+      if (!effect) continue;  // no effect of the catalogue: a placebo
+      VectorXd values = values_of(without, at);
+      auto smaller = effect->smaller_form(model_without(without, at), larger, values);
+      if (!smaller) continue;
+      const std::string words =
+          smaller->name() + " as '" + smaller->variant() + "' without " + all[i]->name();
+      const Reformed other = reformed(without, at, {std::move(smaller), std::move(values)});
+      if (ends_far_off(workspace, other, *now, options)) continue;
+      auto result =
+          announced(events, words, [&] { return fit_in(workspace, without, other, options); });
+      auto* lighter = std::get_if<Fitted>(&result);
+      if (lighter && at_floor(*lighter, floor) && score_above(*lighter, fitted, floor) > -kTie)
+        return Refit{all[i]->name(), std::move(*lighter), 0.0};
+    }
+  }
+  return {};
+}
+
+bool WiderForms::came_to(const Ingredient& form) const { return came_to_.contains(form_of(form)); }
+
+}  // namespace hookeye

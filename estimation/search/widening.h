@@ -1,0 +1,58 @@
+// The form of a named effect made wider, before a second effect is asked for. Internal to discover.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "estimation/search/contest.h"
+
+namespace hookeye {
+
+/// Where an effect leaves more than the floor its form may be too narrow: what it leaves over looks
+/// like another effect (method.md, "Which effect is missing", 6). The model with its ingredient
+/// `at` in the best of its effect's further forms (Effect::further_forms; where others came after
+/// it, its smaller form too) and of theirs, or as it is. A form stays where it takes most of what
+/// is over the floor (or says the same in another shape), where fitted and held-out photos together
+/// pay for its parameters by more than a tie, and where the held-out ones do not speak against it:
+/// else it is another effect that is missing. Of what a wide form says a plainer one
+/// (Effect::plainer_form) stays where it scores as well.
+std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
+                                               const Floor& floor, const FitOptions& options,
+                                               const DiscoverEvents& events = {});
+
+/// An effect that only the larger form of another makes room for: without it, and with that other
+/// in its smaller form (Effect::smaller_form), the photos stay at the floor and the score falls by
+/// less than a tie. (A stiffness field within 3 % had stayed beside a wall that was fitted as a
+/// soft cushion.) Told in the result: who leaves.
+std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
+                                         const Floor& floor, size_t first_effect,
+                                         const FitOptions& options,
+                                         const DiscoverEvents& events = {});
+
+/// The same for all steps of a search: each form once beside the same others in their forms.
+class WiderForms {
+ public:
+  WiderForms(Workspace& workspace, const FitOptions& options, const DiscoverEvents& events)
+      : workspace_(workspace), options_(options), events_(events) {}
+  /// Empty: none is better, or it was asked before.
+  std::variant<std::optional<Fitted>, NumericalFailure> ask(const Fitted& fitted, size_t at,
+                                                            const Floor& floor);
+  /// The best refit explains the fitted photos and misses the held-out ones, and none explains
+  /// both: before what stands is doubted for it, it is asked for a wider form, and the contest is
+  /// ranked anew. (Creep that levels off is growing creep to the first loads.)
+  std::optional<NumericalFailure> mend(Contest& contest, const Step& step, const Floor& floor);
+  /// Widening came to this form: a plainer one may do at the floor.
+  bool came_to(const Ingredient& form) const;
+
+ private:
+  Workspace& workspace_;
+  const FitOptions& options_;
+  const DiscoverEvents& events_;
+  std::set<std::pair<std::string, size_t>> asked_;  ///< all forms, and which of them was asked
+  std::set<std::string> came_to_;
+};
+
+}  // namespace hookeye

@@ -1,0 +1,86 @@
+#include "estimation/evaluation/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "estimation/effects/catalogue.h"
+#include "estimation/model/effect.h"
+#include "tests/estimation/small_capture.h"
+
+namespace hookeye {
+namespace {
+
+using test::SmallScene;
+
+/// What evaluations at these moduli leave, one after the other in one workspace; 0 where one
+/// example has no equilibrium.
+std::vector<double> misfits(const SmallScene& small, const std::vector<double>& moduli) {
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  EvaluationOptions options;
+  options.most_iterations = kStepIterations;
+  std::vector<double> out;
+  for (const double mu : moduli) {
+    const auto result = workspace.evaluate(form, Eigen::VectorXd::Constant(1, mu), options);
+    const auto* evaluation = std::get_if<Evaluation>(&result);
+    out.push_back(evaluation ? evaluation->chi(false) : 0.0);
+  }
+  return out;
+}
+
+/// Which of the others were solved before one failed is chance on two cores: the next evaluation
+/// starts where the last whole one ended, bit for bit.
+TEST(Evaluation, AFailedOneLeavesNothingBehind) {
+  const SmallScene small({});
+  const auto way = misfits(small, {0.02, 1e-6, 0.021});
+  ASSERT_GT(way[0], 0.0);
+  ASSERT_EQ(way[1], 0.0) << "a body as soft as this has no equilibrium under the pull";
+  const auto direct = misfits(small, {0.02, 0.021});
+  EXPECT_NEAR(way[2], direct[1], 1e-6 * direct[1]);
+  for (int again = 0; again < 3; ++again) EXPECT_EQ(misfits(small, {0.02, 1e-6, 0.021}), way);
+}
+
+/// No number is no equilibrium, wherever the last one ended.
+TEST(Evaluation, OfNoNumberFails) {
+  const SmallScene small({});
+  const auto way = misfits(small, {0.02, std::numeric_limits<double>::quiet_NaN(), 0.021});
+  EXPECT_EQ(way[1], 0.0);
+  EXPECT_NEAR(way[2], misfits(small, {0.02, 0.021})[1], 1e-6 * way[2]);
+}
+
+int newton_iterations(const Evaluation& evaluation) {
+  int all = 0;
+  for (const auto& example : evaluation.examples) all += example.equilibrium->newton_iterations;
+  return all;
+}
+
+/// After a step along known derivatives equilibria are where these take them, but for the square
+/// of the step.
+TEST(Evaluation, DerivativesTellWhereTheNextOneStarts) {
+  const SmallScene small({});
+  ModelForm form = base_form(small.scene);
+  form.ingredients.push_back(
+      find_effect("gravity")->candidates(form.realise(form.initial()), nullptr).front());
+  const auto step = [&](bool derivatives) {
+    Workspace workspace(small.scene);
+    EvaluationOptions options;
+    options.derivatives = derivatives;
+    const auto at = [&](double weight) {
+      Eigen::VectorXd p = form.initial();
+      p.tail(3) << 0.3 * weight, 0.0, weight;
+      return std::get<Evaluation>(workspace.evaluate(form, p, options));
+    };
+    at(-9000.0);
+    return at(-12000.0);
+  };
+  const Evaluation told = step(true), untold = step(false);
+  EXPECT_LT(newton_iterations(told), newton_iterations(untold));
+  for (size_t e = 0; e < told.examples.size(); ++e)
+    EXPECT_LT(
+        (told.examples[e].equilibrium->q - untold.examples[e].equilibrium->q).cwiseAbs().maxCoeff(),
+        1e-6);
+}
+
+}  // namespace
+}  // namespace hookeye

@@ -1,0 +1,1 @@
+#include "estimation/search/verdict.h"

@@ -1,0 +1,1 @@
+#include "estimation/evaluation/evaluation.h"

@@ -1,0 +1,1 @@
+#include "estimation/effects/catalogue.h"

@@ -1,0 +1,1 @@
+#include "estimation/synth/synth.h"

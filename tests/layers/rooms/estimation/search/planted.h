@@ -1,0 +1,1 @@
+#include "estimation/output/step_json.h"

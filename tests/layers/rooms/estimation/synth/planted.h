@@ -1,0 +1,1 @@
+#include "estimation/diagnosis/diagnosis.h"
