@@ -10,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/kept_work.h"
 #include "app/interrupt.h"
+#include "app/report/run_limits.h"
 #include "app/text.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/effect.h"
@@ -57,7 +58,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   check_effect(arguments.request.effect);
   Run run = open_run(arguments.run, true);
   check_stands(run, arguments.request);
-  Bench bench = open_capture(run.capture(), session);
+  Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
   const KeptWork kept(run, bench);
   Step current = newest_step(run, bench);
   AddOptions options;

@@ -15,14 +15,16 @@ void add_compare(CLI::App& app, CommandBody& chosen);
 void add_diagnose(CLI::App& app, CommandBody& chosen);
 void add_add(CLI::App& app, CommandBody& chosen);
 void add_discover(CLI::App& app, CommandBody& chosen);
+void add_explain(CLI::App& app, CommandBody& chosen);
 void add_plan(CLI::App& app, CommandBody& chosen);
 void add_synth(CLI::App& app, CommandBody& chosen);
 void add_report(CLI::App& app, CommandBody& chosen);
 void add_studio(CLI::App& app, CommandBody& chosen);
 void add_effects(CLI::App& app, CommandBody& chosen);
 
-inline constexpr AddCommand kCommands[] = {
-    add_check, add_mesh,     add_simulate, add_render, add_fit,    add_compare, add_diagnose,
-    add_add,   add_discover, add_plan,     add_synth,  add_report, add_studio,  add_effects};
+inline constexpr AddCommand kCommands[] = {add_check,    add_mesh,    add_simulate, add_render,
+                                           add_fit,      add_compare, add_diagnose, add_add,
+                                           add_discover, add_explain, add_plan,     add_synth,
+                                           add_report,   add_studio,  add_effects};
 
 }  // namespace hookeye

@@ -4,6 +4,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
+#include "app/report/run_limits.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/output/step_json.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 void run_diagnose(const std::string& folder, Session& session) {
   Run run = open_run(folder, true);
-  Bench bench = open_capture(run.capture(), session);
+  Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
   const KeptWork kept(run, bench);
   Step step = newest_step(run, bench);
   diagnose_newest(run, bench, step, diagnosis_options());

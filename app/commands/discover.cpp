@@ -8,7 +8,9 @@
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
+#include "app/commands/decision_log.h"
 #include "app/commands/kept_work.h"
+#include "app/commands/limit_options.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
 #include "estimation/output/step_json.h"
@@ -18,7 +20,7 @@ namespace {
 
 struct DiscoverArguments {
   std::string capture, run;
-  std::vector<std::string> without;
+  std::vector<std::string> without, set;
 };
 
 /// The run has a step that the search, taken up, does not come to: made by another hand, or by
@@ -44,8 +46,12 @@ bool same_step(const nlohmann::json& told, const Step& step) {
 class Recorder {
  public:
   /// `from`: the step that the search goes on from, which has no diagnosis yet; -1: none.
-  Recorder(Run& run, Bench& bench, int from)
-      : run_(run), bench_(bench), from_(from), next_(static_cast<size_t>(std::max(from, 0))) {}
+  Recorder(Run& run, Bench& bench, DecisionLog& log, int from)
+      : run_(run),
+        bench_(bench),
+        log_(log),
+        from_(from),
+        next_(static_cast<size_t>(std::max(from, 0))) {}
 
   void operator()(const Step& step) {
     const size_t index = next_++;
@@ -56,6 +62,7 @@ class Recorder {
     } else if (from_ >= 0 && index + 1 == run_.steps().size() && index == size_t(from_)) {
       record_diagnosis(run_, whole(step));
     }
+    log_.follow(run_.steps().at(index));
   }
 
  private:
@@ -63,12 +70,13 @@ class Recorder {
 
   Run& run_;
   Bench& bench_;
+  DecisionLog& log_;
   int from_;
   size_t next_;
 };
 
-DiscoverEvents events(Run& run, Bench& bench, int from) {
-  auto recorder = std::make_shared<Recorder>(run, bench, from);
+DiscoverEvents events(Run& run, Bench& bench, DecisionLog& log, int from) {
+  auto recorder = std::make_shared<Recorder>(run, bench, log, from);
   DiscoverEvents events;
   events.step = [recorder](const Step& step) {
     (*recorder)(step);
@@ -121,10 +129,13 @@ int begin(Run& run, const DiscoverOptions& options, bool known) {
 Discovery search_from(int from, Run& run, Bench& bench, DiscoverOptions options) {
   for (int i = 0; i <= from; ++i) {
     const nlohmann::json& step = run.timeline().at("steps").at(static_cast<size_t>(i));
-    if (auto tied = tied_in(step); tied.size() > 1) options.tie = std::move(tied);
+    if (auto tied = tied_in(step, *bench.scene->limits); tied.size() > 1)
+      options.tie = std::move(tied);
     options.past.push_back(contested_in(step));
   }
-  const DiscoverEvents on = events(run, bench, from);
+  DecisionLog log(run);
+  options.fit.decided = [&log](const Decision& decision) { log(decision); };
+  const DiscoverEvents on = events(run, bench, log, from);
   const ModelForm form = base_form(bench.scene);
   return value_or_fail(from < 0 ? discover(bench.workspace, form, form.initial(), options, on)
                                 : discover_from(bench.workspace,
@@ -144,8 +155,9 @@ Discovery search(Run& run, Bench& bench, const DiscoverOptions& options, bool kn
 
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
-  Bench bench = open_capture(arguments.capture, session);
+  Bench bench = open_capture(arguments.capture, session, limits_for(arguments.run, arguments.set));
   Run run = create_run(arguments.run, bench.scene->capture.file);
+  keep_limits(run, *bench.scene->limits);
   const KeptWork kept(run, bench);
   DiscoverOptions options = discover_options();
   options.diagnosis.without = arguments.without;
@@ -170,7 +182,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   session.say("\n{}", steps_table(run.timeline()));
   for (size_t i = 1; i < steps.size(); ++i)
     session.say("{}", choice_table(steps[i - 1], steps[i],
-                                   run.timeline().at("floor").at("chi").get<double>()));
+                                   run.timeline().at("floor").at("chi").get<double>(),
+                                   *bench.scene->limits));
   const Fitted& last = found.steps.back().fitted;
   if (const std::string others = parameter_table(last); !others.empty())
     session.say("\n{}", others);
@@ -196,6 +209,7 @@ void add_discover(CLI::App& app, CommandBody& chosen) {
   command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
   command->add_option("-o,--out", arguments->run, "Run folder")->required();
   command->add_option("--without", arguments->without, "Effects to leave out of the catalogue");
+  add_limit_options(*command, arguments->set);
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_discover(*arguments, session); };
   });

@@ -5,6 +5,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/kept_work.h"
+#include "app/commands/limit_options.h"
 #include "app/commands/run_support.h"
 #include "app/commands/tables.h"
 #include "capture_io/json_file.h"
@@ -18,7 +19,8 @@ namespace {
 
 struct FitArguments {
   std::string capture, run, model, material;
-  int iterations = FitOptions{}.max_iterations;
+  std::optional<int> iterations;
+  std::vector<std::string> set;
   FitOptions options() const {
     FitOptions options = fit_options();
     options.max_iterations = iterations;
@@ -65,8 +67,9 @@ void warn_of_lost_ellipticity(const std::filesystem::path& step, Session& sessio
 }
 
 void run_fit(const FitArguments& arguments, Session& session) {
-  Bench bench = open_capture(arguments.capture, session);
+  Bench bench = open_capture(arguments.capture, session, limits_for(arguments.run, arguments.set));
   Run run = create_run(arguments.run, bench.scene->capture.file);
+  keep_limits(run, *bench.scene->limits);
   const KeptWork kept(run, bench);
   if (!run.steps().empty()) {
     if (!arguments.model.empty() || !arguments.material.empty())
@@ -103,7 +106,7 @@ void run_fit(const FitArguments& arguments, Session& session) {
          unfinished + fmt::format(". The step is written; to go on: hookeye fit {} -o A_NEW_FOLDER "
                                   "-m {} --iterations {}",
                                   arguments.capture, (folder / "model.yaml").string(),
-                                  2 * arguments.iterations)});
+                                  2 * options.iterations(*bench.scene))});
 }
 
 }  // namespace
@@ -114,9 +117,11 @@ void add_fit(CLI::App& app, CommandBody& chosen) {
   command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
   command->add_option("-o,--out", arguments->run, "Run folder")->required();
   command->add_option("-m,--model", arguments->model, "Start from this model.yaml");
-  command->add_option("--iterations", arguments->iterations, "Most iterations at full size")
-      ->check(CLI::Range(1, 10000))
-      ->capture_default_str();
+  command
+      ->add_option("--iterations", arguments->iterations,
+                   "Most iterations at full size (else option fit.max_iterations)")
+      ->check(CLI::Range(1, 10000));
+  add_limit_options(*command, arguments->set);
   command
       ->add_option("--material", arguments->material,
                    "additive: go on with the additive energy model from the fitted law")

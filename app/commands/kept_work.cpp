@@ -13,6 +13,7 @@ namespace {
 std::string made_for(const Run& run) {
   return nlohmann::json{{"hookeye", versions()},
                         {"program", fingerprint_of(read_text("/proc/self/exe"))},
+                        {"options", run.timeline().value("options", nlohmann::json::object())},
                         {"capture", run.timeline().value("fingerprints", nlohmann::json())}}
       .dump();
 }

@@ -7,6 +7,7 @@
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "app/report/run_limits.h"
 #include "app/validators.h"
 #include "capture_io/json_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
@@ -32,15 +33,15 @@ struct Question {
   std::vector<std::string> effects;
 };
 
-Question question_of(const json& timeline, const Diagnosis& newest,
-                     const PlanArguments& arguments) {
+Question question_of(const json& timeline, const Diagnosis& newest, const PlanArguments& arguments,
+                     const Limits& limits) {
   const json& steps = timeline.at("steps");
   Question out{steps.size() - 1, arguments.between};
   if (!out.effects.empty()) return out;
   out.effects = confused_effects(newest);
   if (out.effects.size() > 1) return out;
   for (size_t i = steps.size() - 1; i > 0; --i) {
-    const std::vector<std::string> tied = tied_in(steps[i]);
+    const std::vector<std::string> tied = tied_in(steps[i], limits);
     if (tied.size() > 1) return {i - 1, tied};
   }
   return out;
@@ -110,9 +111,10 @@ void run_plan(const PlanArguments& arguments, Session& session) {
   if (run.steps().empty())
     throw InputError({arguments.run}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");
-  Bench bench = open_capture(run.capture(), session);
+  Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
   PlannedStep step = open_step(run, bench, run.steps().size() - 1);
-  const Question question = question_of(run.timeline(), step.diagnosis, arguments);
+  const Question question =
+      question_of(run.timeline(), step.diagnosis, arguments, *bench.scene->limits);
   if (question.step + 1 != run.steps().size()) step = open_step(run, bench, question.step);
   check_between(arguments.between, step.diagnosis);
   PlanOptions options;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/commands/decision_log.h"
 #include "app/commands/tables.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
@@ -85,9 +86,10 @@ void warn_of_doubts(const Scene& scene, Session& session) {
   warn_of_noise(scene, session);
 }
 
-Bench open_capture(const std::filesystem::path& capture_path, Session& session) {
+Bench open_capture(const std::filesystem::path& capture_path, Session& session,
+                   const Limits& limits) {
   const Capture capture = read_capture(capture_path);
-  auto scene = load_scene(capture);
+  auto scene = load_scene(capture, true, limits);
   warn_of_doubts(*scene, session);
   return {scene, Workspace(scene)};
 }
@@ -151,10 +153,10 @@ std::string not_converged(bool converged, int iterations) {
       iterations);
 }
 
-std::vector<std::string> tied_in(const nlohmann::json& step) {
+std::vector<std::string> tied_in(const nlohmann::json& step, const Limits& limits) {
   std::vector<std::string> tied;
   for (const auto& rival : step.value("rivals", nlohmann::json::array()))
-    if (rival.at("score").get<double>() > -kTie) tied.push_back(rival.at("effect"));
+    if (rival.at("score").get<double>() > -limits.diagnosis.tie) tied.push_back(rival.at("effect"));
   return tied;
 }
 
@@ -244,6 +246,7 @@ void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions&
   reach_for_mesh(step.fitted, step.diagnosis);
   step = with_displaced(bench, std::move(step), options.cancel);
   record_diagnosis(run, step);
+  log_naming(run, step.diagnosis);
 }
 
 void tell_free_form(const Run& run, Bench& bench, const Step& step, Session& session) {

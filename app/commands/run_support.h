@@ -20,7 +20,9 @@ struct Bench {
 /// What reading mended, and what is most likely not meant.
 void warn_of_doubts(const Scene& scene, Session& session);
 
-Bench open_capture(const std::filesystem::path& capture, Session& session);
+/// `limits`: what a run keeps of them, or the standard.
+Bench open_capture(const std::filesystem::path& capture, Session& session,
+                   const Limits& limits = {});
 
 /// Run::open() and Run::create(), and the timeline holds what the commands read in it.
 Run open_run(const std::filesystem::path& folder, bool write);
@@ -48,7 +50,7 @@ std::optional<Diagnosis> stored_diagnosis(const Run& run, const Fitted& newest);
 
 /// Effects that the refits of a step of `run.json` could not tell apart, the added one first; one
 /// alone is no tie.
-std::vector<std::string> tied_in(const nlohmann::json& step);
+std::vector<std::string> tied_in(const nlohmann::json& step, const Limits& limits);
 /// Who stood in its contest.
 Contested contested_in(const nlohmann::json& step);
 

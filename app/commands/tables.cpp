@@ -33,7 +33,7 @@ std::string few(const std::vector<Confusion>& confused) {
 
 /// The least that the simulated null can tell is an upper bound.
 std::string p_text(double p) {
-  const double least = 1.0 / (1.0 + DiagnosisOptions().null_simulations);
+  const double least = 1.0 / (1.0 + DiagnosisLimits{}.simulations);
   return p < 1.001 * least ? fmt::format("<{:.3f}", p + 0.0005) : fmt::format("{:.3f}", p);
 }
 
@@ -76,7 +76,8 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
                     few(effect.confused_with)});
     if (rows.size() <= 4 && nameable(effect, diagnosis)) sentences += wrapped(effect.why, 2);
     // Why the leader is not named where its figure alone would do.
-    if (rows.size() == 2 && effect.evidence >= std::max(diagnosis.gate, kNameable))
+    if (rows.size() == 2 &&
+        effect.evidence >= std::max(diagnosis.gate, diagnosis.limits().nameable))
       if (const auto why = not_named_because(effect, diagnosis); !why.empty())
         sentences += wrapped(fmt::format("{} is not named: {}", effect.effect, why), 2);
   }
@@ -85,8 +86,8 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
              "  would remove: share of the excess misfit; log BF: log Bayes factor against no "
              "effect (5: 150 to 1)\n"
              "  named only above {:.1f}, the 95 % critical value over all effects (chance alone)\n",
-             std::max(diagnosis.gate, kNameable)) +
-         (diagnosis.held_out_missed && diagnosis.gate < kNameable
+             std::max(diagnosis.gate, diagnosis.limits().nameable)) +
+         (diagnosis.held_out_missed && diagnosis.gate < diagnosis.limits().nameable
               ? wrapped(
                     fmt::format("or above {:.1f} where it would remove most of what the held-out "
                                 "photos, which alone show that something is missing, have over "
@@ -147,7 +148,7 @@ json entry_of(const json& list, const std::string& effect) {
 }
 
 /// What was tried and refitted, in multiples of the floor.
-std::string choice_rows(const json& before, const json& step, double floor) {
+std::string choice_rows(const json& before, const json& step, double floor, const Limits& limits) {
   constexpr size_t kMost = 6;
   const json none = json::array();
   const std::string added = step.at("added");
@@ -180,7 +181,8 @@ std::string choice_rows(const json& before, const json& step, double floor) {
   size_t untried = 0;
   for (const auto& score : scores) {
     const std::string effect = score.at("effect");
-    if (number_in(score, "evidence") < kNameable || !entry_of(step.at("raced"), effect).is_null())
+    if (number_in(score, "evidence") < limits.diagnosis.nameable ||
+        !entry_of(step.at("raced"), effect).is_null())
       continue;
     ++untried;
     if (rows.size() <= kMost)
@@ -195,7 +197,7 @@ std::string choice_rows(const json& before, const json& step, double floor) {
 }
 
 /// How far ahead of the next one: "how sure".
-std::string sureness(const json& step, double floor) {
+std::string sureness(const json& step, double floor, const Limits& limits) {
   const std::string added = step.at("added");
   std::string nearest;
   double behind = 0.0;
@@ -205,16 +207,16 @@ std::string sureness(const json& step, double floor) {
     nearest = rival.at("effect"), behind = by;
   }
   if (nearest.empty()) return "how sure: no other was refitted, all fell behind in the screening";
-  if (behind < -kTie)
+  if (behind < -limits.diagnosis.tie)
     return fmt::format("how sure: alone {} does better; {} was chosen with what the next step has",
                        nearest, added);
-  if (behind < kTie)
+  if (behind < limits.diagnosis.tie)
     return fmt::format(
         "how sure: {} does as well (behind by {:.1f}); `hookeye plan RUN` tells which "
         "photos would separate the two",
         nearest, behind);
   const double left = floor > 0.0 ? number_in(step, "chi_fit") / floor : 0.0;
-  if (left > kAtFloor)
+  if (left > limits.floor.at)
     return fmt::format(
         "how sure: {}, the next, is behind by {:.1f}; alone it leaves {:.2f} times "
         "the noise floor, more is missing",
@@ -292,7 +294,7 @@ std::string high_floor(const Floor& floor) {
       of, chi);
 }
 
-std::string choice_table(const json& before, const json& step, double floor) {
+std::string choice_table(const json& before, const json& step, double floor, const Limits& limits) {
   if (step.at("added").is_null()) return "";
   const std::string added = step.at("added");
   if (by_hand(step))
@@ -311,9 +313,9 @@ std::string choice_table(const json& before, const json& step, double floor) {
              "another; -: not screened, as it promised too little or had no equilibrium; blank: "
              "not "
              "refitted; behind: in the refits' penalised log likelihood, below {:.0f} is a tie)",
-             added, kTie)) +
-         choice_rows(before, step, floor) +
-         wrapped(sureness(step, floor) + resemblance(before, added), 2);
+             added, limits.diagnosis.tie)) +
+         choice_rows(before, step, floor, limits) +
+         wrapped(sureness(step, floor, limits) + resemblance(before, added), 2);
 }
 
 }  // namespace hookeye

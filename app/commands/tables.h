@@ -18,7 +18,8 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
 std::string steps_table(const nlohmann::json& timeline);
 /// What the effect that `step` of `run.json` added to `before` was chosen from, in multiples of the
 /// floor, and how sure the choice is. Empty: nothing else stood out.
-std::string choice_table(const nlohmann::json& before, const nlohmann::json& step, double floor);
+std::string choice_table(const nlohmann::json& before, const nlohmann::json& step, double floor,
+                         const Limits& limits);
 
 /// That the reference images are missed by far more than their noise, which hides what is wrong
 /// with all photos alike; "" where they are not.

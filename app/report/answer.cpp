@@ -11,6 +11,7 @@
 
 #include "app/commands/tables.h"
 #include "app/report/inside.h"
+#include "app/report/run_limits.h"
 #include "app/text.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
@@ -54,6 +55,7 @@ std::string string_in(const json& object, const char* key) {
 struct Left {
   double fitted = 0.0, held_out = 0.0;  ///< times the floor; 0: nothing is held out
   bool at_floor = false;                ///< all photos together
+  bool on_floor = false;                ///< no more than renderers leave at least
   std::string one_camera;               ///< ", but ..." where one alone is not
   /// "1.04 times the noise floor (1.03 on held-out photos)".
   std::string text() const {
@@ -69,11 +71,13 @@ double floor_of(const json& timeline, const json& metrics) {
   return 1.0;
 }
 
-Left left_of(const json& step, const json& metrics, double floor) {
+Left left_of(const json& step, const json& metrics, double floor, const Limits& limits) {
   Left out;
+  out.on_floor = std::max(number_in(step, "chi_fit"), number_in(step, "chi_validate")) <=
+                 limits.floor.on * floor;
   out.fitted = number_in(step, "chi_fit") / floor;
   out.held_out = number_in(step, "chi_validate") / floor;
-  out.at_floor = std::max(out.fitted, out.held_out) <= kAtFloor;
+  out.at_floor = std::max(out.fitted, out.held_out) <= limits.floor.at;
   const json most = metrics.is_object() ? metrics.value("most_over_floor", json()) : json();
   if (out.at_floor && most.is_object() && most.value("its_own", false))
     out.one_camera = fmt::format(
@@ -91,9 +95,8 @@ std::string with_words(const std::string& effect, const json& step) {
 }
 
 std::string explains(const std::string& what, const Left& left) {
-  return left.fitted <= kLeftByRenderers && left.held_out <= kLeftByRenderers
-             ? what + " explains the photos down to their noise"
-             : fmt::format("{} explains the photos to {}", what, left.text());
+  return left.on_floor ? what + " explains the photos down to their noise"
+                       : fmt::format("{} explains the photos to {}", what, left.text());
 }
 
 /// What `discover` found, in plain words; empty where these words would not do.
@@ -228,7 +231,7 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
   if (steps.empty() || !steps.back().is_object()) return out;
   const json& step = steps.back();
   const double floor = floor_of(timeline, metrics);
-  const Left left = left_of(step, metrics, floor);
+  const Left left = left_of(step, metrics, floor, limits_of(timeline));
   if (timeline.contains("sentence")) {
     out["headline"] = string_in(timeline, "verdict");
     out["sentence"] =

@@ -144,7 +144,7 @@ json reporting_table(const Capture& capture) {
   row("Matching criterion",
       fmt::format("sum of squared (model − photo) / noise over pixels, Huber beyond {:.0f} times "
                   "the photos' own misfit",
-                  fit.huber));
+                  FitLimits{}.huber));
   row("Noise", noise_text(capture));
   row("Interpolation", from_photo ? "cubic B-spline in the rest photo (one interpolation)"
                                   : "bilinear in the texture");

@@ -5,6 +5,7 @@
 
 #include "app/commands/kept_work.h"
 #include "app/interrupt.h"
+#include "app/report/run_limits.h"
 
 namespace hookeye {
 
@@ -116,7 +117,7 @@ AddOptions RefitJob::options() {
 
 void RefitJob::refit(const AddRequest& request) {
   Run run = open_run(run_, true);
-  if (!bench_) bench_.emplace(open_capture(run.capture(), session_));
+  if (!bench_) bench_.emplace(open_capture(run.capture(), session_, limits_of(run.timeline())));
   const KeptWork kept(run, *bench_);
   AddOptions wanted = options();
   stage("evaluating the newest step");

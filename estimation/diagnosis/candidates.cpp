@@ -124,7 +124,8 @@ std::vector<double> simulate_null(const ModelForm& base, const std::vector<Candi
   std::mt19937 engine(options.seed);
   std::normal_distribution<double> normal;
   std::vector<double> largest;
-  for (int b = 0; b < options.null_simulations; ++b) {
+  const int draws = options.null_simulations.value_or(base.scene->limits->diagnosis.simulations);
+  for (int b = 0; b < draws; ++b) {
     VectorXd white(root.cols());
     for (double& x : white) x = normal(engine);
     const VectorXd s = root * white;
@@ -140,7 +141,8 @@ std::vector<double> simulate_null(const ModelForm& base, const std::vector<Candi
 }
 
 void find_confusions(const Eigen::MatrixXd& H, const std::vector<ProjectedHypothesis>& projected,
-                     const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores) {
+                     const std::map<std::string, size_t>& best, double least,
+                     std::vector<EffectScore>& scores) {
   for (auto& score : scores) {
     if (!score.testable || score.evidence <= 0.0) continue;
     const ProjectedHypothesis& mine = projected[best.at(score.effect)];
@@ -156,7 +158,7 @@ void find_confusions(const Eigen::MatrixXd& H, const std::vector<ProjectedHypoth
       const double imitated = projection.dot(theirs.inverse() * projection);
       const double cosine = std::sqrt(std::clamp(imitated / length, 0.0, 1.0));
       // A wrong cause at cosine 0.9 still removes 80 % of the removable error.
-      if (cosine > 0.9) score.confused_with.push_back({other.effect, cosine});
+      if (cosine > least) score.confused_with.push_back({other.effect, cosine});
     }
     std::sort(score.confused_with.begin(), score.confused_with.end(),
               [](auto& a, auto& b) { return a.cosine > b.cosine; });

@@ -34,9 +34,11 @@ std::vector<double> simulate_null(const ModelForm& base, const std::vector<Candi
                                   const std::vector<ProjectedHypothesis>& projected,
                                   const DiagnosisSums& sums, const DiagnosisOptions& options);
 
-/// Share of each effect's signature that the others can imitate beside the base columns.
+/// Share of each effect's signature that the others can imitate beside the base columns, where its
+/// cosine is above `least`.
 /// `projected` from H, `best`: each effect's candidate.
 void find_confusions(const Eigen::MatrixXd& H, const std::vector<ProjectedHypothesis>& projected,
-                     const std::map<std::string, size_t>& best, std::vector<EffectScore>& scores);
+                     const std::map<std::string, size_t>& best, double least,
+                     std::vector<EffectScore>& scores);
 
 }  // namespace hookeye

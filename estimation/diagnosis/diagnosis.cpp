@@ -140,7 +140,8 @@ EffectScore describe(const Context& context, const Candidate& candidate,
                                                   100.0 * score.explains_held_out)
                                     : "",
                                 where_seen(context.scene, context.evaluation, step));
-  if (!sensors_alone(*candidate.ingredient) && score.measured_fall >= 2.0 * kNameable)
+  if (!sensors_alone(*candidate.ingredient) &&
+      score.measured_fall >= 2.0 * context.diagnosis.limits().nameable)
     score.why += seen_by_sensors(before, after, sums.measured_count);
   return score;
 }
@@ -159,15 +160,15 @@ std::shared_ptr<const EffectScore> other_form(const Context& context,
                                               const std::vector<Candidate>& candidates,
                                               const std::vector<ProjectedHypothesis>& projected,
                                               double r2, const EffectScore& best) {
-  constexpr double kMore = 0.05;
+  const DiagnosisLimits& limits = context.diagnosis.limits();
   std::shared_ptr<const EffectScore> out;
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (candidates[i].effect->name() != best.effect || candidates[i].ingredient == best.best)
       continue;
     EffectScore score = describe(context, candidates[i], projected[i], best.evidence);
-    const bool tie = information_of(context.sums, projected[i], r2) > best.bic - kTie;
-    if ((tie || score.explains_held_out > best.explains_held_out + kMore) &&
-        score.explains > 0.5 * best.explains &&
+    const bool tie = information_of(context.sums, projected[i], r2) > best.bic - limits.tie;
+    if ((tie || score.explains_held_out > best.explains_held_out + limits.form_held_out_more) &&
+        score.explains > limits.form_explains * best.explains &&
         (!out || score.explains_held_out > out->explains_held_out))
       out = std::make_shared<EffectScore>(std::move(score));
   }
@@ -221,7 +222,7 @@ Scored score_photos(const ModelForm& form, std::vector<Candidate> candidates,
                     const DiagnosisSums& sums, const DiagnosisOptions& options) {
   const int base = form.size();
   Scored out;
-  out.r2 = without_base(sums.effective, base);
+  out.r2 = without_base(sums.effective, base, form.scene->limits->diagnosis);
   out.evidence.resize(candidates.size());
   for (size_t i = 0; i < candidates.size(); ++i) {
     out.projected.push_back(project(sums.effective.H, base, candidates[i].hypothesis));
@@ -237,13 +238,14 @@ Scored score_photos(const ModelForm& form, std::vector<Candidate> candidates,
 /// The null is at the floor, where one noise holds for all; a misfit of the photos is none of the
 /// sensors', and what a finer mesh would change in their values (`mesh2`, over noise) no error of
 /// theirs.
-void score_sensors(const DiagnosisSums& sums, int base, double mesh2, Scored& scored) {
+void score_sensors(const DiagnosisSums& sums, int base, double mesh2, const DiagnosisLimits& limits,
+                   Scored& scored) {
   if (sums.measured.count <= 0.0) return;
   for (size_t i = 0; i < scored.candidates.size(); ++i)
     if (sensors_alone(*scored.candidates[i].ingredient))
       scored.evidence[i] = log_evidence_of_told_noise(
           project(sums.measured.H, base, scored.candidates[i].hypothesis), sums.measured.s,
-          without_base(sums.measured, base), sums.measured_count, 1.0 + mesh2);
+          without_base(sums.measured, base, limits), sums.measured_count, 1.0 + mesh2);
 }
 
 EffectScore score_effect(const Context& context, const Scored& scored, size_t best, double evidence,
@@ -256,11 +258,12 @@ EffectScore score_effect(const Context& context, const Scored& scored, size_t be
                         : diagnosis.mesh_fall;
   score.bic =
       sensors_alone(*score.best) ? evidence : information_of(context.sums, projected, scored.r2);
-  if (evidence >= kNameable)
+  if (evidence >= diagnosis.limits().nameable)
     score.other_form = other_form(context, scored.candidates, scored.projected, scored.r2, score);
   score.p_value = scored.p_value(evidence);
   // What the photos show they can test, however little a typical change would show of it.
-  if (projected.best_signal() < 4.0 && evidence < std::max(kNameable, diagnosis.gate)) {
+  if (projected.best_signal() < std::pow(diagnosis.limits().testable_deviations, 2) &&
+      evidence < std::max(diagnosis.limits().nameable, diagnosis.gate)) {
     score.testable = false;
     score.why_not =
         "untestable with these photos: a change that would matter moves them by "
@@ -270,18 +273,18 @@ EffectScore score_effect(const Context& context, const Scored& scored, size_t be
 }
 
 /// Drawn, or speaks: it is told where it takes the body.
-bool is_displaced(const EffectScore& score) {
+bool is_displaced(const EffectScore& score, const DiagnosisLimits& limits) {
   return score.pictured ||
-         (score.testable && score.evidence >= kNameable && !sensors_alone(*score.best));
+         (score.testable && score.evidence >= limits.nameable && !sensors_alone(*score.best));
 }
 
 /// Which of the ranked effects are drawn, and where those and all that speak take the body.
 void displace_leaders(const Evaluation& evaluation, const Scored& scored,
-                      std::vector<EffectScore>& effects) {
+                      const DiagnosisLimits& limits, std::vector<EffectScore>& effects) {
   for (size_t i = 0; i < effects.size(); ++i) {
     EffectScore& score = effects[i];
-    score.pictured = score.testable && i < kPictured;
-    if (is_displaced(score))
+    score.pictured = score.testable && static_cast<int>(i) < limits.pictured;
+    if (is_displaced(score, limits))
       displace(evaluation, scored.projected[scored.best.at(score.effect)], score);
   }
 }
@@ -312,7 +315,7 @@ std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, co
   out.floor = measure_floor(scene, evaluation);
   evaluation.measured_weight = measured_weight(out.floor);
   out.held_out_missed = spoils_held_out(fitted, out.floor);
-  out.held_out_over = fitted.evaluation.chi(true) > kAtFloor * out.floor.chi;
+  out.held_out_over = fitted.evaluation.chi(true) > out.floor.limits->floor.at * out.floor.chi;
   const DiagnosisSums sums = diagnosis_sums(evaluation, out.floor);
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
@@ -321,10 +324,10 @@ std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, co
 
   Scored scored = score_photos(fitted.form, std::move(candidates), sums, options);
   if (!scored.null.empty())
-    out.gate = scored.null[static_cast<size_t>(0.95 * (scored.null.size() - 1))];
+    out.gate = scored.null[static_cast<size_t>(out.limits().gate * (scored.null.size() - 1))];
   if (const Candidate* mesh = mesh_candidate(scored.candidates, scored.evidence))
     tell_of_mesh(fitted, evaluation, sums, *mesh, out);
-  score_sensors(sums, base, out.mesh_in_measured, scored);
+  score_sensors(sums, base, out.mesh_in_measured, out.limits(), scored);
   for (size_t i = 0; i < scored.candidates.size(); ++i) {
     const auto [at, first] = scored.best.emplace(scored.candidates[i].effect->name(), i);
     if (!first && scored.evidence[i] > scored.evidence[at->second]) at->second = i;
@@ -333,12 +336,13 @@ std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, co
   const Context context{fitted, scene, evaluation, sums, fitted.form.realise(fitted.p), out};
   for (const auto& [name, value] : by_effect(scored.candidates, scored.evidence))
     out.effects.push_back(score_effect(context, scored, scored.best.at(name), value, out));
-  find_confusions(sums.effective.H, scored.projected, scored.best, out.effects);
+  find_confusions(sums.effective.H, scored.projected, scored.best, out.limits().confused,
+                  out.effects);
   weigh(out.effects);
   std::stable_sort(out.effects.begin(), out.effects.end(), [](const auto& a, const auto& b) {
     return std::pair(a.testable, a.evidence) > std::pair(b.testable, b.evidence);
   });
-  displace_leaders(evaluation, scored, out.effects);
+  displace_leaders(evaluation, scored, out.limits(), out.effects);
   out.effects.insert(out.effects.end(), idle.begin(), idle.end());
   return out;
 }
@@ -347,7 +351,8 @@ Question question_of_diagnosis(const Fitted& fitted, const DiagnosisOptions& opt
   Question question = question_of("diagnosis", fitted.form, fitted.p);
   for (const std::string& name : options.without) question.text += "\nwithout " + name;
   for (const Effect* effect : options.also) question.text += "\nalso " + effect->name();
-  question.numbers.push_back(options.null_simulations);
+  question.numbers.push_back(
+      options.null_simulations.value_or(fitted.form.scene->limits->diagnosis.simulations));
   question.numbers.push_back(options.seed);
   return question;
 }
@@ -371,9 +376,10 @@ std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const F
 }
 
 bool lacks_displaced(const Diagnosis& diagnosis) {
-  return std::any_of(
-      diagnosis.effects.begin(), diagnosis.effects.end(),
-      [](const EffectScore& score) { return is_displaced(score) && score.displaced.empty(); });
+  return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                     [&](const EffectScore& score) {
+                       return is_displaced(score, diagnosis.limits()) && score.displaced.empty();
+                     });
 }
 
 std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitted& fitted,
@@ -381,7 +387,7 @@ std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitte
                                                Diagnosis& diagnosis) {
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
   for (const EffectScore& score : diagnosis.effects)
-    if (is_displaced(score)) ingredients.push_back(score.best);
+    if (is_displaced(score, diagnosis.limits())) ingredients.push_back(score.best);
   EvaluationOptions options;
   options.held_out = true;
   options.cancel = cancel;
@@ -390,7 +396,7 @@ std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitte
   ProjectedHypothesis columns;
   columns.first = columns.base = fitted.form.size();
   for (EffectScore& score : diagnosis.effects) {
-    if (!is_displaced(score)) continue;
+    if (!is_displaced(score, diagnosis.limits())) continue;
     displace(std::get<Evaluation>(result), columns, score);
     columns.first += score.dof;
   }

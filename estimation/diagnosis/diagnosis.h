@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -45,7 +46,7 @@ struct EffectScore {
   /// Where the linear step takes the examples (3n each): of the leading effects and of all with
   /// evidence enough to be named.
   std::map<int, VectorXd> displaced;
-  bool pictured = false;  ///< one of the kPictured leading effects
+  bool pictured = false;  ///< one of the DiagnosisLimits::pictured leading effects
   std::string why;        ///< one plain sentence
   /// Another form of the effect that explains more of the held-out photos, though the fitted ones
   /// speak for `best` (one load turned instead of all), or one that they cannot tell from it (creep
@@ -59,6 +60,7 @@ struct Diagnosis {
   double effective_count = 0.0;
   double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
+  const DiagnosisLimits& limits() const { return floor.limits->diagnosis; }
   /// Change of the fitted parameters that an ever finer mesh would bring, to first order: what the
   /// next refinement brings, extrapolated (Richardson: the error falls with the square of the edge,
   /// quadratic elements beside clamps and corners, and to a tenth from linear to quadratic ones);
@@ -79,7 +81,7 @@ struct Diagnosis {
 };
 
 struct DiagnosisOptions {
-  int null_simulations = 400;
+  std::optional<int> null_simulations;  ///< empty: DiagnosisLimits
   unsigned seed = 1;
   /// Names to leave out (leave-one-out benchmarks).
   std::vector<std::string> without;
@@ -104,21 +106,15 @@ std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitte
 /// values: mesh_shift.
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis);
 
-/// Log-evidence below which nothing is named, and margin below which two effects tie (method.md 5).
-constexpr double kNameable = 5.0;
-constexpr double kTie = 3.0;
-
-/// Of so many leading effects what they would remove is drawn at full size (removed.h).
-constexpr int kPictured = 5;
-
 /// Fall of chi^2 below which an effect is not named although noise alone would not give it:
 /// renderers_err_by (floor.h), or what is smaller than the mesh's own error. Of the fitted photos,
 /// or of the held-out ones.
 double least_fall(const Diagnosis& diagnosis, const std::string& effect, bool held_out = false);
 /// The effect stands for errors of the computation.
 bool numerical(const std::string& effect);
-/// `fall` of the sum of squares of measured values over told noise is kNameable in log-likelihood,
-/// noise being what is told and what an ever finer mesh would change: no renderer errs in a force.
+/// `fall` of the sum of squares of measured values over told noise is DiagnosisLimits::nameable in
+/// log-likelihood, noise being what is told and what an ever finer mesh would change: no renderer
+/// errs in a force.
 bool sensors_speak(double fall, const Diagnosis& diagnosis);
 /// It changes what sensors show and nothing in the photos.
 bool sensors_alone(const Ingredient& ingredient);
@@ -135,10 +131,12 @@ bool held_out_say_so(const EffectScore& score, const Diagnosis& diagnosis);
 /// mesh_in_measured). (The mesh's own effect is not held to the mesh's error: it is not offered
 /// then.) Or held-out photos say so, and it is above the gate.
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis);
-/// The leader of those that can be named with all that tie with it: by less than kTie in evidence,
-/// or because the information criterion puts them before it (method.md, 3 and 5). Without the
-/// mesh's own error beside others. Empty: nothing can be named.
+/// The leader of those that can be named with all that tie with it: by less than
+/// DiagnosisLimits::tie in evidence, or because the information criterion puts them before it
+/// (method.md, 3 and 5). Without the mesh's own error beside others. Empty: nothing can be named.
 std::vector<std::string> leaders(const Diagnosis& diagnosis);
+/// For every effect, whether it is named and by which number.
+std::vector<Decision> naming_decisions(const Diagnosis& diagnosis);
 /// One sentence: what leads, what ties with it and what would tell them apart, or that nothing
 /// stands out.
 std::string conclusion(const Diagnosis& diagnosis);

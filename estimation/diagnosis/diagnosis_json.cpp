@@ -69,15 +69,16 @@ std::string not_named_because(const EffectScore& score, const Diagnosis& diagnos
         "its log Bayes factor {:.1f} is below {:.1f}, the 95 % critical value over all effects, "
         "which chance alone exceeds in 5 % of runs",
         score.evidence, diagnosis.gate);
-  if (score.evidence < kNameable)
+  if (score.evidence < diagnosis.limits().nameable)
     return fmt::format("its log Bayes factor {:.1f} is below {:g}, which is asked for in any case",
-                       score.evidence, kNameable);
+                       score.evidence, diagnosis.limits().nameable);
   const double renderer = renderers_err_by(diagnosis.floor);
   const bool mesh = score.mesh_fall > renderer;
   return fmt::format(
       "its log Bayes factor {:.1f} is above the critical value {:.1f}, but that knows of noise "
       "alone: it would lower the squared residual by {}, and {} may be as much as {}",
-      score.evidence, std::max(diagnosis.gate, kNameable), fall_text(score.fall, diagnosis.floor),
+      score.evidence, std::max(diagnosis.gate, diagnosis.limits().nameable),
+      fall_text(score.fall, diagnosis.floor),
       mesh ? "the mesh's own error" : "the error of a renderer or a lens",
       fall_text(mesh ? score.mesh_fall : renderer, diagnosis.floor));
 }
@@ -166,6 +167,7 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
                               const std::filesystem::path& file) {
   Diagnosis out;
   try {
+    out.floor.limits = model.scene->limits;
     const json& floor = document.at("floor");
     out.floor.chi = floor.at("chi");
     out.floor.cell_variance = floor.at("cell_variance");

@@ -85,12 +85,12 @@ double measured_r2(const Evaluation& evaluation, const VectorXd* step) {
   return sum;
 }
 
-double without_base(const EffectiveSums& sums, int base) {
+double without_base(const EffectiveSums& sums, int base, const DiagnosisLimits& limits) {
   if (base == 0) return sums.r2;
   const VectorXd s = sums.s.head(base);
   const Eigen::MatrixXd H = sums.H.topLeftCorner(base, base);
   const double gain = s.dot(pseudo_inverse(H) * s);
-  return std::max(sums.r2 - gain, 0.1 * sums.r2);
+  return std::max(sums.r2 - gain, (1.0 - limits.base_most) * sums.r2);
 }
 
 }  // namespace hookeye

@@ -33,6 +33,6 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor);
 double measured_r2(const Evaluation& evaluation, const VectorXd* step = nullptr);
 
 /// |r|^2 less what the first `base` columns alone would still gain.
-double without_base(const EffectiveSums& sums, int base);
+double without_base(const EffectiveSums& sums, int base, const DiagnosisLimits& limits);
 
 }  // namespace hookeye

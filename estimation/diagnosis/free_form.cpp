@@ -175,7 +175,7 @@ namespace {
 void score(const std::vector<Field>& fields, size_t first, size_t last, const Scene& scene,
            const Evaluation& evaluation, int base, std::vector<FreeForm>* out) {
   const DiagnosisSums sums = diagnosis_sums(evaluation, measure_floor(scene, evaluation));
-  const double r2 = without_base(sums.effective, base);
+  const double r2 = without_base(sums.effective, base, scene.limits->diagnosis);
   int column = base;
   for (size_t i = first; i < last; ++i, column += 3 * kBumps) {
     const Basis& basis = *fields[i].basis;
@@ -188,7 +188,7 @@ void score(const std::vector<Field>& fields, size_t first, size_t last, const Sc
     VectorXd values;
     one.evidence = log_evidence(projected, sums.effective.s, r2, sums.effective.count,
                                 sums.effective.floor2, &values);
-    if (one.evidence < kNameable) continue;
+    if (one.evidence < scene.limits->diagnosis.nameable) continue;
     VectorXd step = VectorXd::Zero(evaluation.columns);
     step.head(base) = -projected.to_base * values;
     step.segment(column, values.size()) = values;

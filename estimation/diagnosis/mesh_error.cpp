@@ -88,7 +88,9 @@ void tell_of_mesh(const Fitted& fitted, const Evaluation& evaluation, const Diag
                   const Candidate& mesh, Diagnosis& out) {
   const int base = fitted.form.size();
   const bool linear = fitted.form.scene->body->mesh.order == 1;
-  const double to_the_limit = 1.0 / (1.0 - (linear ? 0.1 : kFinerEdge * kFinerEdge));
+  const double to_the_limit =
+      1.0 / (1.0 - (linear ? fitted.form.scene->limits->diagnosis.order_change
+                           : kFinerEdge * kFinerEdge));
   VectorXd next = VectorXd::Zero(base);
   if (base > 0) next = -project(sums.fitted.JtJ, base, mesh.hypothesis).to_base.col(0);
   out.mesh_shift = to_the_limit * next;

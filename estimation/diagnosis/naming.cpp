@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "estimation/diagnosis/diagnosis.h"
+#include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
 
 namespace hookeye {
@@ -34,7 +35,8 @@ std::vector<std::string> leaders(const Diagnosis& diagnosis) {
   std::vector<std::string> out;
   for (const EffectScore* score : named) {
     const EffectScore* first = named.front();
-    const bool ties = score->evidence > first->evidence - kTie || score->bic > first->bic;
+    const bool ties =
+        score->evidence > first->evidence - diagnosis.limits().tie || score->bic > first->bic;
     if (score == first || (ties && !numerical(score->effect) && !numerical(first->effect)))
       out.push_back(score->effect);
   }
@@ -57,20 +59,41 @@ bool numerical(const std::string& effect) {
 }
 
 bool sensors_speak(double fall, const Diagnosis& diagnosis) {
-  return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= kNameable;
+  return 0.5 * fall / (1.0 + diagnosis.mesh_in_measured) >= diagnosis.limits().nameable;
 }
 
 bool held_out_say_so(const EffectScore& score, const Diagnosis& diagnosis) {
-  if (numerical(score.effect) || score.explains_held_out <= 0.5) return false;
+  if (numerical(score.effect) || score.explains_held_out <= diagnosis.limits().held_out_share)
+    return false;
   return diagnosis.held_out_missed ||
-         (diagnosis.held_out_over && score.evidence >= kNameable &&
+         (diagnosis.held_out_over && score.evidence >= diagnosis.limits().nameable &&
           score.fall_held_out >= least_fall(diagnosis, score.effect, true));
+}
+
+std::vector<Decision> naming_decisions(const Diagnosis& diagnosis) {
+  std::vector<Decision> out;
+  const Decided keep = [&](const Decision& one) { out.push_back(one); };
+  const double least = std::max(diagnosis.gate, diagnosis.limits().nameable);
+  const char* option =
+      diagnosis.gate > diagnosis.limits().nameable ? "diagnosis.gate" : "diagnosis.nameable";
+  for (const EffectScore& score : diagnosis.effects) {
+    const bool named = nameable(score, diagnosis);
+    Decision one{Asked::named, score.effect, named, {}, ""};
+    if (!score.testable) {
+      one.why = score.why_not;
+    } else {
+      one.by = {score.evidence, least, option};
+      one.why = named ? score.why : not_named_because(score, diagnosis);
+    }
+    tell(keep, one);
+  }
+  return out;
 }
 
 bool nameable(const EffectScore& score, const Diagnosis& diagnosis) {
   if (!score.testable || score.evidence < diagnosis.gate) return false;
   if (held_out_say_so(score, diagnosis)) return true;
-  return score.evidence >= kNameable &&
+  return score.evidence >= diagnosis.limits().nameable &&
          ((score.best && sensors_alone(*score.best)) ||
           score.fall >= least_fall(diagnosis, score.effect) ||
           (!numerical(score.effect) && sensors_speak(score.measured_fall, diagnosis)));

@@ -32,7 +32,7 @@ nlohmann::json failure_json(const NumericalFailure& failure);
 std::optional<NumericalFailure> failure_from(const nlohmann::json& answer);
 
 /// What is asked at p, and where from.
-struct Asked {
+struct WorkedOut {
   Workspace& workspace;
   const ModelForm& form;
   const VectorXd& p;
@@ -52,8 +52,8 @@ Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
 /// was cancelled. `read` may return nothing: then it is worked out. Whichever it was, the
 /// workspace is left at the same bits; the answer may differ in a last digit by the order of sums.
 template <class T, class Work, class Write, class Read>
-std::variant<T, NumericalFailure> archived(const Asked& asked, const Work& work, const Write& write,
-                                           const Read& read) {
+std::variant<T, NumericalFailure> archived(const WorkedOut& asked, const Work& work,
+                                           const Write& write, const Read& read) {
   using Result = std::variant<T, NumericalFailure>;
   Archive* archive = asked.workspace.archive();
   const Workspace::Place place = place_in(asked.workspace, asked.form.scene);

@@ -7,12 +7,12 @@
 
 namespace hookeye {
 
-bool at_floor(const Fitted& fitted, const Floor& floor, double times) {
+namespace {
+
+bool within(const Fitted& fitted, const Floor& floor, double times) {
   return fitted.evaluation.chi(false) <= times * floor.chi &&
          fitted.evaluation.chi(true) <= times * floor.chi;
 }
-
-namespace {
 
 struct Left {
   double r2 = 0.0, count = 0.0;
@@ -54,11 +54,19 @@ bool alone_over_floor(const CameraOverFloor& one, const std::vector<CameraOverFl
   for (const CameraOverFloor& camera : all)
     if (camera.held_out == one.held_out) sum += excess(camera), count += 1.0;
   const double own = floor.by_camera.at(one.camera);
-  return one.times > kAtFloor && excess(one) > 0.5 * (count + 1.0) * sum / count &&
+  return one.times > floor.limits->floor.at && excess(one) > 0.5 * (count + 1.0) * sum / count &&
          excess(one) * own * own > floor.chi * floor.chi - 1.0;
 }
 
 }  // namespace
+
+bool at_floor(const Fitted& fitted, const Floor& floor) {
+  return within(fitted, floor, floor.limits->floor.at);
+}
+
+bool on_floor(const Fitted& fitted, const Floor& floor) {
+  return within(fitted, floor, floor.limits->floor.on);
+}
 
 CameraOverFloor most_over_floor(const Fitted& fitted, const Floor& floor) {
   const auto cameras = cameras_over_floor(fitted, floor);
@@ -84,8 +92,8 @@ double over_floor(const Fitted& fitted, const Floor& floor, bool held_out) {
 }
 
 bool spoils_held_out(const Fitted& fitted, const Floor& floor) {
-  return fitted.evaluation.chi(false) <= kAtFloor * floor.chi &&
-         fitted.evaluation.chi(true) > kAtFloor * floor.chi;
+  const double most = floor.limits->floor.at * floor.chi;
+  return fitted.evaluation.chi(false) <= most && fitted.evaluation.chi(true) > most;
 }
 
 }  // namespace hookeye

@@ -8,13 +8,10 @@
 
 namespace hookeye {
 
-/// Times the floor: what texture and shading errors of another renderer leave at most.
-constexpr double kAtFloor = 1.3;
-/// Times the floor: what meshes and renderers leave at least.
-constexpr double kLeftByRenderers = 1.1;
-
-/// Within `times` the floor on the fitted photos and on the held-out ones.
-bool at_floor(const Fitted& fitted, const Floor& floor, double times = kAtFloor);
+/// Within FloorLimits::at times the floor on the fitted photos and on the held-out ones.
+bool at_floor(const Fitted& fitted, const Floor& floor);
+/// Within FloorLimits::on times: no more is left than renderers leave at least.
+bool on_floor(const Fitted& fitted, const Floor& floor);
 /// Who keeps most over the floor of its own (Floor::by_camera), on fitted or on held-out photos.
 struct CameraOverFloor {
   std::string camera;  ///< "": no camera has a floor of its own

@@ -69,7 +69,7 @@ std::variant<EvaluationOptions, NumericalFailure> comparison(Workspace& workspac
   EvaluationOptions out;
   out.cancel = options.cancel;
   out.registered = seen.motion_px() > kLinearPx;
-  out.huber = options.huber > 0.0 ? options.huber * misfit_scale(seen) : 0.0;
+  out.huber = options.huber_times(*form.scene) * misfit_scale(seen);
   out.measured_weight = measured_weight(workspace.scene(), seen);
   return out;
 }
@@ -169,7 +169,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   NormalEquations sums = std::get<NormalEquations>(std::move(first));
   const Draw draw(parts, scaled.to_x(start));
   double damping = 1e-3;
-  for (; out.iterations < options.max_iterations; ++out.iterations) {
+  for (; out.iterations < options.iterations(*form.scene); ++out.iterations) {
     if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
     const VectorXd x = scaled.to_x(out.p), d = scaled.dp_dx(out.p);
     ConvexStep step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
@@ -202,7 +202,7 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
     }
     if (options.progress)
       options.progress({fmt::format("additive, {} values", values), out.iterations + 1,
-                        options.max_iterations, std::sqrt(sums.r2 / sums_at.residuals)});
+                        options.iterations(*form.scene), std::sqrt(sums.r2 / sums_at.residuals)});
     if (!accepted || fall < 1e-5 * sums.r2) {
       out.converged = true;
       break;

@@ -188,8 +188,6 @@ double log_evidence(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd
   return best;
 }
 
-double chi2_point(double n) { return chi2_quantile(0.999, n); }
-
 double log_mean_exp(const Eigen::VectorXd& values) {
   const double largest = values.maxCoeff();
   return largest + std::log((values.array() - largest).exp().mean());

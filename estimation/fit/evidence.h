@@ -81,9 +81,6 @@ double log_evidence_of_told_noise(const ProjectedHypothesis& hypothesis, const E
 double bayes_information(const ProjectedHypothesis& hypothesis, const Eigen::VectorXd& s, double r2,
                          double count, double floor2);
 
-/// The 99.9 % point of chi^2 with n degrees of freedom.
-double chi2_point(double n);
-
 /// log of the mean of exp: evidence of an effect with several forms.
 double log_mean_exp(const Eigen::VectorXd& values);
 

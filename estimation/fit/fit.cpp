@@ -219,7 +219,6 @@ double coarse_misfit(Workspace& workspace, const ModelForm& form, const VectorXd
 /// far from where the photos show it has no slope towards them. Empty: they do not.
 std::optional<VectorXd> rescaled(Workspace& workspace, const ModelForm& form, const VectorXd& p,
                                  const FitOptions& options) {
-  constexpr int kMost = 7;  // two orders of magnitude
   const auto parameters = form.parameters();
   const auto at = [&](double factor) {
     VectorXd q = p;
@@ -233,7 +232,7 @@ std::optional<VectorXd> rescaled(Workspace& workspace, const ModelForm& form, co
   for (const double step : {2.0, 0.5}) {
     if (!stands && step < 1.0) break;  // what has no equilibrium finds none softer
     double best = 1.0, factor = 1.0;
-    for (int i = 0; i < kMost; ++i) {
+    for (int i = 0; i < form.scene->limits->fit.rescalings; ++i) {
       const double misfit = coarse_misfit(workspace, form, at(factor *= step), options);
       if (misfit < least)
         least = misfit, best = factor;
@@ -245,13 +244,10 @@ std::optional<VectorXd> rescaled(Workspace& workspace, const ModelForm& form, co
   return {};
 }
 
-/// Half the period of the finest pattern (kLinearPx): pictures farther apart than this are not led
-/// home by what they show.
-constexpr double kLostPx = 3.0;
-
+/// Pictures are farther apart than what they show leads home.
 bool lost(const Fitted& fitted) {
   const auto parameters = fitted.form.parameters();
-  return fitted.evaluation.rms_px(false) > kLostPx &&
+  return fitted.evaluation.rms_px(false) > fitted.form.scene->limits->fit.lost_px &&
          std::any_of(parameters.begin(), parameters.end(), is_modulus);
 }
 
@@ -306,8 +302,9 @@ std::variant<Fitted, NumericalFailure> fit_anew(Workspace& workspace, const Mode
 
 Question question_of_fit(const ModelForm& form, const VectorXd& start, const FitOptions& options) {
   Question question = question_of("fit", form, start);
-  for (const double one : {1.0 * options.max_iterations, 1.0 * options.coarse_to_fine,
-                           options.huber, options.aim_chi, 1.0 * options.most_iterations})
+  for (const double one :
+       {1.0 * options.iterations(*form.scene), 1.0 * options.coarse_to_fine,
+        options.huber_times(*form.scene), options.aim_chi, 1.0 * options.most_iterations})
     question.numbers.push_back(one);
   return question;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "estimation/evaluation/evaluation.h"
+#include "estimation/fit/decision.h"
 
 namespace hookeye {
 
@@ -23,11 +24,12 @@ struct FitProgress {
 constexpr int kRivalIterations = 2 * kStepIterations;
 
 struct FitOptions {
-  int max_iterations = 20;
+  std::optional<int> max_iterations;  ///< empty: FitLimits
   bool coarse_to_fine = true;
   /// Huber's threshold in multiples of the photos' own misfit (median absolute residual over that
-  /// of unit noise, at least 1): outliers of a misfit model are judged against its misfit.
-  double huber = 4.0;
+  /// of unit noise, at least 1): outliers of a misfit model are judged against its misfit. Empty:
+  /// FitLimits.
+  std::optional<double> huber;
   /// chi of the fitted photos that a rival has come to already: a fit that falls so slowly that it
   /// would not get there in twenty steps more ends. 0: there is none.
   double aim_chi = 0.0;
@@ -36,6 +38,12 @@ struct FitOptions {
   int most_iterations = EquilibriumOptions{}.most_iterations;
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(const FitProgress&)> progress;
+  Decided decided;  ///< of a search
+
+  int iterations(const Scene& scene) const {
+    return max_iterations.value_or(scene.limits->fit.max_iterations);
+  }
+  double huber_times(const Scene& scene) const { return huber.value_or(scene.limits->fit.huber); }
 };
 
 /// One step of the progressive estimation of an additive material (progressive.h).

@@ -12,10 +12,6 @@ namespace hookeye {
 
 namespace {
 
-/// Share of |r|^2 below which a step in a coarse picture, which only has to lead the next one to
-/// the right speckle, is none.
-constexpr double kCoarse = 0.02;
-
 class ReducedCost final : public ceres::CostFunction {
  public:
   ReducedCost(Workspace& workspace, const ModelForm& form, const FitScope& scope,
@@ -83,9 +79,15 @@ class ReducedCost final : public ceres::CostFunction {
 
 class Reporter final : public ceres::IterationCallback {
  public:
-  Reporter(const FitOptions& options, const ReducedCost& cost, Stage stage, double count,
-           double misfit, int of)
-      : options_(options), cost_(cost), stage_(stage), count_(count), misfit_(misfit), of_(of) {}
+  Reporter(const FitOptions& options, const FitLimits& limits, const ReducedCost& cost, Stage stage,
+           double count, double misfit, int of)
+      : options_(options),
+        limits_(limits),
+        cost_(cost),
+        stage_(stage),
+        count_(count),
+        misfit_(misfit),
+        of_(of) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     if (options_.cancel && options_.cancel->load()) return ceres::SOLVER_ABORT;
     if (summary.iteration == 0 || summary.step_is_successful) {
@@ -108,12 +110,14 @@ class Reporter final : public ceres::IterationCallback {
   bool done(const ceres::IterationSummary& summary) {
     // What `cost_` promises is of the point that it saw last: here, of the refused one.
     if (!summary.step_is_successful && summary.iteration > 0)
-      return std::abs(summary.cost_change) < 1e-4 * summary.cost || gives_up();
-    if (stage_.level > 1 && cost_.promised() < kCoarse * cost_.r2()) return true;
+      return std::abs(summary.cost_change) < limits_.motion_step * summary.cost || gives_up();
+    if (stage_.level > 1 && cost_.promised() < limits_.coarse_step * cost_.r2()) return true;
     // Some hundred effective residuals: 1e-4 of |r|^2 is about a tenth of a standard error.
-    if (stage_.registered && cost_.promised() < 1e-4 * cost_.r2()) return true;
+    if (stage_.registered && cost_.promised() < limits_.motion_step * cost_.r2()) return true;
     if (summary.iteration == 0) return false;
-    if (cost_.promised() < std::max(0.01, 1e-6 * misfit_ * misfit_ * cost_.r2())) return true;
+    if (cost_.promised() <
+        std::max(limits_.least_promise, limits_.tolerance * misfit_ * misfit_ * cost_.r2()))
+      return true;
     return creeps(summary);
   }
 
@@ -125,19 +129,24 @@ class Reporter final : public ceres::IterationCallback {
     const double chi = this->chi(summary.cost);
     const double structured = 1.0 - 1.0 / std::max(1.0, chi * chi);
     const double fell = this->chi(summary.cost + summary.cost_change) - chi;
-    const double least = stage_.level > 1 ? kCoarse : 1e-6 + 1e-3 * structured;
+    const double least = stage_.level > 1
+                             ? limits_.coarse_step
+                             : limits_.tolerance + limits_.motion_tolerance * structured;
     const bool counts = summary.cost_change > least * summary.cost;
-    const bool arrives =
-        options_.aim_chi == 0.0 || stage_.level > 0 || 20.0 * fell > chi - options_.aim_chi;
+    const bool arrives = options_.aim_chi == 0.0 || stage_.level > 0 ||
+                         limits_.aim_steps * fell > chi - options_.aim_chi;
     slow_ = counts && arrives ? 0 : slow_ + 1;
-    return slow_ == 2;
+    return slow_ == limits_.slow_steps;
   }
   /// Four refused steps in a row on the way to `aim_chi`. They shrink by 2, 4, 8, 16: where a
   /// thousandth of the step finds no equilibrium or nothing better, nobody arrives.
-  bool gives_up() { return ++refused_ >= 4 && options_.aim_chi > 0.0 && chi_ > options_.aim_chi; }
+  bool gives_up() {
+    return ++refused_ >= limits_.refused_steps && options_.aim_chi > 0.0 && chi_ > options_.aim_chi;
+  }
   double chi(double cost) const { return std::sqrt(2.0 * cost / std::max(1.0, count_)); }
 
   const FitOptions& options_;
+  const FitLimits& limits_;
   const ReducedCost& cost_;
   Stage stage_;
   double count_, misfit_;
@@ -202,9 +211,10 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   evaluation.registered = stage.registered;
   evaluation.most_iterations = kStepIterations;
   evaluation.cancel = options.cancel;
-  evaluation.huber = options.huber > 0.0 ? options.huber * seen.misfit : 0.0;
+  evaluation.huber = options.huber_times(*form.scene) * seen.misfit;
   evaluation.measured_weight = seen.measured_weight;
 
+  const FitLimits& limits = form.scene->limits->fit;
   const Scaling scaling{form.parameters()};
   VectorXd x = scaling.to_x(start);
   ReducedCost cost(workspace, form, scope, scaling, evaluation);
@@ -221,11 +231,14 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   }
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;
-  solver.max_num_iterations = level > 0 ? 8 : options.max_iterations;
+  solver.max_num_iterations =
+      level > 0 ? limits.coarse_iterations : options.iterations(*form.scene);
   // A fall of |r|^2 by less than a pixel's worth of noise is nothing: 1e-6 of some 1e6 pixels. A
   // misfit of some tenths of a pixel has some hundred effective residuals: 1e-3 of |r|^2 is a third
   // of a parameter's standard error.
-  solver.function_tolerance = level > 0 ? 1e-4 : stage.registered ? 1e-3 : 1e-6;
+  solver.function_tolerance = level > 0          ? limits.coarse_tolerance
+                              : stage.registered ? limits.motion_tolerance
+                                                 : limits.tolerance;
   solver.parameter_tolerance = 1e-7;
   // Levenberg's damping in units of what matters: the first step moves what the photos hardly fix
   // (the tilt of a flat body under one camera) by little, and each success by three times more.
@@ -235,7 +248,7 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.logging_type = ceres::SILENT;
   // Where convexity bounds the values, steps shrink until they are nothing: that is an end.
   solver.max_num_consecutive_invalid_steps = cost.named_addends() ? 20 : 8;
-  Reporter reporter(options, cost, stage, seen.count, std::min(seen.misfit, 30.0),
+  Reporter reporter(options, limits, cost, stage, seen.count, std::min(seen.misfit, 30.0),
                     solver.max_num_iterations);
   solver.callbacks.push_back(&reporter);
   ceres::Solver::Summary summary;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "estimation/fit/evidence.h"
+#include "capture_io/distributions.h"
 #include "meshing/extent.h"
 
 namespace hookeye {
@@ -90,9 +90,6 @@ struct Left {
   double chi() const { return std::sqrt(std::max(r2, 0.0) / count); }
 };
 
-/// Some cells' worth of pixels; of fewer, the told noise is the better witness.
-constexpr double kLeastPixels = 1000.0;
-
 /// What is left of a photo at rest without what moved. Polynomials take the motion out where the
 /// picture is linear in it. Past that the pictures are aligned, and rims and what came into view
 /// are no noise: the middle cell speaks for all. (An aligned contour is where it should be,
@@ -114,7 +111,8 @@ Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
 bool unmoved(const Scene& scene, const ExampleEvaluation& example) {
   const Matrix3Xd& X = scene.body->mesh.X;
   if (!example.equilibrium || example.equilibrium->q.size() != X.size()) return false;
-  return (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() < 1e-6 * extent(X);
+  return (example.equilibrium->q - X.reshaped()).cwiseAbs().maxCoeff() <
+         scene.limits->floor.unmoved * extent(X);
 }
 
 /// Smooth motion of photos at rest, and what noise would give of it.
@@ -126,15 +124,17 @@ struct MotionAtRest {
     r2 += left.r2, count += left.count;
   }
   double noise2() const { return r2 / count; }
-  bool by_chance() const { return explained <= chi2_point(numbers) * noise2(); }
+  bool by_chance(double probability) const {
+    return explained <= chi2_quantile(1.0 - probability, numbers) * noise2();
+  }
   double fall() const { return (explained - numbers * noise2()) / count; }
 };
 
-/// Highest degree for which a polynomial has a third of the cells' numbers at most, up to cubic;
-/// -1: too few cells.
-int degree_for(const FlowField& flow) {
+/// Highest degree for which a polynomial has a term for so many cells; -1: too few cells.
+int degree_for(const FlowField& flow, const FloorLimits& limits) {
   int degree = -1;
-  while (degree < 3 && (degree + 2) * (degree + 3) / 2 * 3 <= static_cast<int>(flow.cells.size()))
+  while (degree < limits.most_degree && (degree + 2) * (degree + 3) / 2 * limits.cells_a_term <=
+                                            static_cast<int>(flow.cells.size()))
     ++degree;
   return degree;
 }
@@ -166,6 +166,8 @@ double fall_per_px2(const Evaluation& evaluation) {
 
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
   Floor floor;
+  floor.limits = scene.limits;
+  const FloorLimits& limits = scene.limits->floor;
   floor.per_px2 = fall_per_px2(evaluation);
   Left all;
   std::map<std::string, Left> cameras;
@@ -177,7 +179,7 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
     std::map<int, std::vector<FlowField>> channels;  // by photo
     const bool as_given = unmoved(scene, example);
     for (const auto& photo : example.photos) {
-      const int degree = degree_for(photo.flow);
+      const int degree = degree_for(photo.flow, limits);
       if (degree < 0) continue;
       const auto& spec = scene.capture.examples[example.example].photos[photo.photo];
       const bool silhouette = spec.kind == PhotoSpec::Kind::silhouette;
@@ -196,12 +198,12 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
     }
     for (const auto& [photo, fields] : channels) inflations.add(fields);
   }
-  if (all.count < kLeastPixels) return floor;
+  if (all.count < limits.least_pixels) return floor;
   floor.chi = all.chi();
   for (const auto& [camera, left] : cameras)
-    if (left.count >= kLeastPixels) floor.by_camera[camera] = left.chi();
+    if (left.count >= limits.least_pixels) floor.by_camera[camera] = left.chi();
   for (const auto& [camera, motion] : moved)
-    if (motion.count >= kLeastPixels && !motion.by_chance())
+    if (motion.count >= limits.least_pixels && !motion.by_chance(limits.chance))
       floor.moved_at_rest[camera] = motion.fall();
   floor.source = "rest photos";
   floor.cell_inflation = std::max(1.0, inflations.sum / inflations.count);
@@ -216,9 +218,9 @@ double measured_weight(const Scene& scene, const Evaluation& evaluation) {
 }
 
 double renderers_err_by(const Floor& floor) {
-  constexpr double kTrustedPx = 0.01;
-  return std::max(0.1 * std::max(0.0, floor.chi * floor.chi - 1.0),
-                  kTrustedPx * kTrustedPx * floor.per_px2);
+  const FloorLimits& limits = floor.limits->floor;
+  return std::max(limits.err_share * std::max(0.0, floor.chi * floor.chi - 1.0),
+                  limits.trusted_px * limits.trusted_px * floor.per_px2);
 }
 
 }  // namespace hookeye

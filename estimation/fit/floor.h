@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
 #include "estimation/evaluation/evaluation.h"
@@ -9,6 +10,8 @@
 namespace hookeye {
 
 struct Floor {
+  /// Of the scene that it was measured in.
+  std::shared_ptr<const Limits> limits = std::make_shared<const Limits>();
   double chi = 1.0;
   /// The same for cells: variance of their standardised estimates (FlowCell::z) in the rest photos
   /// after smooth motions and brightness changes are taken out, at least 1. Shading and texture

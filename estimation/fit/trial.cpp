@@ -58,7 +58,8 @@ std::variant<TrialScale, NumericalFailure> scale_anew(Workspace& workspace, cons
   const double held_out = pictures.linear_chi(true);
   std::erase_if(pictures.examples, [](const auto& example) { return example.held_out; });
   const Floor floor = measure_floor(workspace.scene(), pictures);
-  return TrialScale{options.huber * misfit_scale(pictures), pictures.linear_chi(false), held_out,
+  return TrialScale{options.huber_times(*form.scene) * misfit_scale(pictures),
+                    pictures.linear_chi(false), held_out,
                     floor.source == "rest photos" ? floor.chi : 0.0, measured_weight(floor)};
 }
 
@@ -73,7 +74,8 @@ std::variant<Trial, NumericalFailure> step_anew(Workspace& workspace, const Mode
   if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
   const double from = std::get<Evaluation>(first).linear_chi(false);
   // "from the null itself" comes back a little off: rays have changed triangles
-  if (from > 1.01 * scale.chi) return NumericalFailure{"", 0.0, "worse than the model without"};
+  if (from > form.scene->limits->fit.trial_worse * scale.chi)
+    return NumericalFailure{"", 0.0, "worse than the model without"};
   const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
   EvaluationOptions pictures = half_size(options);
   pictures.held_out = true;
@@ -96,7 +98,7 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
                                                        const FitOptions& options) {
   const auto question = [&] {
     Question out = question_of("scale", form, p);
-    out.numbers.push_back(options.huber);
+    out.numbers.push_back(options.huber_times(*form.scene));
     return out;
   };
   return archived<TrialScale>(
@@ -150,7 +152,6 @@ double over_floor(const Trial& trial) {
 std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const ModelForm& form,
                                                 const VectorXd& start, const TrialScale& scale,
                                                 const FitOptions& options, int steps) {
-  constexpr double kStalled = 0.05;
   TrialScale any = scale;  // the start may be worse than the model that it is held against
   any.chi = std::numeric_limits<double>::infinity();
   Followed out;
@@ -163,7 +164,8 @@ std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const Mode
     }
     const double before = over_floor(out.trial);
     out.trial = std::get<Trial>(std::move(result));
-    out.stalled = step > 0 && over_floor(out.trial) > (1.0 - kStalled) * before;
+    out.stalled =
+        step > 0 && over_floor(out.trial) > (1.0 - form.scene->limits->fit.trial_stalled) * before;
   }
   return out;
 }

@@ -9,6 +9,7 @@
 
 #include "capture_io/capture.h"
 #include "capture_io/parameter.h"
+#include "estimation/model/limits.h"
 #include "meshing/body.h"
 #include "render/optics.h"
 #include "simulation/energy_model.h"
@@ -23,6 +24,8 @@ struct Scene : std::enable_shared_from_this<Scene> {
   std::vector<std::vector<Photo>> photos;  ///< [example][photo], order of the capture
   /// Planes of the texture image (1 or 3), each at full size, half, quarter (coarse levels).
   std::vector<std::vector<std::shared_ptr<const Image>>> albedo;
+  /// What fits, floors, diagnoses and searches of it decide by. Never null.
+  std::shared_ptr<const Limits> limits = std::make_shared<const Limits>();
   std::shared_ptr<const TetMesh> mesh() const { return {body, &body->mesh}; }
   int example_index(const std::string& name) const;  ///< -1: none
 };
@@ -116,7 +119,8 @@ struct ModelForm {
 bool is_rest(const ExampleSpec& example);
 
 /// Scene of a capture: reads photos and builds the body.
-std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true);
+std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true,
+                                        const Limits& limits = {});
 /// Edge of a finer mesh over that of the told one: three times the unknowns.
 inline constexpr double kFinerEdge = 0.7;
 /// The scene with another mesh of the same body: `edge_factor` times the told edge, `order` 1 or 2

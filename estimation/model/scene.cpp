@@ -78,9 +78,11 @@ bool is_rest(const ExampleSpec& example) {
   return true;
 }
 
-std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos) {
+std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos,
+                                        const Limits& limits) {
   auto scene = std::make_shared<Scene>();
   scene->capture = capture;
+  scene->limits = std::make_shared<const Limits>(limits);
   scene->body = std::make_shared<const Body>(make_body(capture));
   scene->photos.resize(capture.examples.size());
   if (capture.body.texture == BodySpec::Texture::image)
@@ -98,6 +100,7 @@ std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, in
                                       bool with_photos) {
   auto out = std::make_shared<Scene>();
   out->capture = scene.capture;
+  out->limits = scene.limits;
   out->photos.resize(scene.capture.examples.size());
   out->body = std::make_shared<const Body>(remesh(scene.capture, *scene.body, edge_factor, order));
   if (!with_photos) return out;

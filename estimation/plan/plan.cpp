@@ -153,7 +153,7 @@ std::string summary(const Plan& plan) {
     if (plan.ratings.empty() || !plan.ratings.front().why_not.empty())
       return known + "; no further load or view could be rated";
     const PlanRating& best = plan.ratings.front();
-    if (best.worst.margin < kTie)
+    if (best.worst.margin < plan.tie)
       return known + "; none of the further loads and views would separate them";
     return known + "; best: " + best.sentence;
   }
@@ -177,6 +177,7 @@ bool better(const PlanRating& a, const PlanRating& b) {
 std::variant<Plan, NumericalFailure> plan(const Fitted& fitted, const Diagnosis& diagnosis,
                                           const PlanOptions& options) {
   Plan out;
+  out.tie = diagnosis.limits().tie;
   out.confused = options.between.empty() ? confused_effects(diagnosis) : options.between;
   if (out.confused.size() < 2) out.confused.clear();
   for (const auto& score : diagnosis.effects)

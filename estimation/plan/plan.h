@@ -61,6 +61,7 @@ struct Plan {
   std::vector<std::string> untestable;  ///< with the photos there are
   std::vector<PlanRating> ratings;      ///< best first; those that could not be rated last
   std::string sentence;
+  double tie = 0.0;  ///< DiagnosisLimits::tie: what separates at least
 };
 
 struct PlanOptions {

@@ -32,7 +32,8 @@ void drop_pictures(Fitted& fitted) {
 bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
   return numerical(effect) &&
          std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
-           return score.effect == effect && score.explains > 0.5;
+           return score.effect == effect &&
+                  score.explains > diagnosis.floor.limits->search.mesh_may_be_all;
          });
 }
 
@@ -54,22 +55,36 @@ const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
 /// numerical error that comes near the first is refitted too, whatever its rank, where it may be
 /// all there is: nothing is named before the mesh is settled. Where nobody is ahead of it by more
 /// than a tie it goes first, however far it got.
-void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most) {
+void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most,
+                  const Decided& decided) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
   const Racer winner = racers.front();
   std::vector<Racer> kept;
-  const EffectScore* mesh = mesh_ahead(diagnosis, kTie);
+  const EffectScore* mesh = mesh_ahead(diagnosis, diagnosis.limits().tie);
   int places = most;
   for (size_t i = 0; i < racers.size() && static_cast<int>(i) < most; ++i)
     places -= racers[i].effect == first;
   for (Racer& racer : racers) {
     const bool held = racer.effect == first || (mesh && racer.effect == mesh->effect) ||
                       sensors_alone(*racer.form.ingredients.back());
-    if (!held && !ties_with_first(diagnosis, racer.effect) && racer.out_of_reach_of(winner))
+    if (!held && !ties_with_first(diagnosis, racer.effect) && racer.out_of_reach_of(winner)) {
+      tell(decided,
+           {Asked::refitted,
+            racer.effect,
+            false,
+            {racer.chi(), winner.limits().out_of_reach * winner.chi(), "search.out_of_reach"},
+            "out of reach of " + winner.effect + " after the same steps"});
       continue;
+    }
     if (held || places-- > 0 || (may_be_all(racer.effect, diagnosis) && racer.may_tie_with(winner)))
       kept.push_back(std::move(racer));
+    else
+      tell(decided, {Asked::refitted,
+                     racer.effect,
+                     false,
+                     {racer.chi(), winner.chi(), "search.leaders"},
+                     fmt::format("{} others got farther in the screening", most)});
   }
   racers = std::move(kept);
   if (mesh)
@@ -81,11 +96,12 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
 /// photos to the floor. That step is no guess (the finer mesh was solved), the mesh is settled
 /// before anything is named, and what it leaves is diagnosed next: nobody needs to race.
 bool mesh_settles_it(const Step& step) {
-  const EffectScore* mesh = mesh_ahead(step.diagnosis, -kTie);
+  const EffectScore* mesh = mesh_ahead(step.diagnosis, -step.diagnosis.limits().tie);
   const double floor2 = step.diagnosis.floor.chi * step.diagnosis.floor.chi;
+  const double at = step.diagnosis.floor.limits->floor.at;
   const auto at_floor_after = [&](bool held_out, double share) {
     const double r2 = std::pow(step.fitted.evaluation.chi(held_out), 2);
-    return r2 - share * (r2 - floor2) <= kAtFloor * kAtFloor * floor2;
+    return r2 - share * (r2 - floor2) <= at * at * floor2;
   };
   return mesh && at_floor_after(false, mesh->explains) &&
          at_floor_after(true, mesh->explains_held_out);
@@ -97,11 +113,13 @@ bool mesh_settles_it(const Step& step) {
 /// to. On the mesh that is known to be wrong, whatever resembles its error would be named beside a
 /// small effect; what stands out on the finer one is diagnosed next.
 bool mesh_kept_its_word(const Step& step, const Fitted& refitted) {
-  const EffectScore* mesh = mesh_ahead(step.diagnosis, kTie);
-  if (!mesh || mesh->values[0] < 0.5 || mesh->values[0] > 4.0) return false;
+  const EffectScore* mesh = mesh_ahead(step.diagnosis, step.diagnosis.limits().tie);
+  const SearchLimits& limits = step.diagnosis.floor.limits->search;
+  if (!mesh || mesh->values[0] < limits.mesh_least || mesh->values[0] > limits.mesh_most)
+    return false;
   const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(false), 2); };
   const double structured = r2(step.fitted) - std::pow(step.diagnosis.floor.chi, 2);
-  return r2(step.fitted) - r2(refitted) >= 0.5 * mesh->explains * structured;
+  return r2(step.fitted) - r2(refitted) >= limits.mesh_keeps * mesh->explains * structured;
 }
 
 /// Adds to `racers` those that get farther beside the newest effect from where they stood before
@@ -169,13 +187,20 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
       std::none_of(racers.begin(), racers.end(), [](const Racer& one) { return one.at_floor(); }))
     if (auto failure = let_beaten_run(workspace, *beaten, options, events, racers)) return *failure;
   out.racers = racers;
-  keep_leaders(racers, entered, options.leaders);
+  keep_leaders(racers, entered, step.diagnosis.floor.limits->search.leaders, options.fit.decided);
   for (const Racer& racer : racers) {
     // Nothing can do better than the floor; once it is reached only a tie is of use.
-    if (!refits.empty() &&
-        at_floor(refits.front().fitted, step.diagnosis.floor, kLeftByRenderers) &&
-        !racer.may_tie_with(racers.front()))
+    if (!refits.empty() && on_floor(refits.front().fitted, step.diagnosis.floor) &&
+        !racer.may_tie_with(racers.front())) {
+      tell(options.fit.decided,
+           {Asked::refitted,
+            racer.effect,
+            false,
+            {racer.structured(), racer.limits().may_tie * racers.front().structured(),
+             "search.may_tie"},
+            refits.front().effect + " is at the floor, and this one is no tie"});
       continue;
+    }
     FitOptions fit = options.fit;
     for (const Refit& rival : refits) {
       const double chi = rival.fitted.evaluation.chi(false);
@@ -184,9 +209,18 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     auto result = announced(events, racer.effect, [&] { return refit(workspace, racer, fit); });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;
+      tell(options.fit.decided, {Asked::refitted, racer.effect, false, {}, failure->reason});
       continue;  // a model without equilibrium explains nothing
     }
     refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
+    tell(options.fit.decided,
+         {Asked::refitted,
+          racer.effect,
+          true,
+          {refits.back().fitted.evaluation.chi(false),
+           step.diagnosis.floor.limits->floor.at * step.diagnosis.floor.chi, "floor.at"},
+          fmt::format("refitted in {} iterations: what it leaves of fitted photos",
+                      refits.back().fitted.iterations)});
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
   }
   if (!refits.empty()) rank(out, step);
@@ -240,9 +274,8 @@ std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
 /// of four (linear steps of base models, bench/blind --small): where much is left, what takes less
 /// than a tenth of the fitted photos', of the held-out ones' and of the sensors' may be part of
 /// what has no name. Of ten effects of one size the first takes as much.
-constexpr double kWorthAName = 0.1;
-
-std::string why_refused(const Step& step, double before, const Refit& with) {
+Refusal why_refused(const Step& step, double before, const Refit& with) {
+  using Why = Refusal::Why;
   const Floor& floor = step.diagnosis.floor;
   const double least = least_fall(step.diagnosis, with.effect);
   const bool moves_photos = !sensors_alone(*with.fitted.form.ingredients.back());
@@ -250,32 +283,57 @@ std::string why_refused(const Step& step, double before, const Refit& with) {
     return std::pow(step.fitted.evaluation.chi(held_out), 2) -
            std::pow(with.fitted.evaluation.chi(held_out), 2);
   };
-  if (with.score < before + kNameable)
-    return with.effect + " was refitted, but what it takes away does not pay for its parameters";
+  const double pays = step.diagnosis.limits().nameable;
+  if (with.score < before + pays)
+    return {Why::does_not_pay, with.effect, {with.score - before, pays, "diagnosis.nameable"}};
   if (!held_out_allows(with.fitted, step.fitted, floor, least))
-    return with.effect + " was refitted, but the held-out examples speak against it";
+    return {Why::held_out_against, with.effect, {-fell(true), least, "diagnosis.tie"}};
   const double before_r2 = measured_r2(step.fitted.evaluation);
   const double after_r2 = measured_r2(with.fitted.evaluation);
   const bool speak = sensors_speak(before_r2 - after_r2, step.diagnosis);
-  const bool seen =
-      fell(false) >= least || (step.fitted.evaluation.chi(true) > kAtFloor * floor.chi &&
-                               fell(true) >= least_fall(step.diagnosis, with.effect, true));
+  const bool seen = fell(false) >= least ||
+                    (step.fitted.evaluation.chi(true) > floor.limits->floor.at * floor.chi &&
+                     fell(true) >= least_fall(step.diagnosis, with.effect, true));
   if (!seen && moves_photos && !speak)
-    return with.effect + " was refitted, but takes away less than renderers and meshes err by";
+    return {Why::too_little, with.effect, {fell(false), least, "floor.err_share"}};
   const auto leaves = [&](bool held_out) {
     const double before = over_floor(step.fitted, floor, held_out);
     return before > 0.0 ? over_floor(with.fitted, floor, held_out) / before : 1.0;
   };
   const double left = std::min({leaves(false), leaves(true), speak ? after_r2 / before_r2 : 1.0});
-  if (moves_photos && !numerical(with.effect) && !at_floor(with.fitted, floor) &&
-      left > 1.0 - kWorthAName)
-    return fmt::format(
-        "{} was refitted, but leaves {:.0f} % of what is over the floor: what is there takes more",
-        with.effect, 100.0 * left);
+  const double most = 1.0 - floor.limits->search.worth_a_name;
+  if (moves_photos && !numerical(with.effect) && !at_floor(with.fitted, floor) && left > most)
+    return {Why::more_is_there, with.effect, {left, most, "search.worth_a_name"}};
+  return {Why::none, with.effect, {with.score - before, pays, "diagnosis.nameable"}};
+}
+
+std::string Refusal::words() const {
+  switch (why) {
+    case Why::none:
+      return "";
+    case Why::does_not_pay:
+      return effect + " was refitted, but what it takes away does not pay for its parameters";
+    case Why::held_out_against:
+      return effect + " was refitted, but the held-out examples speak against it";
+    case Why::too_little:
+      return effect + " was refitted, but takes away less than renderers and meshes err by";
+    case Why::more_is_there:
+      return fmt::format(
+          "{} was refitted, but leaves {:.0f} % of what is over the floor: what is there takes "
+          "more",
+          effect, 100.0 * by.value);
+  }
   return "";
 }
 
-std::string refused_by(const Step& step, Refit with) {
+bool told_standing(const Decided& decided, const Refusal& refusal, std::source_location where) {
+  return tell(decided,
+              {Asked::stands, refusal.effect, !refusal, refusal.by,
+               refusal ? refusal.words() : "it says more than its parameters cost"},
+              where);
+}
+
+Refusal refused_by(const Step& step, Refit with) {
   const Yardstick yardstick{&with.fitted, &step.diagnosis.floor, measured_noise2(with.fitted)};
   with.score = refit_score(with.fitted, yardstick);
   return why_refused(step, refit_score(step.fitted, yardstick), with);

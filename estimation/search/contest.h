@@ -96,10 +96,27 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
                                                       const DiscoverOptions& options,
                                                       const DiscoverEvents& events);
 
-/// Why a refit does not stand beside the step that it started from, whose score is `before`; ""
-/// where it does.
-std::string why_refused(const Step& step, double before, const Refit& with);
+/// Why a refit does not stand beside the step that it started from.
+struct Refusal {
+  enum class Why {
+    none,              ///< it stands
+    does_not_pay,      ///< for its parameters
+    held_out_against,  ///< held-out examples speak against it
+    too_little,        ///< less than renderers and meshes err by
+    more_is_there,     ///< it leaves most of what is over the floor
+  };
+  Why why = Why::none;
+  std::string effect;
+  Compared by = {};
+  explicit operator bool() const { return why != Why::none; }
+  std::string words() const;  ///< "" where it stands
+};
+/// `before`: score of the step.
+Refusal why_refused(const Step& step, double before, const Refit& with);
 /// The same, both scored by what the refit leaves.
-std::string refused_by(const Step& step, Refit with);
+Refusal refused_by(const Step& step, Refit with);
+/// Tells of it; whether it stands.
+bool told_standing(const Decided& decided, const Refusal& refusal,
+                   std::source_location where = std::source_location::current());
 
 }  // namespace hookeye

@@ -99,7 +99,8 @@ class Search {
     const auto start = std::ssize(first.fitted.form.ingredients);
     out_.steps.push_back(std::move(first));
     // Swaps add nothing, and each betters the score; were they to go in circles, this ends it.
-    const size_t most_steps = 1 + 3 * static_cast<size_t>(std::max(options_.max_effects, 0));
+    const size_t most_steps =
+        1 + static_cast<size_t>(limits().steps_an_effect * std::max(most_effects(), 0));
     while (true) {
       if (auto failure = diagnose_newest()) return *failure;
       if (together_) {
@@ -111,7 +112,7 @@ class Search {
       out_.all = std::get<std::optional<FitToAll>>(std::move(to_all));
       if (out_.steps.size() >= most_steps) break;
       const auto added = std::ssize(newest().fitted.form.ingredients) - start;
-      const int room = options_.max_effects - static_cast<int>(added);
+      const int room = most_effects() - static_cast<int>(added);
       auto went_on = next_step(room);
       if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
       if (std::get<bool>(went_on)) continue;
@@ -130,6 +131,8 @@ class Search {
   using WentOn = std::variant<bool, NumericalFailure>;
 
   Step& newest() { return out_.steps.back(); }
+  int most_effects() const { return options_.max_effects.value_or(limits().max_effects); }
+  const SearchLimits& limits() const { return workspace_.scene().limits->search; }
   const FitToAll* all() const { return out_.all ? &*out_.all : nullptr; }
   bool cancelled() const { return options_.fit.cancel && *options_.fit.cancel; }
 
@@ -148,6 +151,7 @@ class Search {
     reach_for_mesh(step.fitted, step.diagnosis);
     out_.floor = step.diagnosis.floor;
     if (events_.step) events_.step(step);
+    for (const Decision& one : naming_decisions(step.diagnosis)) tell(options_.fit.decided, one);
     drop_pictures(step.fitted);
     return {};
   }
@@ -155,7 +159,7 @@ class Search {
   /// `room`: for how many effects more.
   WentOn next_step(int room) {
     mesh_refitted_ = false;
-    refused_.clear();
+    refused_ = {};
     auto widened = widened_form(false);
     if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
     if (std::get<bool>(widened)) return true;
@@ -180,12 +184,13 @@ class Search {
     if (auto failure = wider_.mend(contest, step, out_.floor)) return *failure;
     if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
                                        refused_swaps_, options_, events_);
-        found && refused_by(step, found->second.in).empty()) {
+        found && told_standing(options_.fit.decided, refused_by(step, found->second.in))) {
       add_two(*found->first, contest, swapped_step(std::move(found->second)));
       return true;
     }
+    tell_ranks(contest);
     refused_ = why_refused(step, contest.before, contest.refits.front());
-    if (!refused_.empty()) return add_pair(contest, room);
+    if (!told_standing(options_.fit.decided, refused_)) return add_pair(contest, room);
     add_winner(contest);
     return true;
   }
@@ -202,8 +207,7 @@ class Search {
         return false;
     for (size_t at = all.size(); at-- > base_;) {
       const std::string name = all[at]->name();
-      if (numerical(name) ||
-          (at_floor(step.fitted, out_.floor, kLeftByRenderers) && !wider_.came_to(*all[at])))
+      if (numerical(name) || (on_floor(step.fitted, out_.floor) && !wider_.came_to(*all[at])))
         continue;
       auto result = wider_.ask(step.fitted, at, out_.floor);
       if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
@@ -213,6 +217,16 @@ class Search {
       return true;
     }
     return false;
+  }
+
+  void tell_ranks(const Contest& contest) const {
+    const double best = contest.refits.front().score;
+    for (const Refit& one : contest.refits)
+      tell(options_.fit.decided, {Asked::ranked,
+                                  one.effect,
+                                  &one == &contest.refits.front(),
+                                  {one.score - best, 0.0, ""},
+                                  "penalised log-likelihood over that of the best refit"});
   }
 
   void add_two(const Refit& first, Contest& contest, Step second) {
@@ -239,9 +253,11 @@ class Search {
       auto tried = refit_pairs(workspace_, step, contest, options_, events_);
       if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
       pair = std::get<std::optional<Pair>>(std::move(tried));
-      if (!pair || !why_refused(step, contest.before, pair->second).empty()) return false;
+      if (!pair ||
+          !told_standing(options_.fit.decided, why_refused(step, contest.before, pair->second)))
+        return false;
     }
-    refused_.clear();
+    refused_ = {};
     add_two(pair->first, contest,
             step_with(std::move(pair->second.effect), std::move(pair->second.fitted)));
     return true;
@@ -253,9 +269,16 @@ class Search {
     next.name = next.added = winner.effect;
     next.raced = raced(contest.racers);
     next.rivals = rivals_of(contest, winner.score);
+    const double tie = newest().diagnosis.limits().tie;
     std::vector<const Refit*> equals;
     for (const auto& rival : contest.refits)
-      if (&rival != &winner && rival.score > winner.score - kTie) equals.push_back(&rival);
+      if (&rival != &winner &&
+          tell(options_.fit.decided, {Asked::tied,
+                                      rival.effect,
+                                      rival.score > winner.score - tie,
+                                      {rival.score - winner.score, -tie, "diagnosis.tie"},
+                                      "its score over that of " + winner.effect}))
+        equals.push_back(&rival);
     next.fitted = std::move(winner.fitted);
     losers_.clear();
     if (spoils_held_out(next.fitted, out_.floor))
@@ -358,7 +381,13 @@ class Search {
     if (out_.verdict != Verdict::unexplained && !out_.all)
       if (const std::string doubt = in_doubt(last); !doubt.empty())
         out_.verdict = Verdict::unexplained, why += doubt;
-    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_);
+    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_.words());
+    tell(options_.fit.decided, {Asked::ended,
+                                "",
+                                out_.verdict == Verdict::explained,
+                                {last.fitted.evaluation.chi(false),
+                                 out_.floor.limits->floor.at * out_.floor.chi, "floor.at"},
+                                out_.sentence});
     return std::move(out_);
   }
 
@@ -367,7 +396,7 @@ class Search {
   const DiscoverEvents& events_;
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;
-  std::string refused_;         ///< why the best of the last contest was not added
+  Refusal refused_;             ///< why the best of the last contest was not added
   bool mesh_refitted_ = false;  ///< in the last contest
   RefusedSwaps refused_swaps_;
   WiderForms wider_;

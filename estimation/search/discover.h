@@ -33,8 +33,7 @@ struct Contested {
 struct DiscoverOptions {
   FitOptions fit;
   DiagnosisOptions diagnosis;
-  int leaders = 3;  ///< effects refitted to the end at each step
-  int max_effects = 4;
+  std::optional<int> max_effects;  ///< empty: SearchLimits
   /// Of the steps up to the one that discover_from() starts at, that one with them.
   std::vector<std::string> tie;
   std::vector<Contested> past;

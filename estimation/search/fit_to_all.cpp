@@ -8,10 +8,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "capture_io/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/at_floor.h"
-#include "estimation/fit/evidence.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/measured_explained.h"
 #include "estimation/search/swaps.h"
@@ -88,7 +88,8 @@ double spread_of_photos(const Fitted& fitted, bool held_out) {
   const Eigen::MatrixXd VH = covariance_of(fitted) * shown_by_photos(fitted, held_out);
   const double mean = VH.trace(), half_variance = (VH * VH).trace();
   if (mean <= 0.0 || half_variance <= 0.0) return 0.0;
-  return half_variance / mean * chi2_point(mean * mean / half_variance);
+  const double chance = fitted.form.scene->limits->floor.chance;
+  return half_variance / mean * chi2_quantile(1.0 - chance, mean * mean / half_variance);
 }
 
 std::vector<std::string> values_hardly_known(const Fitted& fitted, const Fitted& all) {
@@ -103,7 +104,8 @@ std::vector<std::string> values_hardly_known(const Fitted& fitted, const Fitted&
   std::vector<std::string> out;
   for (Eigen::Index i = 0; i < moves.size(); ++i)
     for (size_t k = 0; k < there.size(); ++k)
-      if (moves[i] > 0.1 * moves.maxCoeff() && there[k].name == parameters[i].name)
+      if (moves[i] > fitted.form.scene->limits->search.value_moves * moves.maxCoeff() &&
+          there[k].name == parameters[i].name)
         out.push_back(fmt::format("{} {:.4g} (here {:.4g}, {:.4g} .. {:.4g})", parameters[i].name,
                                   all.p[k], fitted.p[i], fitted.low[i], fitted.high[i]));
   return out;
@@ -137,7 +139,13 @@ std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& wo
   use_as(out.fitted.form.scene->capture, all);
   const double err = least_fall(diagnosis, fitted.form.ingredients.back()->name());
   const double given_up = std::pow(out.chi_fit, 2) - std::pow(fitted.evaluation.chi(false), 2);
-  if (!explained || given_up > spread_of_photos(fitted, false) + err) return none;
+  const double most = spread_of_photos(fitted, false) + err;
+  if (!tell(options.decided, {Asked::ended,
+                              "values of all photos",
+                              explained && given_up <= most,
+                              {given_up, most, "floor.chance"},
+                              "what the fitted photos give up where held-out ones are fitted too"}))
+    return none;
   out.hardly_known = values_hardly_known(fitted, out.fitted);
   return std::optional(std::move(out));
 }
@@ -157,8 +165,9 @@ std::vector<std::string> tie_of_all(Workspace& workspace, const FitToAll& all,
     if (!tie.empty() && tie.front() == *effect) contest = tie;
     for (size_t k = 0; k < past.size(); ++k)
       for (const Rival& rival : past[k].rivals)
-        if (stands_for_winner(past, k) == *effect && rival.chi_fit <= kAtFloor * floor.chi &&
-            !numerical(rival.effect) && !has(standing, rival.effect) && !has(contest, rival.effect))
+        if (stands_for_winner(past, k) == *effect &&
+            rival.chi_fit <= floor.limits->floor.at * floor.chi && !numerical(rival.effect) &&
+            !has(standing, rival.effect) && !has(contest, rival.effect))
           contest.push_back(rival.effect);
     if (contest.size() < 2) continue;
     auto asked =

@@ -23,10 +23,10 @@ double spread_of_photos(const Fitted& fitted, bool held_out);
 std::vector<std::string> values_hardly_known(const Fitted& fitted, const Fitted& all);
 
 /// The model with all examples fitted, where fitted and held-out photos miss by no more than their
-/// values allow: one set of values then leaves each of both within kAtFloor of the floor, what is
-/// measured at its noise, and the fitted photos as they were but for what values and renderers
-/// (least_fall) err by. Empty where the held-out photos are at the floor, worse than the values
-/// make them, or where no such set is found.
+/// values allow: one set of values then leaves each of both within FloorLimits::at of the floor,
+/// what is measured at its noise, and the fitted photos as they were but for what values and
+/// renderers (least_fall) err by. Empty where the held-out photos are at the floor, worse than the
+/// values make them, or where no such set is found.
 std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& workspace,
                                                                    const Fitted& fitted,
                                                                    const Diagnosis& diagnosis,

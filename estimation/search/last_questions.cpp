@@ -13,7 +13,7 @@ LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const Discover
   if (explains_photos(newest.fitted, newest.diagnosis.floor)) return std::nullopt;
   for (const EffectScore& score : newest.diagnosis.effects) {
     if (!numerical(score.effect) || !score.testable ||
-        score.evidence < std::max(kNameable, newest.diagnosis.gate))
+        score.evidence < std::max(newest.diagnosis.limits().nameable, newest.diagnosis.gate))
       continue;
     auto result = announced(events, score.effect, [&] {
       return add_effect(workspace, newest.fitted, score, options.fit);
@@ -23,7 +23,8 @@ LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const Discover
       continue;
     }
     Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};
-    if (refused_by(newest, refit).empty()) return step_with(score.effect, std::move(refit.fitted));
+    if (told_standing(options.fit.decided, refused_by(newest, refit)))
+      return step_with(score.effect, std::move(refit.fitted));
   }
   return std::nullopt;
 }
@@ -79,7 +80,7 @@ LastAnswer wider_loser(Workspace& workspace, const Step& newest, const std::vect
     Refit wide{loser.effect, std::get<Fitted>(std::move(result)), 0.0};
     const Yardstick yardstick{&wide.fitted, &floor, measured_noise2(wide.fitted)};
     wide.score = refit_score(wide.fitted, yardstick);
-    if (wide.score < refit_score(last, yardstick) - kTie ||
+    if (wide.score < refit_score(last, yardstick) - newest.diagnosis.limits().tie ||
         held_out_allows(last, wide.fitted, floor))
       continue;
     return swapped_step({newest.added, std::move(wide)});

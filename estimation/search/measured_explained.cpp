@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "estimation/fit/evidence.h"
+#include "capture_io/distributions.h"
 
 namespace hookeye {
 
@@ -30,7 +30,9 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::s
                                 told.region),
               spec.name, worst);
       }
-    if (count > 0.0 && sum / noise2 > chi2_point(count)) fine = false;
+    if (count > 0.0 &&
+        sum / noise2 > chi2_quantile(1.0 - diagnosis.floor.limits->floor.chance, count))
+      fine = false;
   }
   if (fine && why) why->clear();
   return fine;

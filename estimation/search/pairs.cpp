@@ -40,7 +40,7 @@ std::variant<std::optional<Pair>, NumericalFailure> on_finer_mesh(
       continue;
     }
     Fitted& both = std::get<Fitted>(result);
-    if (refused_by(step, {best.effect, both, 0.0}).empty())
+    if (!refused_by(step, {best.effect, both, 0.0}))
       return Pair{best, {score.effect, std::move(both), 0.0}};
   }
   return std::nullopt;
@@ -87,7 +87,8 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_beside_best(
   const Refit& best = contest.refits.front();
   const Floor& floor = step.diagnosis.floor;
   if (numerical(best.effect) ||
-      over_floor(best.fitted, floor, false) > 0.5 * over_floor(step.fitted, floor, false) ||
+      over_floor(best.fitted, floor, false) >
+          floor.limits->search.pair_takes * over_floor(step.fitted, floor, false) ||
       held_out_allows(best.fitted, step.fitted, floor, least_fall(step.diagnosis, best.effect)))
     return std::nullopt;
   auto diagnosed = diagnose(workspace, best.fitted, options.diagnosis);
@@ -105,8 +106,8 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_beside_best(
   if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
   auto& second = std::get<Contest>(refitted);
   for (Refit& both : second.refits)
-    if (why_refused(beside, second.before, both).empty() &&
-        refused_by(step, {best.effect, both.fitted, 0.0}).empty())
+    if (!why_refused(beside, second.before, both) &&
+        !refused_by(step, {best.effect, both.fitted, 0.0}))
       return Pair{best, std::move(both)};
   return std::nullopt;
 }

@@ -14,9 +14,6 @@
 namespace hookeye {
 namespace {
 
-/// Refinements that are fitted at once.
-constexpr int kMostAtOnce = 6;
-
 struct Scored {
   size_t index;
   double evidence;
@@ -47,8 +44,9 @@ std::variant<std::vector<Scored>, NumericalFailure> score(Workspace& workspace,
     hypothesis.typical = VectorXd::Constant(1, t.typical);
     hypothesis.one_sided = t.low == 0.0;
     const ProjectedHypothesis projected = project(sums.H, base, hypothesis);
-    out.push_back(
-        {i, log_evidence(projected, sums.s, without_base(sums, base), sums.count, sums.floor2)});
+    out.push_back({i, log_evidence(projected, sums.s,
+                                   without_base(sums, base, fitted.form.scene->limits->diagnosis),
+                                   sums.count, sums.floor2)});
   }
   std::sort(out.begin(), out.end(),
             [](const Scored& a, const Scored& b) { return a.evidence > b.evidence; });
@@ -84,11 +82,11 @@ RefinementStage stage_of(const std::string& what, double evidence, const Fitted&
 /// What the residual asks for, by falling evidence: functions of one component, and couplings of
 /// two; grids of control points only where it asks for none of these. A grid bends as a function of
 /// one component would and more, and has many values that other motions then feel.
-std::vector<Scored> asked_for(const std::vector<Refinement>& all,
-                              const std::vector<Scored>& ranked) {
+std::vector<Scored> asked_for(const std::vector<Refinement>& all, const std::vector<Scored>& ranked,
+                              const Limits& limits) {
   std::vector<Scored> simple, grids;
   for (const Scored& one : ranked)
-    if (one.evidence >= kTie) (all[one.index].grid ? grids : simple).push_back(one);
+    if (one.evidence >= limits.diagnosis.tie) (all[one.index].grid ? grids : simple).push_back(one);
   return simple.empty() ? grids : simple;
 }
 
@@ -101,13 +99,13 @@ struct Next {
   double evidence;
 };
 std::vector<Next> next_models(const std::vector<AdditiveModel>& present,
-                              const std::vector<Refinement>& all,
-                              const std::vector<Scored>& ranked) {
+                              const std::vector<Refinement>& all, const std::vector<Scored>& ranked,
+                              const Limits& limits) {
   std::vector<Next> out;
   Next together{"", present, 0.0};
   int count = 0;
-  for (const Scored& one : asked_for(all, ranked)) {
-    if (count == kMostAtOnce) break;
+  for (const Scored& one : asked_for(all, ranked, limits)) {
+    if (count == limits.search.refinements_at_once) break;
     const Refinement& refinement = all[one.index];
     refinement.add(together.models[refinement.material]);
     together.what += (count++ ? ", " : "") + refinement.what;
@@ -135,7 +133,8 @@ std::variant<std::optional<Fitted>, NumericalFailure> one_more(
   std::vector<AdditiveModel> models;
   for (const AdditivePart& part : additive_parts(present.form, present.p))
     models.push_back(part.model);
-  for (const Next& one : next_models(models, all, std::get<std::vector<Scored>>(scored))) {
+  for (const Next& one : next_models(models, all, std::get<std::vector<Scored>>(scored),
+                                     *present.form.scene->limits)) {
     const auto [larger, p] = with_structures(present.form, present.p, one.models);
     auto result = fit(workspace, larger, p, options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {

@@ -38,7 +38,7 @@ using AdditiveStart = std::pair<ModelForm, VectorXd>;
 /// energy does not find back; the capture's own are the other start): refinements one after the
 /// other, scored without refitting, the leading ones fitted; what is returned agrees best with the
 /// held-out examples, and `Fitted::refinements` tells which led there. Without held-out examples
-/// the log evidence alone decides (kTie).
+/// the log evidence alone decides (DiagnosisLimits::tie).
 std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace,
                                                        const std::vector<AdditiveStart>& starts,
                                                        const ProgressiveOptions& options = {});

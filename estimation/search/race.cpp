@@ -12,8 +12,6 @@ namespace hookeye {
 
 namespace {
 
-constexpr size_t kSecondRound = 4;
-
 /// After its second step, or where it stands if there is none.
 const Trial& newest(const Racer& racer) { return racer.next ? *racer.next : racer.trial; }
 
@@ -24,8 +22,9 @@ bool gets_farther(const Racer& one, const Racer& other, const TrialScale& scale)
   const auto taken = [&](const Racer& racer) {
     return scale.chi * scale.chi - std::pow(newest(racer).chi_fit, 2);
   };
-  if (taken(one) < 0.5 * taken(other)) return false;
-  if (taken(other) < 0.5 * taken(one)) return true;
+  const double least = one.limits().farther;
+  if (taken(one) < least * taken(other)) return false;
+  if (taken(other) < least * taken(one)) return true;
   const auto chi = [](const Racer& racer) {
     return newest(racer).chi_fit + newest(racer).chi_validate;
   };
@@ -72,10 +71,10 @@ void sort_by_success(std::vector<Racer>& racers) {
 }
 
 /// Photos of `left` keep at most a tenth of what `start` had over the floor, fitted and held-out.
-bool explains_nearly_all(const Trial& left, const TrialScale& start) {
+bool explains_nearly_all(const Trial& left, const TrialScale& start, const SearchLimits& limits) {
   const double floor2 = start.floor * start.floor;
   const auto nearly = [&](double after, double before) {
-    return after * after - floor2 <= 0.1 * std::max(0.0, before * before - floor2);
+    return after * after - floor2 <= limits.nearly_all * std::max(0.0, before * before - floor2);
   };
   return nearly(left.chi_fit, start.chi) && nearly(left.chi_validate, start.chi_validate);
 }
@@ -86,29 +85,41 @@ bool explains_nearly_all(const Trial& left, const TrialScale& start) {
 bool no_rival(const EffectScore& score, const Diagnosis& diagnosis, const Racer& first,
               const TrialScale& start) {
   const EffectScore& led = diagnosis.effects.front();
-  if (first.effect != led.effect || !explains_nearly_all(newest(first), start) ||
+  if (first.effect != led.effect || !explains_nearly_all(newest(first), start, first.limits()) ||
       sensors_alone(*score.best) || ties_with_first(diagnosis, score.effect) ||
-      score.explains > 0.5 * led.explains)
+      score.explains > first.limits().promises * led.explains)
     return false;
   const double chi2 = start.chi * start.chi, floor2 = start.floor * start.floor;
-  return std::sqrt(chi2 - score.explains * (chi2 - floor2)) > 3.0 * newest(first).chi_fit;
+  return std::sqrt(chi2 - score.explains * (chi2 - floor2)) >
+         first.limits().out_of_reach * newest(first).chi_fit;
+}
+
+void tell_of_trial(const FitOptions& options, const Racer& racer, const TrialScale& start) {
+  tell(options.decided,
+       {Asked::screened,
+        racer.effect,
+        true,
+        {racer.chi(), start.chi + start.chi_validate, ""},
+        "what one step leaves at half size, fitted and held out, of what there was"});
 }
 
 }  // namespace
 
 bool ties_with_first(const Diagnosis& diagnosis, const std::string& effect) {
   return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
-    return score.effect == effect && score.evidence > diagnosis.effects.front().evidence - kTie;
+    return score.effect == effect &&
+           score.evidence > diagnosis.effects.front().evidence - diagnosis.limits().tie;
   });
 }
 
 bool Racer::at_floor() const {
-  const double most = kAtFloor * trial.floor;
+  const double most = form.scene->limits->floor.at * trial.floor;
   return trial.chi_fit <= most && trial.chi_validate <= most;
 }
 
 double Racer::structured() const {
-  const double f2 = trial.floor * trial.floor, least = kLeftByRenderers * kLeftByRenderers - 1.0;
+  const double f2 = trial.floor * trial.floor;
+  const double least = std::pow(form.scene->limits->floor.on, 2) - 1.0;
   const auto over = [&](double chi) { return std::sqrt(std::max(chi * chi - f2, least * f2)); };
   return over(trial.chi_fit) + (trial.chi_validate > 0.0 ? over(trial.chi_validate) : 0.0);
 }
@@ -156,14 +167,25 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
   if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
   for (const EffectScore& score : diagnosis.effects) {
     if (!nameable(score, diagnosis)) continue;
-    if (!racers.empty() && no_rival(score, diagnosis, racers.front(), std::get<TrialScale>(scale)))
+    if (!racers.empty() &&
+        no_rival(score, diagnosis, racers.front(), std::get<TrialScale>(scale))) {
+      tell(options.decided,
+           {Asked::screened,
+            score.effect,
+            false,
+            {score.explains, racers.front().limits().promises * diagnosis.effects.front().explains,
+             "search.promises"},
+            racers.front().effect + " explains nearly all, and this promises too little to tie"});
       continue;
+    }
     auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
     if (auto* failure = std::get_if<NumericalFailure>(&entered)) {
       if (cancelled(*failure)) return *failure;
+      tell(options.decided, {Asked::screened, score.effect, false, {}, failure->reason});
       continue;
     }
     racers.push_back(std::get<Racer>(std::move(entered)));
+    tell_of_trial(options, racers.back(), std::get<TrialScale>(scale));
     if (tried) tried(racers.back());
     if (racers.size() > 1 || &score == &diagnosis.effects.back()) continue;
     // The first is asked for its second step at once: who need not run shows then.
@@ -178,10 +200,24 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
   for (size_t i = 0; i < racers.size() && (racers.size() > 1 || first.next); ++i) {
     // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
     const std::string& effect = racers[i].effect;
+    const bool late = static_cast<int>(i) >= first.limits().second_round;
     if (effect != diagnosis.effects.front().effect &&
-        (i >= kSecondRound ||
-         (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect))))
+        (late || (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect)))) {
+      tell(options.decided,
+           late ? Decision{Asked::screened,
+                           effect,
+                           false,
+                           {double(i + 1), double(first.limits().second_round),
+                            "search.second_round"},
+                           "others got farther in their first step: no second one"}
+                : Decision{Asked::screened,
+                           effect,
+                           false,
+                           {racers[i].chi(), first.limits().out_of_reach * first.chi(),
+                            "search.out_of_reach"},
+                           "out of reach of " + first.effect + " after one step"});
       continue;
+    }
     if (auto stopped = run_on(workspace, racers[i], std::get<TrialScale>(scale), options, tried))
       return *stopped;
   }
@@ -211,7 +247,8 @@ std::variant<std::vector<Racer>, NumericalFailure> race_beside(
     beside.push_back(std::move(racer));
   }
   sort_by_success(beside);
-  for (size_t i = 0; i < std::min(beside.size(), kSecondRound); ++i) {
+  const auto second = static_cast<size_t>(before.form.scene->limits->search.second_round);
+  for (size_t i = 0; i < std::min(beside.size(), second); ++i) {
     if (auto stopped = run_on(workspace, beside[i], std::get<TrialScale>(scale), options, tried))
       return *stopped;
   }

@@ -21,16 +21,21 @@ struct Racer {
   std::optional<Trial> next;  ///< after one step more: of the first four within reach
   double chi() const { return trial.chi_fit + trial.chi_validate; }
   /// The part of it that is no noise, on fitted and on held-out photos; at least what
-  /// kLeftByRenderers times the floor is.
+  /// FloorLimits::on times the floor is.
   double structured() const;
-  /// Fitted and held-out photos within kAtFloor of it.
+  /// Fitted and held-out photos within FloorLimits::at of it.
   bool at_floor() const;
-  /// Left with three times the misfit of another after as many steps: nobody came from there to
-  /// win, and the refit of a field costs as much as all others.
-  bool out_of_reach_of(const Racer& other) const { return chi() > 3.0 * other.chi(); }
-  /// A tie needs equals: a rival that after as many steps is left with half as much misfit again is
-  /// none.
-  bool may_tie_with(const Racer& other) const { return structured() < 1.5 * other.structured(); }
+  /// Left with SearchLimits::out_of_reach times the misfit of another after as many steps: nobody
+  /// came from there to win, and the refit of a field costs as much as all others.
+  bool out_of_reach_of(const Racer& other) const {
+    return chi() > limits().out_of_reach * other.chi();
+  }
+  /// A tie needs equals: a rival that after as many steps is left with SearchLimits::may_tie times
+  /// the misfit is none.
+  bool may_tie_with(const Racer& other) const {
+    return structured() < limits().may_tie * other.structured();
+  }
+  const SearchLimits& limits() const { return form.scene->limits->search; }
 };
 
 /// Of as much evidence as the effect of the largest: two steps from afar say less than the scores.

@@ -63,10 +63,16 @@ std::optional<std::pair<ModelForm, VectorXd>> with_other_form(
   return std::pair{std::move(other), std::move(there)};
 }
 
+/// "stiffness_field as 'ball'" of the last effect.
+std::string form_in_words(const ModelForm& form) {
+  const Ingredient& last = *form.ingredients.back();
+  return last.name() + " as '" + last.variant() + "'";
+}
+
 /// One of the last effect's numbers that `plainer` does without is off its null by more than five
 /// standard deviations: that is worth 25/2 of log-likelihood, and two numbers cost log N.
 bool pays_for_itself(const Fitted& fitted, const Ingredient& plainer) {
-  constexpr double kDeviations = 5.0;
+  const double deviations = fitted.form.scene->limits->search.kept_deviations;
   const auto kept = plainer.parameters(), all = fitted.form.ingredients.back()->parameters();
   const Eigen::Index first = fitted.p.size() - static_cast<Eigen::Index>(all.size());
   for (size_t i = 0; i < all.size(); ++i) {
@@ -74,7 +80,7 @@ bool pays_for_itself(const Fitted& fitted, const Ingredient& plainer) {
       continue;
     const Eigen::Index k = first + static_cast<Eigen::Index>(i);
     const double deviation = 0.5 * (fitted.high[k] - fitted.low[k]) / kNormal95;
-    if (std::abs(fitted.p[k] - all[i].value) > kDeviations * deviation) return true;
+    if (std::abs(fitted.p[k] - all[i].value) > deviations * deviation) return true;
   }
   return false;
 }
@@ -92,7 +98,13 @@ std::variant<Fitted, NumericalFailure> fit_plainest(Workspace& workspace, Fitted
   }
   const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
   const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
-  return refit_score(std::get<Fitted>(second), yardstick) >= refit_score(fitted, yardstick)
+  const double gain =
+      refit_score(std::get<Fitted>(second), yardstick) - refit_score(fitted, yardstick);
+  return tell(options.decided, {Asked::widened,
+                                form_in_words(other->first),
+                                gain >= 0.0,
+                                {gain, 0.0, ""},
+                                "plainer: score over that of the form with more numbers"})
              ? second
              : fitted;
 }
@@ -114,8 +126,13 @@ std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const 
     return fit_plainest(workspace, std::move(*larger), options);
   }
   Fitted& smaller = std::get<Fitted>(second);
-  return fit_plainest(workspace, std::move(misfit(smaller) <= misfit(*larger) ? smaller : *larger),
-                      options);
+  const bool as_good =
+      tell(options.decided, {Asked::widened,
+                             form_in_words(other->first),
+                             misfit(smaller) <= misfit(*larger),
+                             {misfit(smaller), misfit(*larger), ""},
+                             "smaller: misfit, fitted and held out, against the larger form's"});
+  return fit_plainest(workspace, std::move(as_good ? smaller : *larger), options);
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& flo
   if (r2(with) > r2(without) + least)
     loss += photo_misfit(without, with, true).log_likelihood(floor.cell_variance) -
             photo_misfit(with, with, true).log_likelihood(floor.cell_variance);
-  return loss < kTie;
+  return loss < floor.limits->diagnosis.tie;
 }
 
 }  // namespace hookeye

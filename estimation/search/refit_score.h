@@ -30,11 +30,11 @@ double measured_noise2(const Fitted& fitted);
 double refit_score(const Fitted& fitted, const Yardstick& yardstick);
 
 /// Whether the held-out examples speak against `with`: by their log-likelihood, less than a tie
-/// (kTie) is no word. Nor is a rise of the photos' chi^2 by no more than `least`, which meshes and
-/// renderers err by (least_fall): once all else is white, likelihood tells hundredths of a pixel,
-/// and an effect that took away nine tenths of the fitted misfit was refused for them. An effect
-/// that no held-out example can show, like a contact in one load case, is judged by the fitted
-/// ones.
+/// (DiagnosisLimits::tie) is no word. Nor is a rise of the photos' chi^2 by no more than `least`,
+/// which meshes and renderers err by (least_fall): once all else is white, likelihood tells
+/// hundredths of a pixel, and an effect that took away nine tenths of the fitted misfit was refused
+/// for them. An effect that no held-out example can show, like a contact in one load case, is
+/// judged by the fitted ones.
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor,
                      double least = 0.0);
 

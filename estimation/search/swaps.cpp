@@ -35,7 +35,9 @@ bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Paramet
   for (size_t k = 0; k < own.size(); ++k) {
     const auto i = offset + static_cast<Eigen::Index>(k);
     const double deviation = (fitted.high[i] - fitted.low[i]) / (2.0 * kNormal95);
-    if (std::abs(fitted.p[i] - own[k].value) > 15.0 * deviation) return true;
+    if (std::abs(fitted.p[i] - own[k].value) >
+        fitted.form.scene->limits->search.stands_deviations * deviation)
+      return true;
   }
   return false;
 }
@@ -72,7 +74,7 @@ std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, si
     if (known && misfit(*known) < least) least = misfit(*known), start = p;
   }
   FitOptions from_there = options;
-  from_there.coarse_to_fine = least > 2.0 * misfit(fitted);
+  from_there.coarse_to_fine = least > form.scene->limits->search.coarse_again * misfit(fitted);
   auto result = fit(workspace, form, start, from_there);
   if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
   return {};
@@ -89,8 +91,13 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
     if (remeshed_by(one) || stands(current, offset_of(current.form, i), one.parameters())) continue;
     auto lighter = fit_without(workspace, current, i, options.fit);
     if (!lighter) continue;
-    const double score = refit_score(*lighter, yardstick);
-    if (score > full - kTie) return Refit{one.name(), std::move(*lighter), score};
+    const double score = refit_score(*lighter, yardstick), tie = floor.limits->diagnosis.tie;
+    if (tell(options.fit.decided, {Asked::dropped,
+                                   one.name(),
+                                   score > full - tie,
+                                   {score - full, -tie, "diagnosis.tie"},
+                                   "score without it over that with it"}))
+      return Refit{one.name(), std::move(*lighter), score};
   }
   return {};
 }
@@ -110,7 +117,13 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
     }
     if (!null) continue;
     auto lighter = fit_without(workspace, fitted, i, options.fit);
-    if (lighter && at_floor(*lighter, floor))
+    if (lighter && tell(options.fit.decided,
+                        {Asked::dropped,
+                         all[i]->name(),
+                         at_floor(*lighter, floor),
+                         {std::max(lighter->evaluation.chi(false), lighter->evaluation.chi(true)),
+                          floor.limits->floor.at * floor.chi, "floor.at"},
+                         "its intervals hold its null; what stays without it"}))
       return Refit{all[i]->name(), std::move(*lighter), 0.0};
   }
   return {};
@@ -119,7 +132,7 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
 bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& winner,
                        const std::string& dropped, const Floor& floor, const FitOptions& options) {
   const Yardstick yardstick{&winner, &floor, measured_noise2(winner)};
-  const double enough = refit_score(winner, yardstick) - kTie;
+  const double enough = refit_score(winner, yardstick) - floor.limits->diagnosis.tie;
   if (refit_score(rival, yardstick) > enough) return true;
   for (size_t i = 0; i < rival.form.ingredients.size(); ++i)
     if (rival.form.ingredients[i]->name() == dropped) {
@@ -145,7 +158,7 @@ std::vector<const EffectScore*> doubles_of(const Ingredient& dropped, const Diag
   std::vector<const EffectScore*> out;
   for (const EffectScore& score : diagnosis.effects)
     if (nameable(score, diagnosis) && !numerical(score.effect) &&
-        score.evidence > diagnosis.effects.front().evidence - kTie &&
+        score.evidence > diagnosis.effects.front().evidence - diagnosis.limits().tie &&
         (!same_form(*score.best, dropped) || score.other_form))
       out.push_back(&score);
   return out;
@@ -199,7 +212,7 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
                                     const DiscoverOptions& options, const DiscoverEvents& events) {
   std::optional<Swap> best;
   if (fitted.form.ingredients.size() < first_effect + 2 || at_floor(fitted, floor)) return best;
-  double enough = kNameable;
+  double enough = floor.limits->diagnosis.nameable;
   for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
     if (best && at_floor(best->in.fitted, floor)) break;
     const Ingredient& dropped = *fitted.form.ingredients[i];
@@ -213,7 +226,13 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
       if (!refit) continue;
       refit->score = score_above(refit->fitted, fitted, floor);
-      if (refit->score < kNameable || same_form(*refit->fitted.form.ingredients.back(), dropped))
+      tell(options.fit.decided, {Asked::swapped,
+                                 score->effect + " in place of " + dropped.name(),
+                                 refit->score >= enough,
+                                 {refit->score, enough, "diagnosis.nameable"},
+                                 "score with it over that with the other"});
+      if (refit->score < floor.limits->diagnosis.nameable ||
+          same_form(*refit->fitted.form.ingredients.back(), dropped))
         refused.emplace(asked, RefusedSwap{refit->fitted.form, refit->fitted.p});
       else if (refit->score >= enough)
         enough = refit->score, best = Swap{dropped.name(), std::move(*refit)};
@@ -228,7 +247,9 @@ namespace {
 /// distance from which nobody in a race came to win (Racer::out_of_reach_of).
 bool falls_short(Workspace& workspace, Racer racer, const Racer& last, const TrialScale& scale,
                  const FitOptions& options) {
-  const auto far = [&] { return racer.structured() > 3.0 * last.structured(); };
+  const auto far = [&] {
+    return racer.structured() > last.limits().out_of_reach * last.structured();
+  };
   if (!far()) return false;
   auto result = follow(workspace, racer.form, racer.trial.p, scale, options);
   auto* followed = std::get_if<Followed>(&result);
@@ -298,7 +319,7 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
     const auto without = diagnosed(
         workspace, *all[i], lighter ? std::optional(std::move(*lighter)) : std::nullopt, options);
     if (!without) return {};
-    const bool ties_alone = at_floor(last, floor, kLeftByRenderers);
+    const bool ties_alone = on_floor(last, floor);
     for (Refit& refit :
          refit_in_reach(workspace, *without, last, open, ties_alone, options, events))
       refits.push_back(std::move(refit));
@@ -306,8 +327,16 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
   TieAsked out;
   for (Refit& refit : refits) {
     refit.score = score_above(refit.fitted, last, floor);
-    if (refit.score > -kTie) out.tie.push_back(refit.effect);
-    if (refit.score > kTie && (!out.better || refit.score > out.better->in.score))
+    const double tie_margin = floor.limits->diagnosis.tie;
+    if (tell(options.fit.decided,
+             {Asked::tied,
+              refit.effect,
+              refit.score > -tie_margin,
+              {refit.score, -tie_margin, "diagnosis.tie"},
+              "asked again in place of " + tie.front() + ": its score over that"}))
+      out.tie.push_back(refit.effect);
+    if (refit.score > floor.limits->diagnosis.tie &&
+        (!out.better || refit.score > out.better->in.score))
       out.better = Swap{tie.front(), std::move(refit)};
   }
   if (out.better)
@@ -333,7 +362,8 @@ std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
   const Yardstick yardstick{&swap->in.fitted, &floor, measured_noise2(swap->in.fitted)};
   swap->in.score = refit_score(swap->in.fitted, yardstick);
   if (std::any_of(refits.begin(), refits.end(), [&](const Refit& refit) {
-        return refit_score(refit.fitted, yardstick) > swap->in.score - kNameable;
+        return refit_score(refit.fitted, yardstick) >
+               swap->in.score - floor.limits->diagnosis.nameable;
       }))
     return {};
   return std::pair{&*found, std::move(*swap)};

@@ -62,15 +62,15 @@ using RefusedSwaps = std::map<std::string, RefusedSwap>;
 /// Two effects or more are not enough: one of them may stand for another. It was chosen while the
 /// others were missing, or is a double that only the held-out photos tell from the right one (creep
 /// and softening, of two loads). Each is dropped, what leads then or ties with the leader is
-/// refitted in its place, and the best of these is it if its score is higher by kNameable. Empty:
-/// none is, or the model is at the floor.
+/// refitted in its place, and the best of these is it if its score is higher by
+/// DiagnosisLimits::nameable. Empty: none is, or the model is at the floor.
 std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, const Floor& floor,
                                     size_t first_effect, RefusedSwaps& refused,
                                     const DiscoverOptions& options, const DiscoverEvents& events);
 
 /// The same for the best of `refits` that explains the fitted photos alone, where none is at the
-/// floor of both and with the swap it scores higher than all of them by kNameable: an effect added
-/// before, or its form, keeps the right one (or the mesh) from winning.
+/// floor of both and with the swap it scores higher than all of them by DiagnosisLimits::nameable:
+/// an effect added before, or its form, keeps the right one (or the mesh) from winning.
 std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
     Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
     RefusedSwaps& refused, const DiscoverOptions& options, const DiscoverEvents& events);

@@ -42,8 +42,8 @@ namespace {
 std::string hidden_by_mesh(const Diagnosis& diagnosis) {
   for (const EffectScore& effect : diagnosis.effects)
     if (effect.testable && !numerical(effect.effect) &&
-        effect.evidence >= std::max(kNameable, diagnosis.gate) && effect.fall < effect.mesh_fall &&
-        effect.mesh_fall >= least_fall(diagnosis, effect.effect))
+        effect.evidence >= std::max(diagnosis.limits().nameable, diagnosis.gate) &&
+        effect.fall < effect.mesh_fall && effect.mesh_fall >= least_fall(diagnosis, effect.effect))
       return fmt::format(
           ", and {} stands out by less than a mesh finer still would change: give the body one "
           "(mesh: {{edge: ...}}) and run again",
@@ -84,7 +84,8 @@ std::string left_in_one_camera(const Fitted& fitted, const Floor& floor) {
   if (!at_floor(fitted, floor) || explains_photos(fitted, floor)) return "";
   const CameraOverFloor most = most_over_floor(fitted, floor);
   return fmt::format(", but {:.2f} times its own in the {} photos of camera '{}', more than {:g}",
-                     most.times, most.held_out ? "held-out" : "fitted", most.camera, kAtFloor);
+                     most.times, most.held_out ? "held-out" : "fitted", most.camera,
+                     floor.limits->floor.at);
 }
 
 bool seen(const Fitted& fitted) {
@@ -108,8 +109,9 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
         held_out > 0.0 ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
                                      seen(fitted) ? "photos" : "values")
                        : "",
-        photos || at_floor(fitted, diagnosis.floor) ? ""
-                                                    : fmt::format(", more than {:g}", kAtFloor));
+        photos || at_floor(fitted, diagnosis.floor)
+            ? ""
+            : fmt::format(", more than {:g}", diagnosis.floor.limits->floor.at));
     if (!all) *why += left_in_one_camera(fitted, diagnosis.floor);
     if (!sensors.empty()) *why += ", but " + sensors;
     if (all) *why += held_out_by_values(*all, diagnosis.floor);
@@ -119,11 +121,11 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
     else if (!photos)
       *why += spoils_held_out(fitted, diagnosis.floor) ? shown_by_held_out(fitted)
                                                        : hidden_by_mesh(diagnosis);
-    else if (measured && !all && !at_floor(fitted, diagnosis.floor, kLeftByRenderers))
+    else if (measured && !all && !on_floor(fitted, diagnosis.floor))
       *why += fmt::format(
           ", over {:g}: what the mesh or the renderer may err by, or something small that is not "
           "named",
-          kLeftByRenderers);
+          diagnosis.floor.limits->floor.on);
   }
   // Two that leave as much are no answer to choose from where that is much.
   if (!photos || !measured) return Verdict::unexplained;
@@ -148,10 +150,10 @@ std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis,
                        const TakenByNames& taken) {
   // The rest photos' floor is shading and texture gone wrong: of brightness' own kind.
   Floor floor = diagnosis.floor;
-  const bool bright = floor.chi > kLeftByRenderers && brightness_alone_is_named(fitted);
+  const bool bright = floor.chi > floor.limits->floor.on && brightness_alone_is_named(fitted);
   if (bright) floor.chi = 1.0;
   const bool named = taken.fit > 0.0 || taken.held_out > 0.0;
-  if (!named || !seen(fitted) || at_floor(fitted, floor, kLeftByRenderers) ||
+  if (!named || !seen(fitted) || on_floor(fitted, floor) ||
       sensors_speak(taken.measured, diagnosis) || taken.fit >= over_floor(fitted, floor, false) ||
       taken.held_out > over_floor(fitted, floor, true))
     return "";
@@ -171,7 +173,7 @@ std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis,
 
 std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
   const Floor& floor = diagnosis.floor;
-  if (at_floor(fitted, floor, kLeftByRenderers)) return "";
+  if (on_floor(fitted, floor)) return "";
   const auto most =
       std::max_element(floor.moved_at_rest.begin(), floor.moved_at_rest.end(),
                        [](auto& one, auto& other) { return one.second < other.second; });
@@ -181,7 +183,9 @@ std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
   const double rough = floor.chi * floor.chi - 1.0;
   // Less than a tenth of what stays says nothing of the rest of it.
   const double stays = std::max(over_floor(fitted, floor, false), over_floor(fitted, floor, true));
-  if (most->second <= std::max({renderers_err_by(floor), rough, 0.1 * stays})) return "";
+  if (most->second <=
+      std::max({renderers_err_by(floor), rough, floor.limits->search.at_rest_share * stays}))
+    return "";
   return fmt::format(
       "; rest photos of camera '{}' still show the body moved, by {:.2g} px, where the model has "
       "it as it was given: no mesh and no material moves a body without a load. What does is not "
@@ -206,11 +210,12 @@ std::vector<std::string> effects_in_words(const Fitted& fitted) {
 }
 
 std::string too_little_to_name(const Diagnosis& diagnosis) {
-  constexpr double kMost = 0.5;
   for (const EffectScore& score : diagnosis.effects) {
     if (!score.testable || numerical(score.effect)) continue;
-    const bool chance = score.evidence < std::max(kNameable, diagnosis.gate);
-    if (chance || nameable(score, diagnosis) || score.explains_held_out < kMost) return "";
+    const bool chance = score.evidence < std::max(diagnosis.limits().nameable, diagnosis.gate);
+    if (chance || nameable(score, diagnosis) ||
+        score.explains_held_out < diagnosis.floor.limits->search.hint)
+      return "";
     return fmt::format(
         "not named, but worth a look: {} would remove {:.0f} % of what is over the floor, {:.0f} % "
         "on held-out photos, which is less than renderers and meshes err by (`hookeye add` tries "

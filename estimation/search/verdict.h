@@ -35,14 +35,14 @@ struct TakenByNames {
 };
 
 /// Of photos near the floor all along a small effect may be part of what has no name: what stays
-/// over the floor is more than renderers leave at least (kLeftByRenderers) and than the named took,
+/// over the floor is more than renderers leave at least (FloorLimits::on) and than the named took,
 /// for which no sensor speaks. Where they change brightness alone it is over the told noise: the
 /// floor is of that kind, a gloss without a name is in it. Said in words; "": it is not so.
 std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis, const TakenByNames& taken);
 
 /// Rest photos in which the body is as it was given show it moved all the same, smoothly, by more
 /// than renderers err by (renderers_err_by, and all that they leave over the noise) and by a tenth
-/// of what is over the floor, where more than kLeftByRenderers times the floor is left: no mesh and
+/// of what is over the floor, where more than FloorLimits::on times the floor is left: no mesh and
 /// no law moves a body without a load, so what stays is not theirs alone. Said in words; "": it is
 /// not so.
 std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis);

@@ -1,6 +1,9 @@
 #include "estimation/search/widening.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "estimation/effects/catalogue.h"
@@ -69,7 +72,8 @@ std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted
   const auto there = assess(workspace, other.form, other.start, options);
   if (const auto* failure = std::get_if<NumericalFailure>(&there)) return *failure;
   FitOptions from_there = options;
-  from_there.coarse_to_fine = misfit(std::get<Fitted>(there)) > 2.0 * misfit(narrow);
+  from_there.coarse_to_fine = misfit(std::get<Fitted>(there)) >
+                              narrow.form.scene->limits->search.coarse_again * misfit(narrow);
   return fit(workspace, other.form, other.start, from_there);
 }
 
@@ -97,7 +101,9 @@ bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale&
   const auto result = follow(workspace, other.form, other.start, narrow, options);
   const auto* followed = std::get_if<Followed>(&result);
   const Trial now{{}, narrow.chi, narrow.chi_validate, narrow.floor};
-  return followed && followed->stalled && over_floor(followed->trial) > 0.8 * over_floor(now);
+  return followed && followed->stalled &&
+         over_floor(followed->trial) >
+             other.form.scene->limits->search.widening_stalls * over_floor(now);
 }
 
 /// Half-size pictures show that the steps stall where three times what `now` has over the floor
@@ -110,7 +116,8 @@ bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale&
     return Racer{"", other.form, trial, {}}.structured();
   };
   return followed && followed->stalled &&
-         over(followed->trial) > 3.0 * over({{}, now.chi, now.chi_validate, now.floor});
+         over(followed->trial) > other.form.scene->limits->search.out_of_reach *
+                                     over({{}, now.chi, now.chi_validate, now.floor});
 }
 
 /// Most of what was left goes with the form; where another effect is missing, a little more than
@@ -118,10 +125,24 @@ bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale&
 /// beyond what renderers leave: by likelihood they tell less than that, as a modulus that moves
 /// within its interval changes.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor, bool same_claim) {
-  return (same_claim || over_floor(wide, floor) < 0.5 * over_floor(narrow, floor)) &&
-         score_above(wide, narrow, floor) > kTie &&
-         (wide.evaluation.chi(true) <= kLeftByRenderers * floor.chi ||
+  return (same_claim || over_floor(wide, floor) <
+                            floor.limits->search.widening_leaves * over_floor(narrow, floor)) &&
+         score_above(wide, narrow, floor) > floor.limits->diagnosis.tie &&
+         (wide.evaluation.chi(true) <= floor.limits->floor.on * floor.chi ||
           held_out_allows(wide, narrow, floor));
+}
+
+bool told_paying(const Decided& decided, const std::string& words, const Fitted& wide,
+                 const Fitted& narrow, const Floor& floor, bool same_claim) {
+  const double before = over_floor(narrow, floor);
+  const double leaves = before > 0.0 ? over_floor(wide, floor) / before : 1.0;
+  return tell(decided, {Asked::widened,
+                        words,
+                        pays(wide, narrow, floor, same_claim),
+                        {leaves, same_claim ? 1.0 : floor.limits->search.widening_leaves,
+                         "search.widening_leaves"},
+                        fmt::format("share of what is over the floor that it leaves; score {:+.1f}",
+                                    score_above(wide, narrow, floor))});
 }
 
 /// The wide form's plainer one, where it has one that scores as well: all constants of a material
@@ -154,7 +175,7 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
                                                const DiscoverEvents& events) {
   const std::string first = narrow.form.ingredients[at]->variant();
   std::set<std::string> tried = {first};
-  for (bool better = true; better && !at_floor(narrow, floor, kLeftByRenderers);) {
+  for (bool better = true; better && !on_floor(narrow, floor);) {
     better = false;
     const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
     if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
@@ -163,14 +184,22 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
       if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second)
         continue;
-      if (better && at_floor(best, floor, kLeftByRenderers)) break;
+      if (better && on_floor(best, floor)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
       const auto& way = further.by_way_of;
       const Reformed first =
           reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
       if (!further.same_claim &&
-          gets_nowhere(workspace, first, std::get<TrialScale>(scale), options))
+          gets_nowhere(workspace, first, std::get<TrialScale>(scale), options)) {
+        tell(options.decided,
+             {Asked::widened,
+              words,
+              false,
+              {std::numeric_limits<double>::quiet_NaN(),
+               narrow.form.scene->limits->search.widening_stalls, "search.widening_stalls"},
+              "its trial at half size stalls with most of what is over the floor"});
         continue;
+      }
       FitOptions farther = options;
       farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
       auto result = announced(events, words, [&] {
@@ -178,17 +207,17 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       });
       if (auto* failure = std::get_if<NumericalFailure>(&result)) {
         if (cancelled(*failure)) return *failure;
+        tell(options.decided, {Asked::widened, words, false, {}, failure->reason});
         continue;
       }
       Fitted& wide = std::get<Fitted>(result);
-      if (!pays(wide, best, floor, further.same_claim)) continue;
+      if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) continue;
       best = std::move(wide);
       better = true;
     }
     narrow = std::move(best);
   }
-  if (narrow.form.ingredients[at]->variant() == first && !at_floor(narrow, floor, kLeftByRenderers))
-    return narrow;
+  if (narrow.form.ingredients[at]->variant() == first && !on_floor(narrow, floor)) return narrow;
   return plainest(workspace, std::move(narrow), at, floor, options, events);
 }
 
@@ -252,7 +281,13 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
       auto result =
           announced(events, words, [&] { return fit_in(workspace, without, other, options); });
       auto* lighter = std::get_if<Fitted>(&result);
-      if (lighter && at_floor(*lighter, floor) && score_above(*lighter, fitted, floor) > -kTie)
+      if (!lighter) continue;
+      const double score = score_above(*lighter, fitted, floor), tie = floor.limits->diagnosis.tie;
+      if (tell(options.decided, {Asked::dropped,
+                                 all[i]->name(),
+                                 at_floor(*lighter, floor) && score > -tie,
+                                 {score, -tie, "diagnosis.tie"},
+                                 "beside a smaller form: score " + words + " over that with it"}))
         return Refit{all[i]->name(), std::move(*lighter), 0.0};
     }
   }

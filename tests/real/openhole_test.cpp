@@ -74,7 +74,7 @@ TEST_F(OpenHole, OrthotropyIsNamed) {
   const EffectScore& first = diagnosis.effects.front();
   EXPECT_EQ(first.effect, "anisotropy");
   EXPECT_TRUE(nameable(first, diagnosis));
-  EXPECT_GT(first.evidence, diagnosis.effects[1].evidence + kTie);
+  EXPECT_GT(first.evidence, diagnosis.effects[1].evidence + Limits{}.diagnosis.tie);
 }
 
 }  // namespace

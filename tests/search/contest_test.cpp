@@ -39,7 +39,8 @@ TEST(Contest, PairsAreRefittedTogether) {
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->first.effect, "gravity");
   EXPECT_EQ(pair->second.effect, "swelling");
-  for (const Refit& one : contest.refits) EXPECT_GT(pair->second.score, one.score + kNameable);
+  for (const Refit& one : contest.refits)
+    EXPECT_GT(pair->second.score, one.score + Limits{}.diagnosis.nameable);
   EXPECT_TRUE(at_floor(pair->second.fitted, step.diagnosis.floor));
   const auto last = pair->second.fitted.form.parameters().back();
   EXPECT_EQ(last.name, "swelling.s");
@@ -53,7 +54,8 @@ std::optional<Pair> beside_refused(Workspace& workspace, const Step& step, const
   if (contest.refits.empty()) return {};
   const Refit& best = contest.refits.front();
   EXPECT_EQ(best.effect, first);
-  EXPECT_THAT(why_refused(step, contest.before, best), testing::HasSubstr("held-out examples"));
+  EXPECT_THAT(why_refused(step, contest.before, best).words(),
+              testing::HasSubstr("held-out examples"));
   const auto found = refit_beside_best(workspace, step, contest, {}, {});
   const auto& pair = std::get<std::optional<Pair>>(found);
   if (pair) {
@@ -156,7 +158,7 @@ TEST(Contest, WhatAFieldTookOverIsFoundBesideIt) {
   const Refit& best = contest.refits.front();
   EXPECT_EQ(best.effect, "soft_clamp");
   EXPECT_THAT(effects_in(best.fitted.form), testing::ElementsAre("stiffness_field", "soft_clamp"));
-  EXPECT_EQ(why_refused(step, contest.before, best), "");
+  EXPECT_EQ(why_refused(step, contest.before, best).words(), "");
 }
 
 }  // namespace

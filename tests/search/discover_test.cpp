@@ -139,8 +139,9 @@ TEST(RefitScore, HeldOutPhotosHaveAVarianceOfTheirOwn) {
   const auto score = [&](double times, double times_held_out) {
     return refit_score(missing(times, times_held_out), yardstick);
   };
-  EXPECT_GT(score(8.0, 34.0), score(10.0, 30.0) + kNameable);  // not of one variance for all
-  EXPECT_GT(score(10.0, 24.0), score(9.5, 30.0) + kTie);       // and they are heard
+  EXPECT_GT(score(8.0, 34.0),
+            score(10.0, 30.0) + Limits{}.diagnosis.nameable);  // not of one variance for all
+  EXPECT_GT(score(10.0, 24.0), score(9.5, 30.0) + Limits{}.diagnosis.tie);  // and they are heard
 }
 
 /// A trial whose held-out example has no equilibrium, not even at its start, is out of the race.

@@ -153,7 +153,7 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
   const ModelForm form = with_field_and(small, {{"soft_clamp", "base"}});
   const Fitted field = std::get<Fitted>(fit(workspace, form, form.initial()));
   const Floor floor = measure_floor(*small.scene, field.evaluation);
-  ASSERT_FALSE(at_floor(field, floor, kLeftByRenderers));
+  ASSERT_FALSE(on_floor(field, floor));
   const Fitted place = std::get<Fitted>(widened(workspace, field, at, floor, {}));
   EXPECT_EQ(place.form.ingredients[at]->variant(), "free blob");
   EXPECT_TRUE(at_floor(place, floor));

@@ -32,7 +32,7 @@ TEST(Naming, ChanceIsNotNamed) {
   EXPECT_THAT(leaders(of({scored("gravity", 7.9)})), IsEmpty());
   EXPECT_THAT(leaders(of({scored("gravity", 8.1)})), ElementsAre("gravity"));
   Diagnosis quiet = of({scored("gravity", 4.9)});
-  quiet.gate = 1.0;  // chance reaches less, but less than kNameable is not named either
+  quiet.gate = 1.0;  // chance reaches less, but less than nameable is not named either
   EXPECT_THAT(leaders(quiet), IsEmpty());
   EXPECT_EQ(conclusion(quiet), "nothing of the catalogue stands out");
 }
@@ -44,8 +44,9 @@ TEST(Naming, WhatCannotBeTestedIsNotNamed) {
 }
 
 TEST(Naming, TiesAreDeclared) {
-  const Diagnosis tie = of(
-      {scored("gravity", 50.0), scored("swelling", 50.0 - kTie + 0.1), scored("pressure", 40.0)});
+  const Diagnosis tie =
+      of({scored("gravity", 50.0), scored("swelling", 50.0 - Limits{}.diagnosis.tie + 0.1),
+          scored("pressure", 40.0)});
   EXPECT_THAT(leaders(tie), ElementsAre("gravity", "swelling"));
   EXPECT_THAT(conclusion(tie), testing::HasSubstr("swelling cannot be told from it"));
   // The information criterion of its best form puts one before the leader.
@@ -83,9 +84,9 @@ TEST(Naming, WhatRenderersErrByIsNotNamed) {
 TEST(Naming, WhatSensorsSpeakForIsNamedThoughNoPhotoMoves) {
   Diagnosis found = of({scored("softening", 50.0)});
   found.effects[0].fall = 0.0, found.floor.chi = 2.0;
-  found.effects[0].measured_fall = 2.0 * kNameable - 0.1;
+  found.effects[0].measured_fall = 2.0 * Limits{}.diagnosis.nameable - 0.1;
   EXPECT_THAT(leaders(found), IsEmpty());
-  found.effects[0].measured_fall = 2.0 * kNameable + 0.1;
+  found.effects[0].measured_fall = 2.0 * Limits{}.diagnosis.nameable + 0.1;
   EXPECT_THAT(leaders(found), ElementsAre("softening"));
   found.mesh_in_measured = 1.0;  // a finer mesh would change as much as they scatter
   EXPECT_THAT(leaders(found), IsEmpty());
@@ -121,7 +122,7 @@ TEST(Naming, WhatTheMeshHidesIsNamedByHeldOutPhotos) {
   EXPECT_THAT(leaders(left), ElementsAre("creep"));
   left.mesh_fall_held_out = 31.0;
   EXPECT_THAT(leaders(left), IsEmpty());
-  left.mesh_fall_held_out = 10.0, left.effects[0].evidence = kNameable - 0.1;
+  left.mesh_fall_held_out = 10.0, left.effects[0].evidence = Limits{}.diagnosis.nameable - 0.1;
   EXPECT_THAT(leaders(left), IsEmpty());
   left.effects[0].evidence = 800.0, left.effects[0].explains_held_out = 0.5;
   EXPECT_THAT(leaders(left), IsEmpty()) << "not more than half";

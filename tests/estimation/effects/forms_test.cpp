@@ -32,7 +32,7 @@ TEST(Forms, AnObliqueHardWallIsNamed) {
   EXPECT_THAT(found.missing, ElementsAre("floor_contact"));
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
   const Fitted& last = found.steps.back().fitted;
-  EXPECT_LT(last.evaluation.chi(true), kAtFloor * found.floor.chi);
+  EXPECT_LT(last.evaluation.chi(true), Limits{}.floor.at * found.floor.chi);
   EXPECT_NEAR(last.p[0], 0.02, 2e-4);
   const auto& wall = last.form.ingredients.back();
   const std::string said =

@@ -243,7 +243,7 @@ TEST_F(OwnPhotos, AStripThatMovesOtherwiseMovesNoModulus) {
     const Fitted fitted = std::get<Fitted>(fit(workspace, form, 1.1 * form.initial(), options));
     return std::abs(fitted.p[0] / 0.02 - 1.0);
   };
-  const double robust = error(FitOptions{}.huber), squares = error(0.0);
+  const double robust = error(FitLimits{}.huber), squares = error(0.0);
   EXPECT_LT(robust, 1e-3);
   EXPECT_GT(squares, 5.0 * robust);
 }

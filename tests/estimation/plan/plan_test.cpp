@@ -197,7 +197,7 @@ TEST(Plan, ATiltedBaseSplitsGravityFromPressure) {
   EXPECT_EQ(best.candidate.name.rfind("tilt_", 0), 0u) << best.sentence;
   EXPECT_LT(found.now.angle_deg(), 15.0) << "they are told apart already";
   // Pictures of 64 px have few effective residuals, and evidence grows with the log of a misfit.
-  EXPECT_GT(best.worst.margin, std::max(kTie, 3.0 * found.now.margin));
+  EXPECT_GT(best.worst.margin, std::max(Limits{}.diagnosis.tie, 3.0 * found.now.margin));
   EXPECT_GT(best.worst.angle_deg(), found.now.angle_deg());
   EXPECT_GT(best.px, 0.0);
   EXPECT_THAT(found.sentence, ::testing::HasSubstr(best.candidate.words));

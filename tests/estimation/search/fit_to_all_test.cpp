@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "capture_io/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/at_floor.h"
@@ -54,7 +55,8 @@ TEST(FitToAll, TheSpreadIsWhatHeldOutPhotosShowOfTheValuesErrors) {
   const double there = 0.5 * (held_out_r2(workspace, fitted, fitted.p + one) +
                               held_out_r2(workspace, fitted, fitted.p - one));
   ASSERT_GT(there - here, 0.5);  // of noise's one: it shows
-  EXPECT_NEAR(spread_of_photos(fitted, true) / chi2_point(1.0), there - here, 0.2 * (there - here));
+  EXPECT_NEAR(spread_of_photos(fitted, true) / chi2_quantile(1.0 - Limits{}.floor.chance, 1.0),
+              there - here, 0.2 * (there - here));
   // Those that are fitted hold the values: an error that they allow hardly shows in them.
   EXPECT_LT(spread_of_photos(fitted, false), 0.01 * (there - here));
 }
@@ -77,8 +79,8 @@ TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
   const auto& all = std::get<std::optional<FitToAll>>(result);
   ASSERT_TRUE(all);
   EXPECT_NEAR(all->fitted.p[d], 0.12, 0.002);
-  EXPECT_LT(all->chi_fit, kAtFloor * floor.chi);
-  EXPECT_LT(all->chi_validate, kAtFloor * floor.chi);
+  EXPECT_LT(all->chi_fit, Limits{}.floor.at * floor.chi);
+  EXPECT_LT(all->chi_validate, Limits{}.floor.at * floor.chi);
   EXPECT_THAT(all->hardly_known, testing::ElementsAre(testing::StartsWith("softening.d 0.1")));
   const nlohmann::json told = to_json(*all);
   EXPECT_EQ(told.at("chi_validate"), all->chi_validate);
@@ -101,8 +103,8 @@ TEST(FitToAll, ValuesThatAreWellKnownExcuseNothing) {
   Diagnosis diagnosis;
   Floor& floor = diagnosis.floor = measure_floor(*small.scene, wrong.evaluation);
   // As if the fitted photos were explained: they are not by this.
-  floor.chi = std::max(floor.chi, wrong.evaluation.chi(false) / kAtFloor * 1.001);
-  ASSERT_GT(wrong.evaluation.chi(true), kAtFloor * floor.chi);
+  floor.chi = std::max(floor.chi, wrong.evaluation.chi(false) / Limits{}.floor.at * 1.001);
+  ASSERT_GT(wrong.evaluation.chi(true), Limits{}.floor.at * floor.chi);
   EXPECT_GT(over_floor(wrong, floor, true), spread_of_photos(wrong, true));
   const auto result = fit_to_all(workspace, wrong, diagnosis, {});
   EXPECT_FALSE(std::get<std::optional<FitToAll>>(result));

@@ -265,7 +265,7 @@ TEST(Verdict, WantsEveryCameraExplained) {
       photo.r2 *= cam1 ? 1.75 / 2.1 : 1.45;
     }
   ASSERT_TRUE(at_floor(fitted, diagnosis.floor));
-  EXPECT_GT(most_over_floor(fitted, diagnosis.floor).times, kAtFloor);
+  EXPECT_GT(most_over_floor(fitted, diagnosis.floor).times, Limits{}.floor.at);
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained)
       << "the other camera is nearly as bad: what is wrong is no camera's";
 }
@@ -305,7 +305,7 @@ TEST(Contest, WhatTakesLittleOfALargeMisfitIsRefused) {
   Step step;
   step.diagnosis = diagnosis;
   const auto refused = [&](double fit, double held_out) {
-    return why_refused(step, 0.0, {"gravity", left(fit, held_out), 100.0});
+    return why_refused(step, 0.0, {"gravity", left(fit, held_out), 100.0}).words();
   };
   step.fitted = left(100.0, 100.0);
   EXPECT_THAT(refused(95.0, 93.0), testing::HasSubstr("leaves 93 % of what is over the floor"));
@@ -317,7 +317,7 @@ TEST(Contest, WhatTakesLittleOfALargeMisfitIsRefused) {
     return one;
   };
   const auto with_forces = [&](double by) {
-    return why_refused(step, 0.0, {"gravity", forces_off(left(99.0, 99.0), by), 100.0});
+    return why_refused(step, 0.0, {"gravity", forces_off(left(99.0, 99.0), by), 100.0}).words();
   };
   step.fitted = forces_off(left(100.0, 100.0), 100.0);
   EXPECT_EQ(with_forces(90.0), "") << "of the sum of squares 19 % are gone";

@@ -1,0 +1,146 @@
+// hookeye explain: why an effect was added, or where its way ended, from the log alone.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "app/commands/add_step.h"
+#include "app/commands/commands.h"
+#include "app/commands/decision_log.h"
+#include "app/commands/run_support.h"
+
+namespace hookeye {
+namespace {
+
+struct ExplainArguments {
+  std::string run, effect;
+};
+
+/// {where it was accepted, where not}
+std::pair<const char*, const char*> words_of(Asked asked) {
+  switch (asked) {
+    case Asked::named:
+      return {"stands out", "does not stand out"};
+    case Asked::screened:
+      return {"screened", "not screened further"};
+    case Asked::refitted:
+      return {"refitted", "not refitted"};
+    case Asked::ranked:
+      return {"says most", "says less than the best"};
+    case Asked::stands:
+      return {"stands", "refused"};
+    case Asked::widened:
+      return {"this form was taken", "this form was not taken"};
+    case Asked::dropped:
+      return {"left the model", "stays in the model"};
+    case Asked::swapped:
+      return {"took its place", "did not take its place"};
+    case Asked::tied:
+      return {"cannot be told from it", "can be told from it"};
+    case Asked::paired:
+      return {"stand together", "do not stand together"};
+    case Asked::ended:
+      return {"explained", "not explained"};
+  }
+  return {"yes", "no"};
+}
+
+/// "refused: ... (0.95, limit 0.9: search.worth_a_name) [estimation/search/contest.cpp:270]".
+std::string in_words(const Decision& one) {
+  const auto [yes, no] = words_of(one.asked);
+  std::string out = fmt::format("{}: {}", one.accepted ? yes : no, one.why);
+  if (std::isfinite(one.by.value))
+    out += std::isfinite(one.by.limit)
+               ? fmt::format(" ({:.4g} against {:.4g}{})", one.by.value, one.by.limit,
+                             one.by.option.empty() ? "" : ": " + one.by.option)
+               : fmt::format(" ({:.4g})", one.by.value);
+  else if (!one.by.option.empty())
+    out += fmt::format(" ({})", one.by.option);
+  return out + fmt::format(" [{}]", one.where);
+}
+
+/// "creep" of "creep as 'levels off'", of "gravity and creep": whom a decision is about.
+bool is_about(const Decision& one, const std::string& effect) {
+  const std::string padded = " " + one.candidate + " ";
+  return padded.find(" " + effect + " ") != std::string::npos;
+}
+
+/// Every decision of one effect, in order.
+std::string all_of(const std::vector<Decision>& decisions, const std::string& effect) {
+  std::string out;
+  for (const Decision& one : decisions)
+    if (is_about(one, effect))
+      out += wrapped((one.candidate == effect ? "" : one.candidate + ": ") + in_words(one), 2);
+  return out;
+}
+
+/// Where the way of each candidate ended; those that did not stand out are counted alone.
+std::string ends_of(const std::vector<Decision>& decisions) {
+  std::vector<const Decision*> last;
+  for (const Decision& one : decisions) {
+    const auto same = std::find_if(last.begin(), last.end(), [&](const Decision* other) {
+      return other->candidate == one.candidate;
+    });
+    if (same == last.end())
+      last.push_back(&one);
+    else
+      *same = &one;
+  }
+  std::string out;
+  size_t silent = 0;
+  for (const Decision* one : last) {
+    if (one->asked == Asked::named && !one->accepted) {
+      ++silent;
+      continue;
+    }
+    out += wrapped(
+        (one->candidate.empty() ? "the search ended" : one->candidate) + ", " + in_words(*one), 2);
+  }
+  if (silent)
+    out += fmt::format("  {} effects do not stand out (hookeye explain RUN EFFECT tells why)\n",
+                       silent);
+  return out;
+}
+
+void run_explain(const ExplainArguments& arguments, Session& session) {
+  if (!arguments.effect.empty()) check_effect(arguments.effect);
+  const Run run = open_run(arguments.run, false);
+  session.document["steps"] = nlohmann::json::array();
+  bool any = false, about = false;
+  for (const auto& step : run.steps()) {
+    const std::vector<Decision> decisions = decisions_of(step);
+    any = any || !decisions.empty();
+    nlohmann::ordered_json told = {{"step", step.filename().string()},
+                                   {"decisions", nlohmann::json::array()}};
+    for (const Decision& one : decisions)
+      if (arguments.effect.empty() || is_about(one, arguments.effect))
+        told["decisions"].push_back(nlohmann::ordered_json(to_json(one)));
+    session.document["steps"].push_back(std::move(told));
+    const std::string text =
+        arguments.effect.empty() ? ends_of(decisions) : all_of(decisions, arguments.effect);
+    if (text.empty()) continue;
+    about = true;
+    session.say("of the model of step {}\n{}\n", step.filename().string(), text);
+  }
+  if (!any)
+    throw InputError({arguments.run}, "nothing was decided in this run yet",
+                     fmt::format("run 'hookeye diagnose {0}' or 'hookeye discover CAPTURE -o {0}'",
+                                 arguments.run));
+  if (!about) session.say("nothing was asked of {} in this run\n", arguments.effect);
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, CommandBody& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "explain", "Why an effect was added or refused, by which number, and where in the sources");
+  const auto arguments = std::make_shared<ExplainArguments>();
+  command->add_option("RUN", arguments->run, "Run folder")->required();
+  command->add_option("EFFECT", arguments->effect, "All that was decided of this effect");
+  command->callback([&chosen, arguments] {
+    chosen = [arguments](Session& session) { run_explain(*arguments, session); };
+  });
+}
+
+}  // namespace hookeye

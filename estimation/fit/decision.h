@@ -1,0 +1,68 @@
+// What was decided, by which number and where in the sources: nothing is refused in silence.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <source_location>
+#include <string>
+#include <utility>
+
+namespace hookeye {
+
+/// What was asked of a candidate.
+enum class Asked {
+  named,     ///< does it stand out of the residual?
+  screened,  ///< does it run, at half size, and how far does it get?
+  refitted,  ///< is it worth a fit to the end?
+  ranked,    ///< which of the refits says most?
+  stands,    ///< may the best be added?
+  widened,   ///< does a wider form say more?
+  dropped,   ///< can the model do without it?
+  swapped,   ///< does another stand better in its place?
+  tied,      ///< can it be told from the one that was chosen?
+  paired,    ///< do two together explain what one does not?
+  ended,     ///< how did the search end?
+};
+const char* to_string(Asked asked);
+
+/// A number and what it was held against.
+struct Compared {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double limit = std::numeric_limits<double>::quiet_NaN();
+  std::string option;  ///< that the limit follows from: "search.worth_a_name"; "": none
+
+  Compared() = default;
+  Compared(double value_, double limit_, std::string option_ = "")
+      : value(value_), limit(limit_), option(std::move(option_)) {}
+};
+
+struct Decision {
+  Asked asked = Asked::named;
+  std::string candidate;  ///< "gravity", "creep as 'levels off'"; "": the model
+  bool accepted = false;
+  Compared by;
+  std::string why;    ///< one plain clause
+  std::string where;  ///< FILE:LINE of the rule; tell() knows it
+
+  Decision() = default;
+  Decision(Asked asked_, std::string candidate_, bool accepted_, Compared by_, std::string why_)
+      : asked(asked_),
+        candidate(std::move(candidate_)),
+        accepted(accepted_),
+        by(std::move(by_)),
+        why(std::move(why_)) {}
+};
+
+using Decided = std::function<void(const Decision&)>;
+
+/// Tells `decided`, if anybody listens. Returns whether it was accepted.
+bool tell(const Decided& decided, Decision decision,
+          std::source_location where = std::source_location::current());
+
+/// One line of decisions.jsonl.
+nlohmann::json to_json(const Decision& decision);
+/// Throws nlohmann::json::exception for what is none.
+Decision decision_from_json(const nlohmann::json& line);
+
+}  // namespace hookeye

@@ -1,0 +1,77 @@
+// What a search decided is on disk, and `explain` tells it with its number and its line.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "app/fitted_run.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::AllOf;
+using testing::ContainsRegex;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
+  EXPECT_EQ(hookeye("explain run").status, 2);  // nothing was asked yet
+  const Result found = hookeye("discover capture -o run");
+  ASSERT_EQ(found.status, 0) << found.err;
+
+  const Result all = hookeye("explain run");
+  ASSERT_EQ(all.status, 0) << all.err;
+  EXPECT_THAT(all.out,
+              AllOf(HasSubstr("of the model of step 00-base"), HasSubstr("gravity, stands"),
+                    HasSubstr("effects do not stand out"), HasSubstr("the search ended")));
+  const Result gravity = hookeye("explain run gravity");
+  EXPECT_THAT(gravity.out,
+              AllOf(HasSubstr("stands out"), HasSubstr("refitted"), HasSubstr("says most"),
+                    HasSubstr("diagnosis.nameable"), Not(HasSubstr("swelling, "))));
+  // The line that it names is in the sources, and tells a decision.
+  const std::string text = gravity.out;
+  const size_t at = text.rfind("[estimation/"), colon = text.find(':', at);
+  ASSERT_NE(at, std::string::npos);
+  std::ifstream source(std::string(HOOKEYE_SOURCE_DIR "/") + text.substr(at + 1, colon - at - 1));
+  std::string line;
+  for (int number = std::stoi(text.substr(colon + 1)); number > 0; --number)
+    ASSERT_TRUE(std::getline(source, line));
+  EXPECT_THAT(line, ContainsRegex("tell|told")) << text;
+
+  const json document = json::parse(hookeye("explain run swelling --json").out);
+  const json& first = document.at("steps").at(0).at("decisions").at(0);
+  EXPECT_EQ(first.at("asked"), "named");
+  EXPECT_EQ(first.at("candidate"), "swelling");
+  EXPECT_EQ(hookeye("explain run gravty").status, 2);
+
+  std::ofstream(folder_ / "run/steps/00-base/decisions.jsonl", std::ios::app) << "{\n";
+  const Result damaged = hookeye("explain run");
+  EXPECT_EQ(damaged.status, 2);
+  EXPECT_THAT(damaged.err, ContainsRegex("decisions.jsonl:[0-9]+"));
+}
+
+TEST_F(FittedRun, OptionsAreKeptByTheRunAndOthersAreRefused) {
+  const Result listed = hookeye("discover --options");
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_THAT(listed.out, AllOf(HasSubstr("floor.at = 1.3 times the floor"),
+                                HasSubstr("search.worth_a_name"), HasSubstr("fit.huber")));
+  const Result unknown = hookeye("fit capture -o other --set floor.att=2");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("floor.at"));
+  EXPECT_EQ(hookeye("fit capture -o other --set floor.at=0.5").status, 2);
+  EXPECT_EQ(hookeye("fit capture -o other --set floor.at").status, 2);
+  EXPECT_FALSE(fs::exists(folder_ / "other"));
+  const Result late = hookeye("discover capture -o run --set search.max_effects=0");
+  EXPECT_EQ(late.status, 2);  // its base was fitted by others
+  EXPECT_THAT(late.err, HasSubstr("name a new folder"));
+
+  // Nothing may be added: the search ends with the base, and says what it would have named.
+  const Result none = hookeye("discover capture -o none --set search.max_effects=0");
+  ASSERT_EQ(none.status, 0) << none.err;
+  const json timeline = json::parse(read(folder_ / "none/run.json"));
+  EXPECT_EQ(timeline.at("options"), json({{"search.max_effects", 0.0}}));
+  EXPECT_EQ(timeline.at("steps").size(), 1u);
+  EXPECT_EQ(hookeye("discover capture -o none").status, 0);  // takes them from the run
+}
+
+}  // namespace
+}  // namespace hookeye::test
