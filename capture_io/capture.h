@@ -151,7 +151,9 @@ struct MeasuredSpec {
 struct ExampleSpec {
   std::string name;
   Place place;
-  bool validate = false;  ///< use: validate
+  bool validate = false;  ///< use: validate, or test: not fitted
+  bool test = false;      ///< use: test: no fit, score, order or stop sees it
+  const char* use() const { return test ? "test" : validate ? "validate" : "fit"; }
   std::vector<SupportSpec> supports;
   std::vector<LoadSpec> loads;
   std::vector<PhotoSpec> photos;

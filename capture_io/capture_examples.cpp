@@ -165,8 +165,10 @@ ExampleSpec read_example(const YamlNode::Entry& entry, const Capture& capture,
   example.name = entry.key;
   example.place = entry.place;
   ExampleReader reader(entry.key, capture);
-  if (const YamlNode* use = section.find("use"))
-    example.validate = read_choice(*use, "use of " + what, {"fit", "validate"}) == "validate";
+  if (const YamlNode* use = section.find("use")) {
+    const std::string chosen = read_choice(*use, "use of " + what, {"fit", "validate", "test"});
+    example.validate = chosen != "fit", example.test = chosen == "test";
+  }
   if (const YamlNode* supports = section.find("supports"))
     for (const YamlNode& item :
          read_list(*supports, "supports of " + what, "write `- {region: base, fix: [x, y, z]}`"))

@@ -41,7 +41,7 @@ std::string outcome(const Step& before, const Step& after, const Floor& floor, b
                      held_out ? "held-out" : "fitted", was, is);
 }
 
-/// Did it pay? On the photos that no fit has seen, where there are such.
+/// Did it pay? On the held-out photos, where there are such.
 void say_outcome(const Step& before, const Step& after, const Floor& floor, bool taken_back,
                  Session& session) {
   const bool held_out = before.fitted.evaluation.chi(true) > 0.0;

@@ -159,7 +159,7 @@ Json describe_example(const Scene& scene, const Model& model, size_t e) {
   const ExampleSpec& example = scene.capture.examples[e];
   const Scope scope("example " + example.name);
   Json one{{"name", example.name},
-           {"use", example.validate ? "validate" : "fit"},
+           {"use", example.use()},
            {"rest", is_rest(example)}};
   for (const char* key : {"supports", "loads", "photos", "measured"}) one[key] = Json::array();
   for (const auto& support : example.supports) one["supports"].push_back(support_text(support));

@@ -1,5 +1,6 @@
 #include "app/commands/decision_log.h"
 
+#include <ctime>
 #include <fstream>
 
 #include "capture_io/input_error.h"
@@ -10,14 +11,22 @@ namespace {
 
 constexpr const char* kFile = "decisions.jsonl";
 
+/// Of all threads.
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 }  // namespace
+
+DecisionLog::DecisionLog(Run& run) : run_(run), before_(cpu_seconds()) {}
 
 void DecisionLog::follow(const std::filesystem::path& step) {
   step_ = step;
   lines_.clear();
 }
 
-void DecisionLog::operator()(const Decision& decision) {
+void DecisionLog::operator()(Decision decision) {
+  const double now = cpu_seconds();
+  decision.cpu_s = now - before_;
+  before_ = now;
   if (step_.empty()) return;
   lines_ += to_json(decision).dump() + "\n";
   run_.add_file(

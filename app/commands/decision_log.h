@@ -12,16 +12,17 @@ namespace hookeye {
 
 class DecisionLog {
  public:
-  explicit DecisionLog(Run& run) : run_(run) {}
+  explicit DecisionLog(Run& run);
   /// What comes now is decided of the model of this step; what stood there goes.
   void follow(const std::filesystem::path& step);
   /// Written at once. Before any step is followed it is nobody's, and goes.
-  void operator()(const Decision& decision);
+  void operator()(Decision decision);
 
  private:
   Run& run_;
   std::filesystem::path step_;
   std::string lines_;
+  double before_ = 0.0;  ///< processor time of the decision before [s]
 };
 
 /// Which effects the newest step's diagnosis names, and why not the others.

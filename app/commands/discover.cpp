@@ -14,6 +14,7 @@
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
 #include "estimation/output/step_json.h"
+#include "estimation/search/tested.h"
 
 namespace hookeye {
 namespace {
@@ -166,7 +167,11 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
   if (const auto high = high_floor(found.floor); !high.empty())
     hint += (hint.empty() ? "" : ". ") + high;
+  const auto tested =
+      value_or_fail(test(found.steps.back().fitted, bench.capture, fit_options()));
   run.update([&](nlohmann::json& timeline) {
+    timeline.erase("tested");
+    if (tested) timeline["tested"] = to_json(*tested);
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;
     timeline["missing"] = found.missing;

@@ -87,6 +87,11 @@ std::string ends_of(const std::vector<Decision>& decisions) {
     else
       *same = &one;
   }
+  const auto cost = [&](const std::string& candidate) {
+    double sum = 0.0;
+    for (const Decision& one : decisions) sum += one.candidate == candidate ? one.cpu_s : 0.0;
+    return sum >= 0.05 ? fmt::format(" ({:.1f} CPU-s)", sum) : std::string();
+  };
   std::string out;
   size_t silent = 0;
   for (const Decision* one : last) {
@@ -94,8 +99,9 @@ std::string ends_of(const std::vector<Decision>& decisions) {
       ++silent;
       continue;
     }
-    out += wrapped(
-        (one->candidate.empty() ? "the search ended" : one->candidate) + ", " + in_words(*one), 2);
+    out += wrapped((one->candidate.empty() ? "the search ended" : one->candidate) +
+                       cost(one->candidate) + ", " + in_words(*one),
+                   2);
   }
   if (silent)
     out += fmt::format("  {} effects do not stand out (hookeye explain RUN EFFECT tells why)\n",

@@ -89,9 +89,9 @@ void warn_of_doubts(const Scene& scene, Session& session) {
 Bench open_capture(const std::filesystem::path& capture_path, Session& session,
                    const Limits& limits) {
   const Capture capture = read_capture(capture_path);
-  auto scene = load_scene(capture, true, limits);
+  auto scene = load_scene(without_tests(capture), true, limits);
   warn_of_doubts(*scene, session);
-  return {scene, Workspace(scene)};
+  return {capture, scene, Workspace(scene)};
 }
 
 Step newest_step(const Run& run, Bench& bench, const FitOptions& options) {
@@ -192,7 +192,7 @@ namespace {
 /// written, so that no kill leaves it beside a step that it does not mean.
 void drop_verdict(Run& run, bool of_search) {
   run.update([&](nlohmann::json& timeline) {
-    for (const char* key : {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all"})
+    for (const char* key : {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all", "tested"})
       timeline.erase(key);
     if (!of_search) timeline.erase("search");
   });

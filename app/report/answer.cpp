@@ -206,6 +206,28 @@ std::string misfit_sentence(const json& step, const json& metrics, double floor,
   return out + met_forces(metrics);
 }
 
+/// What is left where nothing chose; or that held-out photos helped to choose.
+std::string tested_sentence(const json& timeline, const json& step, double floor) {
+  const json tested = timeline.value("tested", json());
+  if (tested.is_object()) {
+    const json examples = tested.value("examples", json::array());
+    const double chi = number_in(tested, "chi");
+    double worst = 0.0;
+    for (const json& one : examples) worst = std::max(worst, number_in(one, "measured_over_sigma"));
+    Names names;
+    for (const json& one : examples) names.push_back(string_in(one, "name"));
+    std::string out = fmt::format("on {}, which no fit, score or stop has seen: ", listed(names));
+    if (chi > 0.0) out += fmt::format("{:.2f} times the noise floor", chi / floor);
+    if (worst > 0.0)
+      out += fmt::format("{}measured values within {:.2g} of their sigma", chi > 0.0 ? ", " : "",
+                         worst);
+    return out;
+  }
+  if (!timeline.contains("sentence") || number_in(step, "chi_validate") <= 0.0) return "";
+  return "held-out photos helped to choose the effects: only an example of `use: test` has no part "
+         "in it";
+}
+
 json material_in(const json& metrics, const json& diagnosis) {
   for (const json* of : {&diagnosis, &metrics})
     if (of->is_object() && of->contains("material") && (*of)["material"].is_object())
@@ -226,7 +248,8 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
   json out = {{"material", material_in(metrics, diagnosis)},
               {"headline", "not judged yet"},
               {"sentence", "No step is finished"},
-              {"misfit", ""}};
+              {"misfit", ""},
+              {"tested", ""}};
   const json steps = timeline.is_object() ? timeline.value("steps", json::array()) : json::array();
   if (steps.empty() || !steps.back().is_object()) return out;
   const json& step = steps.back();
@@ -239,6 +262,7 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
   } else {
     judge_by_figures(step, diagnosis, left, out);
   }
+  out["tested"] = tested_sentence(timeline, step, floor);
   const json told = timeline.contains("floor") ? timeline["floor"] : json::object();
   out["misfit"] = misfit_sentence(step, metrics, floor, string_in(told, "source"));
   return out;
@@ -296,10 +320,12 @@ std::string material_text(const json& material) {
 }
 
 std::string answer_text(const json& answer) {
-  const std::string headline = string_in(answer, "headline"), misfit = string_in(answer, "misfit");
+  const std::string headline = string_in(answer, "headline"), misfit = string_in(answer, "misfit"),
+                    tested = string_in(answer, "tested");
   return material_text(answer.at("material")) +
          wrapped(fmt::format("verdict: {}. {}", headline, string_in(answer, "sentence"))) +
-         (misfit.empty() ? "" : wrapped("misfit: " + misfit));
+         (misfit.empty() ? "" : wrapped("misfit: " + misfit)) +
+         (tested.empty() ? "" : wrapped("test: " + tested));
 }
 
 }  // namespace hookeye

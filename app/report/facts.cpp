@@ -89,7 +89,7 @@ json load_act(const LoadSpec& load, const Units& units) {
 
 json example_facts(const ExampleSpec& example, const Units& units) {
   json out = {{"name", example.name},
-              {"use", example.validate ? "validate" : "fit"},
+              {"use", example.use()},
               {"supports", json::array()},
               {"loads", json::array()},
               {"acts", json::array()},

@@ -151,7 +151,7 @@ json RunView::photos_json(json& faults, int factor) {
         json one = {{"name", name},
                     {"example", example.name},
                     {"camera", spec.camera},
-                    {"use", example.validate ? "validate" : "fit"},
+                    {"use", example.use()},
                     {"width", plane.camera.width},
                     {"height", plane.camera.height},
                     {"file", spec.file.filename().string()}};

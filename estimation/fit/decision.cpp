@@ -49,7 +49,8 @@ nlohmann::json to_json(const Decision& decision) {
           {"limit", number_or_null(decision.by.limit)},
           {"option", decision.by.option},
           {"why", decision.why},
-          {"where", decision.where}};
+          {"where", decision.where},
+          {"cpu_s", decision.cpu_s}};
 }
 
 Decision decision_from_json(const nlohmann::json& line) {
@@ -63,6 +64,7 @@ Decision decision_from_json(const nlohmann::json& line) {
   out.by = {number_or_nan(line, "value"), number_or_nan(line, "limit"), line.at("option")};
   out.why = line.at("why");
   out.where = line.at("where");
+  out.cpu_s = line.value("cpu_s", 0.0);
   return out;
 }
 

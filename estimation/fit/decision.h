@@ -43,7 +43,8 @@ struct Decision {
   bool accepted = false;
   Compared by;
   std::string why;    ///< one plain clause
-  std::string where;  ///< FILE:LINE of the rule; tell() knows it
+  std::string where;   ///< FILE:LINE of the rule; tell() knows it
+  double cpu_s = 0.0;  ///< worked since the decision before it; whoever keeps it knows
 
   Decision() = default;
   Decision(Asked asked_, std::string candidate_, bool accepted_, Compared by_, std::string why_)

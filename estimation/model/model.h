@@ -121,6 +121,11 @@ bool is_rest(const ExampleSpec& example);
 /// Scene of a capture: reads photos and builds the body.
 std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true,
                                         const Limits& limits = {});
+/// The capture without the examples that nothing may see (use: test).
+Capture without_tests(Capture capture);
+/// `scene`, which was made without them, with the test examples of `whole` behind its own. Reads
+/// their photos.
+std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole);
 /// Edge of a finer mesh over that of the told one: three times the unknowns.
 inline constexpr double kFinerEdge = 0.7;
 /// The scene with another mesh of the same body: `edge_factor` times the told edge, `order` 1 or 2

@@ -56,6 +56,15 @@ void check_large_enough(const PhotoSpec& spec, const Camera& camera) {
                   kLeast));
 }
 
+std::vector<Photo> photos_of(const ExampleSpec& example, const Capture& capture) {
+  std::vector<Photo> out;
+  for (const PhotoSpec& spec : example.photos) {
+    check_large_enough(spec, capture.camera(spec.camera));
+    out.push_back(read_photo(spec, capture.camera(spec.camera)));
+  }
+  return out;
+}
+
 }  // namespace
 
 int Scene::example_index(const std::string& name) const {
@@ -89,11 +98,23 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
   if (!with_photos) return scene;
   for (size_t e = 0; e < capture.examples.size(); ++e)
-    for (const auto& spec : capture.examples[e].photos) {
-      check_large_enough(spec, capture.camera(spec.camera));
-      scene->photos[e].push_back(read_photo(spec, capture.camera(spec.camera)));
-    }
+    scene->photos[e] = photos_of(capture.examples[e], capture);
   return scene;
+}
+
+Capture without_tests(Capture capture) {
+  std::erase_if(capture.examples, [](const ExampleSpec& example) { return example.test; });
+  return capture;
+}
+
+std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole) {
+  auto out = std::make_shared<Scene>(scene);
+  for (const ExampleSpec& example : whole.examples) {
+    if (!example.test) continue;
+    out->capture.examples.push_back(example);
+    out->photos.push_back(photos_of(example, whole));
+  }
+  return out;
 }
 
 std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, int order,

@@ -326,11 +326,11 @@ std::string Refusal::words() const {
   return "";
 }
 
-bool told_standing(const Decided& decided, const Refusal& refusal, std::source_location where) {
+bool told_standing(const Decided& decided, const Refusal& refusal) {
   return tell(decided,
               {Asked::stands, refusal.effect, !refusal, refusal.by,
                refusal ? refusal.words() : "it says more than its parameters cost"},
-              where);
+              refusal.where);
 }
 
 Refusal refused_by(const Step& step, Refit with) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <source_location>
 #include <string>
 #include <variant>
 #include <vector>
@@ -108,6 +109,7 @@ struct Refusal {
   Why why = Why::none;
   std::string effect;
   Compared by = {};
+  std::source_location where = std::source_location::current();  ///< of the rule
   explicit operator bool() const { return why != Why::none; }
   std::string words() const;  ///< "" where it stands
 };
@@ -116,7 +118,6 @@ Refusal why_refused(const Step& step, double before, const Refit& with);
 /// The same, both scored by what the refit leaves.
 Refusal refused_by(const Step& step, Refit with);
 /// Tells of it; whether it stands.
-bool told_standing(const Decided& decided, const Refusal& refusal,
-                   std::source_location where = std::source_location::current());
+bool told_standing(const Decided& decided, const Refusal& refusal);
 
 }  // namespace hookeye

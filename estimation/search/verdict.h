@@ -59,7 +59,7 @@ std::vector<std::string> effects_in_words(const Fitted& fitted);
 
 /// The effect that leads by its evidence and is not named because it takes away less than renderers
 /// and meshes err by (nameable), where it would take most of what held-out photos have over the
-/// floor: those no score has seen. A hint in words; "": none.
+/// floor: its values are not fitted to those. A hint in words; "": none.
 std::string too_little_to_name(const Diagnosis& diagnosis);
 
 /// One line: what was missing, how sure, what else. `why` is judge()'s, `refused` why the effect

@@ -236,8 +236,10 @@ ExampleRecipe read_example(const YamlNode::Entry& entry, const std::vector<std::
   ExampleRecipe example;
   example.name = entry.key;
   example.place = entry.place;
-  if (const YamlNode* use = section.find("use"))
-    example.validate = read_choice(*use, "use", {"fit", "validate"}) == "validate";
+  if (const YamlNode* use = section.find("use")) {
+    const std::string chosen = read_choice(*use, "use", {"fit", "validate", "test"});
+    example.validate = chosen != "fit", example.test = chosen == "test";
+  }
   const YamlNode* region = section.find("region");
   if (region) example.region = read_choice(*region, "region", regions);
   if (const YamlNode* force = section.find("force")) example.force = read_vector3(*force, "force");

@@ -62,7 +62,7 @@ struct MaterialRecipe {
 struct ExampleRecipe {
   std::string name;
   Place place;
-  bool validate = false;
+  bool validate = false, test = false;
   std::string region = "grip";
   std::optional<Vector3d> force;  ///< in shear modulus times area of the grip; of a surface [force]
   std::optional<Vector3d> move;   ///< rigid, in body heights; of a surface [length]

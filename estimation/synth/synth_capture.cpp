@@ -121,7 +121,7 @@ std::string examples_text(const Recipe& recipe, const SynthBody& body, const Cap
     const Vector3d centre =
         patch == body.patches.end() ? Vector3d(Vector3d::Zero()) : patch->second.centre;
     fmt::format_to(to, "  {}:\n", quoted(example.name));
-    if (example.validate) out += "    use: validate\n";
+    if (example.validate) out += example.test ? "    use: test\n" : "    use: validate\n";
     write_supports(example, scale, centre, out);
     if (example.force)
       fmt::format_to(to, "    loads:\n    - {{region: {}, force: {}}}\n", quoted(example.region),

@@ -130,6 +130,7 @@ export interface Answer {
   headline: string;
   sentence: string;
   misfit: string;
+  tested?: string;
   /** The material as plain text. */
   text: string;
 }

@@ -49,6 +49,41 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
   EXPECT_THAT(damaged.err, ContainsRegex("decisions.jsonl:[0-9]+"));
 }
 
+/// The same capture with one example that nothing may see.
+class WithATest : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    std::string recipe = kSmallRecipe;
+    recipe.insert(recipe.find("hidden:"), "  press: {use: test, force: [0, 0.05, -0.2]}\n");
+    write("recipe.yaml", recipe);
+    ASSERT_EQ(hookeye("synth recipe.yaml -o capture").status, 0);
+  }
+};
+
+TEST_F(WithATest, NothingSeesItButTheLastLine) {
+  ASSERT_EQ(hookeye("check capture").status, 0);
+  const Result found = hookeye("discover capture -o run");
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_THAT(found.out, HasSubstr("test: on press, which no fit, score or stop has seen"));
+  const json run = json::parse(read(folder_ / "run/run.json"));
+  const double tested = run.at("tested").at("chi"), fitted = run.at("steps").back().at("chi_fit");
+  EXPECT_LT(tested, 3.0 * fitted);
+  EXPECT_EQ(run.at("tested").at("examples").at(0).at("name"), "press");
+
+  // Its photos may be of anything: every step, score and word but the last stays the same.
+  const fs::path photo = folder_ / "capture/photos/press_cam0.png";
+  ASSERT_TRUE(fs::exists(photo));
+  fs::copy_file(folder_ / "capture/photos/rest_cam0.png", photo,
+                fs::copy_options::overwrite_existing);
+  ASSERT_EQ(hookeye("discover capture -o other").status, 0);
+  const json other = json::parse(read(folder_ / "other/run.json"));
+  EXPECT_EQ(other.at("sentence"), run.at("sentence"));
+  EXPECT_EQ(other.at("steps").back().at("chi_fit"), run.at("steps").back().at("chi_fit"));
+  EXPECT_EQ(other.at("steps").back().at("chi_validate"), run.at("steps").back().at("chi_validate"));
+  EXPECT_GT(other.at("tested").at("chi").get<double>(), 2.0 * tested);
+}
+
 TEST_F(FittedRun, OptionsAreKeptByTheRunAndOthersAreRefused) {
   const Result listed = hookeye("discover --options");
   EXPECT_EQ(listed.status, 0);

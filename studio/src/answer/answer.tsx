@@ -7,6 +7,8 @@ import {MeasuredForces, MeasuredTable} from './measured';
 import {Shots} from './shots';
 import {StressStretch} from './stress';
 
+const capital = (text: string) => `${text[0]?.toUpperCase() ?? ''}${text.slice(1)}`;
+
 /** What discover said in full, where the plain sentence says less. */
 function Detail() {
   const {sentence} = run.value.timeline;
@@ -15,14 +17,15 @@ function Detail() {
 }
 
 function Verdict() {
-  const {headline, sentence, misfit} = run.value.answer;
+  const {headline, sentence, misfit, tested} = run.value.answer;
   return (
     <section class="found">
       <h3>Verdict</h3>
       <p><b>{headline[0]?.toUpperCase()}{headline.slice(1)}.</b> <Said text={sentence} />.</p>
       <Detail />
       <h3>Misfit</h3>
-      <p>{misfit ? `${misfit[0].toUpperCase()}${misfit.slice(1)}.` : 'No step is finished yet.'}</p>
+      <p>{misfit ? `${capital(misfit)}.` : 'No step is finished yet.'}</p>
+      {tested && <p class="note">{capital(tested)}.</p>}
     </section>
   );
 }
