@@ -139,14 +139,39 @@ struct PhotoSpec {
 };
 
 struct MeasuredSpec {
-  enum class Kind { force, moment, position } kind;
-  std::string region;  ///< force_on, moment_on
-  Vector3d about = Vector3d::Zero();
-  Vector3d point = Vector3d::Zero();  ///< position_of: rest point
-  Vector3d value;
-  double sigma;
+  enum class Kind {
+#define MEASURED(kind, on, key, size, unit, words) kind,
+#include "capture_io/measured_kinds.def"
+#undef MEASURED
+  } kind;
+  std::string region;                 ///< where it is measured on a region
+  Vector3d point = Vector3d::Zero();  ///< where it is measured at one: rest position
+  Vector3d direction =
+      Vector3d::Zero();   ///< moment: about this point; travel, rotation: unit vector
+  Eigen::VectorXd value;  ///< told numbers; angles in degrees
+  Eigen::VectorXd sigma;  ///< their standard deviations
+  /// Lower triangle L of their covariance L L^T; empty: they are independent.
+  Eigen::MatrixXd covariance_root;
   Place place;
+
+  /// (predicted - value), or a column of its derivative, in standard deviations.
+  Eigen::MatrixXd whitened(Eigen::MatrixXd difference) const;
 };
+
+/// What a kind of measurement is.
+struct MeasuredKind {
+  const char* name;  ///< key of the capture: "force_on"
+  const char* on;    ///< "region", "point"
+  const char* key;   ///< further key; "none"
+  int size;
+  const char* unit;   ///< "force", "moment", "length", "angle"
+  const char* words;  ///< "force on"
+};
+const MeasuredKind& kind_of(const MeasuredSpec& measured);
+/// It tells a force or a moment of a support.
+bool is_reaction(const MeasuredSpec& measured);
+/// "N", "N mm", "mm", "degrees".
+std::string unit_of(const MeasuredSpec& measured, const Units& units);
 
 struct ExampleSpec {
   std::string name;

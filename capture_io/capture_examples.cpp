@@ -1,6 +1,7 @@
 // Examples: supports, loads, photos and what else was measured.
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <set>
 
@@ -131,29 +132,96 @@ LoadSpec ExampleReader::load(const YamlNode& node) const {
   return load;
 }
 
+/// A point to refer to, or a direction, a unit vector.
+Vector3d read_argument(const YamlSection& section, const MeasuredKind& kind) {
+  const bool point = kind.key == std::string("about");
+  const YamlNode& node = section.need(
+      kind.key, point ? "a moment refers to a point: write `about: [0, 0, 80]`"
+                      : fmt::format("tell the direction: write `{}: [0, 0, 1]`", kind.key));
+  return point ? read_vector3(node, kind.key) : read_direction(node, kind.key);
+}
+
+Eigen::VectorXd read_as_many(const YamlNode& node, const std::string& what, int size) {
+  if (size == 3) return read_vector3(node, what);
+  if (node.kind == YamlNode::Kind::scalar)
+    return Eigen::VectorXd::Constant(size, read_number(node, what));
+  const auto numbers = read_numbers(node, what);
+  if (static_cast<int>(numbers.size()) != size)
+    throw InputError(node.place, fmt::format("`{}` has {} numbers", what, numbers.size()),
+                     fmt::format("{} of them", size));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), size);
+}
+
+/// One number for all, one for each, or a covariance: rows in a list.
+void read_sigma(const YamlNode& node, int size, MeasuredSpec& measured) {
+  if (node.kind == YamlNode::Kind::scalar) {
+    measured.sigma = Eigen::VectorXd::Constant(size, read_positive(node, "sigma"));
+    return;
+  }
+  measured.sigma = read_as_many(node, "sigma", size);
+  for (int i = 0; i < size; ++i)
+    if (!(measured.sigma[i] > 0.0))
+      throw InputError(node.place, "`sigma` has a number that is not above zero",
+                       "standard deviations, one for each component");
+}
+
+void read_covariance(const YamlNode& node, int size, MeasuredSpec& measured) {
+  const std::string right =
+      fmt::format("{0} lists of {0} numbers, symmetric and positive definite", size);
+  const auto& rows = read_list(node, "covariance", right);
+  if (static_cast<int>(rows.size()) != size)
+    throw InputError(node.place, fmt::format("`covariance` has {} rows", rows.size()), right);
+  Eigen::MatrixXd C(size, size);
+  for (int i = 0; i < size; ++i) C.row(i) = read_as_many(rows[i], "covariance", size).transpose();
+  const Eigen::LLT<Eigen::MatrixXd> root(C);
+  if (!C.isApprox(C.transpose(), 1e-9) || root.info() != Eigen::Success)
+    throw InputError(node.place, "`covariance` is none", right);
+  measured.sigma = C.diagonal().cwiseSqrt();
+  measured.covariance_root = root.matrixL();
+}
+
+void read_told(const YamlSection& section, const MeasuredKind& kind, MeasuredSpec& measured) {
+  measured.value = read_as_many(
+      section.need("value", kind.size == 1 ? "write `value: 2.5`" : "write `value: [0, 0, 2.5]`"),
+      "value", kind.size);
+  const YamlNode* covariance = section.find("covariance");
+  if (covariance && section.find("sigma"))
+    throw InputError(covariance->place, "`sigma` and `covariance` tell the same",
+                     "leave one of them out");
+  if (covariance)
+    read_covariance(*covariance, kind.size, measured);
+  else
+    read_sigma(section.need("sigma", "give the measurement's standard deviation: `sigma: 0.02`"),
+               kind.size, measured);
+}
+
 MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
-  const YamlSection section(node, "a measurement" + of_,
-                            {"force_on", "moment_on", "position_of", "about", "value", "sigma"});
-  const std::string kind = section.one_of({"force_on", "moment_on", "position_of"});
-  const YamlNode& subject = *section.find(kind);
+  std::vector<std::string> kinds, keys = {"value", "sigma", "covariance"};
+  for (const MeasuredKind& kind : measured_kinds()) {
+    kinds.push_back(kind.name);
+    if (kind.key != std::string("none")) keys.push_back(kind.key);
+  }
+  keys.insert(keys.end(), kinds.begin(), kinds.end());
+  const YamlSection section(node, "a measurement" + of_, keys);
+  const std::string name = section.one_of(kinds);
+  const YamlNode& subject = *section.find(name);
   MeasuredSpec measured;
   measured.place = node.place;
-  measured.kind = kind == "force_on"    ? MeasuredSpec::Kind::force
-                  : kind == "moment_on" ? MeasuredSpec::Kind::moment
-                                        : MeasuredSpec::Kind::position;
-  if (measured.kind == MeasuredSpec::Kind::position)
-    measured.point = read_vector3(subject, "position_of");
+  measured.kind =
+      static_cast<MeasuredSpec::Kind>(std::find(kinds.begin(), kinds.end(), name) - kinds.begin());
+  const MeasuredKind& kind = kind_of(measured);
+  if (kind.on == std::string("point"))
+    measured.point = read_vector3(subject, name);
   else
     measured.region = region(subject, section.what());
-  if (measured.kind == MeasuredSpec::Kind::moment)
-    measured.about = read_vector3(
-        section.need("about", "a moment refers to a point: write `about: [0, 0, 80]`"), "about");
-  else if (const YamlNode::Entry* about = section.entry("about"))
-    throw InputError(about->place, fmt::format("`about` has no meaning for `{}`", kind),
-                     "only moment_on refers to a point: remove it");
-  measured.value = read_vector3(section.need("value", "write `value: [0, 0, 2.5]`"), "value");
-  measured.sigma = read_positive(
-      section.need("sigma", "give the measurement's standard deviation: `sigma: 0.02`"), "sigma");
+  for (const MeasuredKind& other : measured_kinds()) {
+    const YamlNode::Entry* told = section.entry(other.key);
+    if (told && other.key != std::string(kind.key))
+      throw InputError(told->place, fmt::format("`{}` has no meaning for `{}`", other.key, name),
+                       fmt::format("only {} has `{}`: remove it", other.name, other.key));
+  }
+  if (kind.key != std::string("none")) measured.direction = read_argument(section, kind);
+  read_told(section, kind, measured);
   return measured;
 }
 
@@ -184,7 +252,7 @@ ExampleSpec read_example(const YamlNode::Entry& entry, const Capture& capture,
          read_list(*measured, "measured of " + what,
                    "write `- {force_on: grip, value: [0, 0, 2.5], sigma: 0.02}`")) {
       example.measured.push_back(reader.measured(item));
-      if (example.measured.back().kind != MeasuredSpec::Kind::position && example.supports.empty())
+      if (is_reaction(example.measured.back()) && example.supports.empty())
         throw InputError(item.place, what + " measures a support's force but has no supports",
                          "forces are measured where a support holds the body");
     }

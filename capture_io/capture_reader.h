@@ -2,6 +2,7 @@
 // section may refer to those before it. All throw InputError.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "capture_io/yaml_section.h"
 
 namespace hookeye {
+
+/// In the order of MeasuredSpec::Kind.
+std::span<const MeasuredKind> measured_kinds();
 
 Units read_units(const YamlNode& node);
 BodySpec read_body(const YamlNode& node, const CaptureFolder& folder);

@@ -60,15 +60,8 @@ std::string load_text(const LoadSpec& load, const Units& units) {
 }
 
 std::string measured_text(const MeasuredSpec& measured) {
-  switch (measured.kind) {
-    case MeasuredSpec::Kind::force:
-      return "force on " + measured.region;
-    case MeasuredSpec::Kind::moment:
-      return "moment on " + measured.region;
-    case MeasuredSpec::Kind::position:
-      return "position of " + vector_text(measured.point);
-  }
-  return {};
+  return fmt::format("{} {}", kind_of(measured).words,
+                     measured.region.empty() ? vector_text(measured.point) : measured.region);
 }
 
 std::string joined(const Json& texts) {
@@ -158,9 +151,7 @@ Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
 Json describe_example(const Scene& scene, const Model& model, size_t e) {
   const ExampleSpec& example = scene.capture.examples[e];
   const Scope scope("example " + example.name);
-  Json one{{"name", example.name},
-           {"use", example.use()},
-           {"rest", is_rest(example)}};
+  Json one{{"name", example.name}, {"use", example.use()}, {"rest", is_rest(example)}};
   for (const char* key : {"supports", "loads", "photos", "measured"}) one[key] = Json::array();
   for (const auto& support : example.supports) one["supports"].push_back(support_text(support));
   for (const auto& load : example.loads)
@@ -182,8 +173,7 @@ void warn_of_gaps(const Capture& capture, const Json& examples, Session& session
   bool force_known = capture.gravity.has_value() && capture.body.density > 0.0;
   for (const auto& example : capture.examples) {
     force_known |= !example.loads.empty();
-    for (const auto& measured : example.measured)
-      force_known |= measured.kind != MeasuredSpec::Kind::position;
+    for (const auto& measured : example.measured) force_known |= is_reaction(measured);
   }
   if (!force_known && !capture.fit.empty())
     session.warn(

@@ -54,14 +54,14 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
         sums.H += deviation2 * JtJ;
         sums.s += deviation2 * measured.J.transpose() * measured.r;
         sums.r2 += deviation2 * r2;
-        sums.count += 3.0;
+        sums.count += measured.size();
       };
       // One noise holds for all sums: a sensor's deviation counts as much as a cell's at the floor.
       const double cell2 = out.effective.floor2;
       add(out.effective, cell2);
       add(out.measured, 1.0);
-      out.measured_count += 3.0;
-      out.noise += cell2 * cell2 * std::max(1.0, r2 / 3.0) * JtJ;
+      out.measured_count += measured.size();
+      out.noise += cell2 * cell2 * std::max(1.0, r2 / measured.size()) * JtJ;
       out.null_noise += cell2 * cell2 * JtJ;
     }
   }
@@ -71,7 +71,7 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
   for (const auto& example : evaluation.examples)
     for (const auto& measured : example.measured) {
       (example.held_out ? out.held_r2 : out.photo_r2) += measured.r.squaredNorm();
-      (example.held_out ? out.held_count : out.photo_count) += 3.0;
+      (example.held_out ? out.held_count : out.photo_count) += measured.size();
     }
   return out;
 }
@@ -81,7 +81,7 @@ double measured_r2(const Evaluation& evaluation, const VectorXd* step) {
   for (const auto& example : evaluation.examples)
     for (const auto& measured : example.measured)
       if (!example.held_out)
-        sum += (step ? Eigen::Vector3d(measured.r + measured.J * *step) : measured.r).squaredNorm();
+        sum += (step ? VectorXd(measured.r + measured.J * *step) : measured.r).squaredNorm();
   return sum;
 }
 

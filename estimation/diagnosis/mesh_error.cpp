@@ -36,7 +36,7 @@ double change_of_measured(const Evaluation& evaluation, Eigen::Index at, double 
       if (example.held_out) continue;
       sum +=
           (measured.J.leftCols(shift.size()) * shift + amount * measured.J.col(at)).squaredNorm();
-      count += 3.0;
+      count += measured.size();
     }
   return count > 0.0 ? sum / count : 0.0;
 }

@@ -25,8 +25,8 @@ class ForceZero final : public Effect {
       for (const auto& load : example.loads)
         if (load.force) largest = std::max(largest, load.force->norm());
       for (const auto& measured : example.measured)
-        if (measured.kind == MeasuredSpec::Kind::force) {
-          sigma = std::max(sigma, measured.sigma);
+        if (measured.kind == MeasuredSpec::Kind::force_on) {
+          sigma = std::max(sigma, measured.sigma.maxCoeff());
           largest = std::max(largest, measured.value.norm());
         }
     }

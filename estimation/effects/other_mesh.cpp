@@ -139,8 +139,7 @@ VectorXd OtherMesh::compute(int example) {
   for (int unknown : loading.prescribed) du[unknown] = 0.0;
   VectorXd reaction = none;
   for (const auto& measured : model_.scene->capture.examples[example].measured)
-    if (measured.kind != MeasuredSpec::Kind::position)
-      add_reaction(measured.region, here, there, reaction);
+    if (is_reaction(measured)) add_reaction(measured.region, here, there, reaction);
   VectorXd f = here.K * du;
   for (int unknown : loading.prescribed) f[unknown] -= reaction[unknown];
   return f;

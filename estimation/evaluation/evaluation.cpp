@@ -12,6 +12,7 @@
 
 #include "estimation/evaluation/columns.h"
 #include "estimation/evaluation/photo_evaluation.h"
+#include "estimation/evaluation/sensor.h"
 
 namespace hookeye {
 
@@ -45,7 +46,8 @@ double Evaluation::measured_chi(bool held_out) const {
   double sum = 0.0, count = 0.0;
   for (const auto& example : examples)
     if (example.held_out == held_out)
-      for (const auto& measured : example.measured) sum += measured.r.squaredNorm(), count += 3.0;
+      for (const auto& measured : example.measured)
+        sum += measured.r.squaredNorm(), count += measured.size();
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
@@ -225,48 +227,21 @@ struct Workspace::Impl {
 
 namespace {
 
-/// Predictions of forces, moments and positions with their derivatives.
+/// Predictions of what was measured with their derivatives.
 std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model& model, int e,
                                                  const ExampleEvaluation& example,
                                                  const ExampleColumns* columns) {
   std::vector<MeasuredEvaluation> all;
   const auto& specs = scene.capture.examples[e].measured;
-  const Equilibrium& equilibrium = *example.equilibrium;
+  const Sensed seen{scene, model, e, *example.equilibrium, example.S, columns};
   for (size_t i = 0; i < specs.size(); ++i) {
-    const MeasuredSpec& spec = specs[i];
+    SensorPrediction there = predicted(specs[i], seen);
     MeasuredEvaluation one;
     one.example = e;
     one.index = static_cast<int>(i);
-    if (spec.kind == MeasuredSpec::Kind::force) {
-      const Region& region = scene.body->regions.at(spec.region);
-      one.predicted = support_force(equilibrium, region) + model.examples[e].force_offset;
-      if (columns)
-        one.J = d_support_force(equilibrium, region, columns->dR, example.S) + columns->d_offset;
-    } else if (spec.kind == MeasuredSpec::Kind::moment) {
-      const Region& region = scene.body->regions.at(spec.region);
-      one.predicted = support_moment(equilibrium, region, spec.about);
-      if (columns)
-        one.J = d_support_moment(equilibrium, region, spec.about, columns->dR, example.S);
-    } else {
-      SurfacePoint point;
-      locate_on_boundary(scene.body->mesh, spec.point, &point);
-      const VectorXd N = shape_functions(scene.body->mesh.order, point.barycentric);
-      Vector3d x = Vector3d::Zero();
-      if (columns) one.J.setZero(3, example.S.cols());
-      for (int a = 0; a < N.size(); ++a) {
-        const int node = scene.body->mesh.elements(a, point.element);
-        x += N[a] * equilibrium.q.segment<3>(3 * node);
-        if (columns) one.J += N[a] * model.placement.linear() * example.S.middleRows(3 * node, 3);
-      }
-      one.predicted = model.placement * x;
-      if (columns)
-        for (int j = 0; j < one.J.cols(); ++j)
-          one.J.col(j) +=
-              Eigen::Map<const Eigen::Matrix3d>(columns->d_placement.col(j).data()) * x +
-              columns->d_placement.col(j).tail<3>();
-    }
-    one.r = (one.predicted - spec.value) / spec.sigma;
-    if (columns) one.J /= spec.sigma;
+    one.r = specs[i].whitened(there.value - specs[i].value);
+    one.predicted = std::move(there.value);
+    if (columns) one.J = specs[i].whitened(std::move(there.J));
     all.push_back(std::move(one));
   }
   return all;

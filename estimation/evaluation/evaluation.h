@@ -61,11 +61,12 @@ struct PhotoEvaluation {
   double chi() const;
 };
 
-/// A measured force, moment or position.
+/// What a sensor told (MeasuredSpec).
 struct MeasuredEvaluation {
   int example = 0, index = 0;
-  Eigen::Vector3d predicted, r;  ///< r = (predicted - value)/sigma
-  Eigen::Matrix3Xd J;            ///< dr/dp
+  VectorXd predicted, r;  ///< r: predicted less value, in standard deviations
+  Eigen::MatrixXd J;      ///< dr/dp
+  double size() const { return static_cast<double>(r.size()); }
 };
 
 struct ExampleEvaluation {

@@ -268,7 +268,7 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
       const Eigen::MatrixXd J = measured.J.leftCols(n);
       const double w = evaluation.measured_weight;
       add(w * J.transpose() * J, w * J.transpose() * measured.r,
-          w * std::max(1.0, measured.r.squaredNorm() / 3.0), false, false);
+          w * std::max(1.0, measured.r.squaredNorm() / measured.size()), false, false);
     }
   }
   H = scale.asDiagonal() * H * scale.asDiagonal();

@@ -78,7 +78,7 @@ double residual_count(const Evaluation& evaluation) {
   double count = 0.0;
   for (const auto& example : evaluation.examples) {
     for (const auto& photo : example.photos) count += photo.count;
-    count += 3.0 * static_cast<double>(example.measured.size());
+    for (const auto& measured : example.measured) count += measured.size();
   }
   return std::max(count, 1.0);
 }

@@ -23,8 +23,7 @@ bool prescribes_force(const ExampleSpec& example) {
 }
 
 bool measures_force(const ExampleSpec& example) {
-  return std::any_of(example.measured.begin(), example.measured.end(),
-                     [](const auto& one) { return one.kind != MeasuredSpec::Kind::position; });
+  return std::any_of(example.measured.begin(), example.measured.end(), is_reaction);
 }
 
 /// Share of what is known of the common scale of all moduli that measured forces tell, not photos.

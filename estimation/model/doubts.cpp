@@ -54,7 +54,7 @@ void look_at_measurements(const Scene& scene, const ExampleSpec& example, Senten
     held.insert(nodes.begin(), nodes.end());
   }
   for (const MeasuredSpec& measured : example.measured) {
-    if (measured.kind == MeasuredSpec::Kind::position) {
+    if (measured.kind == MeasuredSpec::Kind::position_of) {
       SurfacePoint nearest;
       const double off = locate_on_boundary(scene.body->mesh, measured.point, &nearest);
       if (off > 0.01 * extent(scene.body->mesh.X))
@@ -65,11 +65,12 @@ void look_at_measurements(const Scene& scene, const ExampleSpec& example, Senten
             scene.capture.units.length));
       continue;
     }
+    if (!is_reaction(measured)) continue;
     const auto& nodes = scene.body->regions.at(measured.region).nodes;
     if (std::none_of(nodes.begin(), nodes.end(), [&](int n) { return held.count(n) > 0; }))
       out->push_back(fmt::format(
           "example {}: {} is measured on `{}`, which no support holds there: the model's is zero",
-          example.name, measured.kind == MeasuredSpec::Kind::force ? "a force" : "a moment",
+          example.name, measured.kind == MeasuredSpec::Kind::force_on ? "a force" : "a moment",
           measured.region));
   }
 }

@@ -123,22 +123,16 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
     for (const auto& one : example.measured) {
       const auto& spec = scene.capture.examples[example.example];
       const auto& told = spec.measured[one.index];
-      const char* kind = told.kind == MeasuredSpec::Kind::force    ? "force_on"
-                         : told.kind == MeasuredSpec::Kind::moment ? "moment_on"
-                                                                   : "position_of";
-      const Units& units = scene.capture.units;
-      const std::string unit = told.kind == MeasuredSpec::Kind::force ? units.force
-                               : told.kind == MeasuredSpec::Kind::moment
-                                   ? units.force + " " + units.length
-                                   : units.length;
-      auto list = [](const Eigen::Vector3d& v) { return json{v.x(), v.y(), v.z()}; };
+      const auto list = [](const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
+      const bool one_sigma = (told.sigma.array() == told.sigma[0]).all();
       all.push_back({{"example", spec.name},
-                     {"kind", kind},
+                     {"kind", kind_of(told).name},
+                     {"words", kind_of(told).words},
                      {"region", told.region},
                      {"measured", list(told.value)},
                      {"predicted", list(one.predicted)},
-                     {"unit", unit},
-                     {"sigma", told.sigma},
+                     {"unit", unit_of(told, scene.capture.units)},
+                     {"sigma", one_sigma ? json(told.sigma[0]) : json(list(told.sigma))},
                      {"over_sigma", list(one.r)}});
     }
   return all;

@@ -138,7 +138,7 @@ Shares sum_present(const Scene& scene, const ViewPhotos& of_photo, const Evaluat
     }
     for (const auto& measured : example.measured) {
       out.H += measured.J.transpose() * measured.J;
-      out.count += 3.0;
+      out.count += measured.size();
     }
   }
   return shares;
@@ -267,7 +267,7 @@ void predict_load(const Planner& planner, PredictedPhotos& out) {
   }
   for (const auto& measured : example.measured) {
     out.H += spread(measured.J.transpose() * measured.J, planned->global, columns);
-    out.count += 3.0;
+    out.count += measured.size();
   }
   out.planned = planned;
 }

@@ -6,6 +6,18 @@
 
 namespace hookeye {
 
+namespace {
+
+/// "the force measured on 'grip'", of the words "force on".
+std::string measured_in_words(const MeasuredSpec& told) {
+  const std::string words = kind_of(told).words;
+  const size_t at = words.rfind(' ');
+  return fmt::format("the {} measured {} '{}'", words.substr(0, at), words.substr(at + 1),
+                     told.region);
+}
+
+}  // namespace
+
 bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::string* why) {
   const double noise2 = 1.0 + diagnosis.mesh_in_measured;
   bool fine = true;
@@ -15,20 +27,15 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::s
     for (const auto& example : fitted.evaluation.examples)
       for (const auto& measured : example.measured) {
         if (example.held_out != held_out) continue;
-        sum += measured.r.squaredNorm(), count += 3.0;
+        sum += measured.r.squaredNorm(), count += measured.size();
         if (measured.r.norm() <= worst) continue;
         worst = measured.r.norm();
         const auto& spec = fitted.form.scene->capture.examples[example.example];
         const MeasuredSpec& told = spec.measured[measured.index];
         if (why)
-          *why = fmt::format(
-              "{} in '{}' is {:.3g} times its told noise off",
-              told.kind == MeasuredSpec::Kind::position
-                  ? "a measured position"
-                  : fmt::format("the {} measured on '{}'",
-                                told.kind == MeasuredSpec::Kind::force ? "force" : "moment",
-                                told.region),
-              spec.name, worst);
+          *why = fmt::format("{} in '{}' is {:.3g} times its told noise off",
+                             told.region.empty() ? "a measured position" : measured_in_words(told),
+                             spec.name, worst);
       }
     if (count > 0.0 &&
         sum / noise2 > chi2_quantile(1.0 - diagnosis.floor.limits->floor.chance, count))

@@ -48,7 +48,7 @@ EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
   for (const auto& example : fitted.evaluation.examples)
     for (const auto& measured : example.measured)
       if (!held_out_alone || example.held_out)
-        out = out + EffectiveMisfit{measured.r.squaredNorm(), 3.0};
+        out = out + EffectiveMisfit{measured.r.squaredNorm(), measured.size()};
   return out;
 }
 

@@ -47,10 +47,10 @@ std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::sol
     states[e].q = equilibrium.q;
     for (const MeasuredSpec& spec : example.measured) {
       const Region& region = scene_->body->regions.at(spec.region);
-      if (spec.kind == MeasuredSpec::Kind::force)
+      if (spec.kind == MeasuredSpec::Kind::force_on)
         states[e].grip.force = support_force(equilibrium, region) + model.examples[e].force_offset;
       else
-        states[e].grip.moment = support_moment(equilibrium, region, spec.about);
+        states[e].grip.moment = support_moment(equilibrium, region, spec.direction);
     }
   });
   if (failed) return std::move(*failed);

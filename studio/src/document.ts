@@ -87,11 +87,12 @@ export interface Metrics {
 export interface Measured {
   example: string;
   kind: string;
+  words?: string;
   region: string;
   measured: number[];
   predicted: number[];
   unit?: string;
-  sigma: number;
+  sigma: number | number[];
   over_sigma: number[];
 }
 /** A value of the material; an interval where it was fitted. */

@@ -320,7 +320,23 @@ const BrokenCase broken_cases[] = {
      "  write `rotate: {axis: [0, 0, 1], degrees: 20, center: [0, 0, 80]}`"},
     {"AboutOfForce", swap("{force_on: grip, value", "{force_on: grip, about: [0, 0, 0], value"),
      "capture.yaml:59:26: `about` has no meaning for `force_on`\n"
-     "  only moment_on refers to a point: remove it"},
+     "  only moment_on has `about`: remove it"},
+    {"TravelWithoutDirection",
+     swap("{force_on: grip, value: [0, 0, 2.5]", "{travel_of: grip, value: 2.5"),
+     "capture.yaml:59:9: a measurement of example `pull` lacks `along`\n"
+     "  tell the direction: write `along: [0, 0, 1]`"},
+    {"TravelOfThreeNumbers",
+     swap("{force_on: grip, value: [0, 0, 2.5]",
+          "{travel_of: grip, along: [0, 0, 1], value: [0, 0, 2.5]"),
+     "capture.yaml:59:55: `value` has 3 numbers\n"
+     "  1 of them"},
+    {"CovarianceThatIsNone", swap("sigma: 0.02", "covariance: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]"),
+     "capture.yaml:59:58: `covariance` is none\n"
+     "  3 lists of 3 numbers, symmetric and positive definite"},
+    {"SigmaAndCovariance",
+     swap("sigma: 0.02", "sigma: 0.02, covariance: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
+     "capture.yaml:59:71: `sigma` and `covariance` tell the same\n"
+     "  leave one of them out"},
     {"CameraNull", swap("  left: {calibration: left.yml}", "  left:"),
      "capture.yaml:21:3: camera `left` is empty\n"
      "  write a map with the keys size, projection, intrinsics, pose, calibration"},

@@ -105,9 +105,9 @@ TEST(CaptureTest, ExamplesInFileOrder) {
   EXPECT_EQ(*pull.loads[0].force, Vector3d(0, 0, 2.5));
   EXPECT_EQ(*pull.loads[1].pressure, 0.002);
   ASSERT_EQ(pull.measured.size(), 3u);
-  EXPECT_EQ(pull.measured[1].about, Vector3d(0, 0, 80));
+  EXPECT_EQ(pull.measured[1].direction, Vector3d(0, 0, 80));
   EXPECT_EQ(pull.measured[2].point, Vector3d(10, 0, 80));
-  EXPECT_EQ(pull.measured[2].sigma, 0.1);
+  EXPECT_EQ(pull.measured[2].sigma, Vector3d::Constant(0.1));
 }
 
 TEST(CaptureTest, PhotosTakeDefaultsAndOverrideThem) {

@@ -295,7 +295,7 @@ MarkerErrors marker_errors(const Scene& scene, const Fitted& fitted) {
     const int motion = spec.name.rfind("shear", 0) == 0;
     for (const auto& one : example.measured) {
       const MeasuredSpec& told = spec.measured[one.index];
-      if (told.kind != MeasuredSpec::Kind::position) continue;
+      if (told.kind != MeasuredSpec::Kind::position_of) continue;
       sum[motion] += (one.predicted - told.value).squaredNorm();
       count[motion] += 1;
     }

@@ -12,13 +12,15 @@ export function unitOf(m: Measured): string {
   const {length, force} = units.value;
   return m.unit ?? (m.kind === 'force_on' ? force : m.kind === 'moment_on' ? `${force} ${length}` : length);
 }
-const nameOf = (m: Measured): string => `${m.example}: ${words[m.kind] ?? m.kind} ${m.region}`;
+const nameOf = (m: Measured): string => `${m.example}: ${m.words ?? words[m.kind] ?? m.kind} ${m.region}`;
+/** Standard deviation of a component: one told for all, or each its own. */
+const sigmaOf = (m: Measured, k: number): number => (Array.isArray(m.sigma) ? m.sigma[k] : m.sigma);
 const heldOut = (m: Measured): boolean => run.value.capture?.examples.find((e) => e.name === m.example)?.use === 'validate';
 
 function measuredCsv(all: Measured[]): void {
   saveCsv('measured.csv', [
-    ['example', 'kind', 'region', 'unit', 'sigma', ...['measured', 'model'].flatMap((of) => ['x', 'y', 'z'].map((axis) => `${of}_${axis}`))],
-    ...all.map((m) => [m.example, m.kind, m.region, unitOf(m), m.sigma, ...m.measured, ...m.predicted])]);
+    ['example', 'kind', 'region', 'unit', 'component', 'sigma', 'measured', 'model'],
+    ...all.flatMap((m) => m.measured.map((value, k) => [m.example, m.kind, m.region, unitOf(m), m.measured.length > 1 ? 'xyz'[k] : '', sigmaOf(m, k), value, m.predicted[k]]))]);
 }
 
 export function MeasuredTable(props: {all: Measured[]}) {
@@ -28,10 +30,10 @@ export function MeasuredTable(props: {all: Measured[]}) {
   return (
     <Wide label="Measured forces and positions">
       <thead><tr><th>measured <button class="quiet" onClick={() => measuredCsv(all)}>CSV</button></th>
-        <th>value (x, y, z)</th><th>σ</th><th>model</th><th>unit</th><th>off by [σ]</th></tr></thead>
+        <th>value</th><th>σ</th><th>model</th><th>unit</th><th>off by [σ]</th></tr></thead>
       <tbody>
         {all.map((m, i) => (
-          <tr key={i}><td>{nameOf(m)}{heldOut(m) && ' (held out)'}</td><td>{three(m.measured)}</td><td>{figure(m.sigma)}</td>
+          <tr key={i}><td>{nameOf(m)}{heldOut(m) && ' (held out)'}</td><td>{three(m.measured)}</td><td>{Array.isArray(m.sigma) ? three(m.sigma) : figure(m.sigma)}</td>
             <td>{three(m.predicted)}</td><td>{unitOf(m)}</td><td>{three(m.over_sigma)}</td></tr>
         ))}
       </tbody>
@@ -80,6 +82,7 @@ function Pairs(props: {title: string; unit: string; pairs: Pair[]}) {
 /** One chart a kind: forces, moments and positions have units of their own. */
 const titles: Record<string, string> = {
   force_on: 'Measured and predicted forces', moment_on: 'Measured and predicted moments', position_of: 'Measured and predicted positions',
+  travel_of: 'Measured and predicted travels', rotation_of: 'Measured and predicted rotations',
 };
 
 export function MeasuredForces() {
@@ -96,7 +99,7 @@ export function MeasuredForces() {
       {Object.keys(titles).map((kind) => {
         const own = all.filter((m) => m.kind === kind);
         const pairs = own.flatMap((m) => m.measured.map((value, k): Pair => (
-          {name: `${m.example} ${m.region} ${'xyz'[k]}`.replace('  ', ' '), measured: value, half: 1.96 * m.sigma, model: m.predicted[k]})));
+          {name: `${m.example} ${m.region} ${m.measured.length > 1 ? 'xyz'[k] : ''}`.replace('  ', ' ').trim(), measured: value, half: 1.96 * sigmaOf(m, k), model: m.predicted[k]})));
         return own.length > 0 && <Pairs key={kind} title={titles[kind]} unit={unitOf(own[0])} pairs={pairs} />;
       })}
     </div>

@@ -22,10 +22,12 @@ MeasuredSpec measured(Kind kind, double sigma) {
   MeasuredSpec out;
   out.kind = kind;
   out.region = "grip";
-  out.about = {2.0, -1.0, 40.0};
+  out.direction = {2.0, -1.0, 40.0};
   out.point = {0.0, 0.0, 40.0};
-  out.value.setZero();
-  out.sigma = sigma;
+  const int size = kind_of(out).size;
+  if (size == 1) out.direction = Vector3d(0.3, 0.1, 1.0).normalized();
+  out.value = VectorXd::Zero(size);
+  out.sigma = VectorXd::Constant(size, sigma);
   return out;
 }
 
@@ -72,11 +74,36 @@ void expect_found(const std::string& load, const MeasuredSpec& spec) {
   EXPECT_NEAR(0.5 * (fitted.high[0] - fitted.low[0]), kNormal95 * deviation, 0.02 * deviation);
 }
 
-TEST(MeasuredFit, AForceAlone) { expect_found("twist", measured(Kind::force, 0.05)); }
+TEST(MeasuredFit, AForceAlone) { expect_found("twist", measured(Kind::force_on, 0.05)); }
 
-TEST(MeasuredFit, AMomentAlone) { expect_found("twist", measured(Kind::moment, 0.5)); }
+TEST(MeasuredFit, AMomentAlone) { expect_found("twist", measured(Kind::moment_on, 0.5)); }
 
-TEST(MeasuredFit, APositionAlone) { expect_found("pull", measured(Kind::position, 0.1)); }
+TEST(MeasuredFit, APositionAlone) { expect_found("pull", measured(Kind::position_of, 0.1)); }
+
+TEST(MeasuredFit, ATravelAlone) { expect_found("pull", measured(Kind::travel_of, 0.1)); }
+
+TEST(MeasuredFit, ARotationAlone) {
+  MeasuredSpec turn = measured(Kind::rotation_of, 0.05);
+  turn.direction = Vector3d::UnitY();  // a load across bends the block about it
+  expect_found("pull", turn);
+}
+
+/// What is known well across and badly along the view is a covariance, not a mean of both.
+TEST(MeasuredFit, ACovarianceWeighsEachDirectionByItself) {
+  MeasuredSpec one = measured(Kind::position_of, 0.1), same = one, other = one;
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const Vector3d sigma(0.1, 0.2, 5.0);
+  same.covariance_root = Eigen::Matrix3d(0.1 * Eigen::Matrix3d::Identity());
+  other.covariance_root = Eigen::Matrix3d(
+      Eigen::LLT<Eigen::Matrix3d>(turned * sigma.cwiseAbs2().asDiagonal() * turned.transpose())
+          .matrixL());
+  const Vector3d off(0.3, -0.2, 0.4);
+  EXPECT_NEAR((same.whitened(off) - one.whitened(off)).norm(), 0.0, 1e-14);
+  const Vector3d seen = (turned.transpose() * off).cwiseQuotient(sigma);
+  EXPECT_NEAR(other.whitened(off).norm(), seen.norm(), 1e-12);
+  expect_found("pull", other);
+}
 
 /// The block without photos; positions of its surface are measured in all examples, made with a
 /// weight that no one tells and noise.
@@ -89,7 +116,7 @@ std::shared_ptr<const Scene> tracked_block(double sigma) {
     example.measured.clear();
     for (const double z : {10.0, 20.0, 30.0, 40.0})
       for (const double x : {-10.0, 10.0}) {
-        MeasuredSpec one = measured(Kind::position, sigma);
+        MeasuredSpec one = measured(Kind::position_of, sigma);
         one.point = {x, x < 0.0 ? -8.0 : 8.0, z};
         example.measured.push_back(one);
       }
@@ -107,7 +134,7 @@ std::shared_ptr<const Scene> tracked_block(double sigma) {
   std::normal_distribution<double> normal(0.0, sigma);
   for (const auto& example : seen.examples)
     for (const auto& one : example.measured) {
-      Eigen::Vector3d& value =
+      VectorXd& value =
           known->capture.examples[static_cast<size_t>(example.example)].measured[one.index].value;
       value = one.predicted;
       for (double& x : value) x += normal(engine);

@@ -1,0 +1,101 @@
+// Predictions of sensors against what they are, their derivatives against finite differences.
+#include "estimation/evaluation/sensor.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "estimation/effects/catalogue.h"
+#include "estimation/effects_scene.h"
+
+namespace hookeye::test {
+namespace {
+
+using Kind = MeasuredSpec::Kind;
+
+MeasuredSpec told(Kind kind, const Vector3d& direction) {
+  MeasuredSpec out;
+  out.kind = kind;
+  out.region = "grip";
+  out.point = {0.0, 0.0, 40.0};
+  out.direction = direction;
+  out.value = VectorXd::Zero(kind_of(out).size);
+  out.sigma = VectorXd::Ones(kind_of(out).size);
+  return out;
+}
+
+/// The block with every kind of sensor in every example, and no photos.
+std::shared_ptr<const Scene> sensed_block() {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
+    scene->photos[e].clear();
+    scene->capture.examples[e].photos.clear();
+    scene->capture.examples[e].measured = {
+        told(Kind::force_on, {}), told(Kind::moment_on, {1.0, 2.0, 30.0}),
+        told(Kind::position_of, {}), told(Kind::travel_of, Vector3d(1, 2, 2) / 3.0),
+        told(Kind::rotation_of, Vector3d(2, 1, 2) / 3.0)};
+  }
+  return scene;
+}
+
+TEST(Sensor, DerivativesAreThoseOfFiniteDifferences) {
+  const auto scene = sensed_block();
+  ModelForm form = base_form(scene);
+  for (const char* name : {"gravity", "placement"})
+    form.ingredients.push_back(
+        find_effect(name)->candidates(form.realise(form.initial()), nullptr).front());
+  VectorXd p = form.initial();
+  p.segment<3>(1) = Vector3d(3000.0, -2000.0, -9000.0);
+  p.tail(form.size() - 4).setConstant(0.01);
+  Workspace workspace(scene);
+  const auto at = [&](const VectorXd& there) {
+    return std::get<Evaluation>(workspace.evaluate(form, there, {}));
+  };
+  const Evaluation here = at(p);
+  const auto parameters = form.parameters();
+  for (int i = 0; i < p.size(); ++i) {
+    VectorXd step = VectorXd::Zero(p.size());
+    step[i] = 1e-3 * (parameters[i].positive ? p[i] : parameters[i].typical);
+    const Evaluation up = at(p + step), down = at(p - step);
+    for (size_t e = 0; e < here.examples.size(); ++e)
+      for (size_t k = 0; k < here.examples[e].measured.size(); ++k) {
+        const auto& one = here.examples[e].measured[k];
+        const VectorXd difference =
+            (up.examples[e].measured[k].predicted - down.examples[e].measured[k].predicted) /
+            (2.0 * step[i]);
+        const double scale = one.J.norm() * 1e-4 + difference.norm();
+        EXPECT_LT((one.J.col(i) - difference).norm(), 2e-3 * scale + 1e-9)
+            << parameters[i].name << " of sensor " << k << " in example " << e;
+      }
+  }
+}
+
+/// A region that moves as a rigid body tells that motion, whatever else the body does.
+TEST(Sensor, ARigidJawTellsItsTravelAndItsTurn) {
+  const auto scene = sensed_block();
+  const Region& grip = scene->body->regions.at("grip");
+  const Matrix3Xd& X = scene->body->mesh.X;
+  ModelForm form = base_form(scene);
+  const Model model = form.realise(form.initial());
+  const Vector3d axis = Vector3d(2, 1, 2) / 3.0, move(0.5, -0.3, 2.0);
+  for (const double degrees : {-170.0, -20.0, 0.0, 3.0, 90.0, 400.0}) {
+    Equilibrium state;
+    state.q = X.reshaped();
+    const Eigen::Isometry3d motion =
+        Eigen::Translation3d(move) * Eigen::AngleAxisd(degrees * M_PI / 180.0, axis);
+    for (const int node : grip.nodes) state.q.segment<3>(3 * node) = motion * X.col(node);
+    const Eigen::MatrixXd none;
+    const Sensed seen{*scene, model, 0, state, none};
+    MeasuredSpec turn = told(Kind::rotation_of, axis);
+    turn.value[0] = degrees + 100.0;  // the machine counts whole turns
+    EXPECT_NEAR(predicted(turn, seen).value[0], degrees, 1e-9);
+  }
+  Equilibrium state;
+  state.q = (X.colwise() + move).reshaped();
+  const Eigen::MatrixXd none;
+  EXPECT_NEAR(predicted(told(Kind::travel_of, axis), {*scene, model, 0, state, none}).value[0],
+              axis.dot(move), 1e-12);
+}
+
+}  // namespace
+}  // namespace hookeye::test
