@@ -104,6 +104,8 @@ struct RigidMotion {
   Vector3d center = Vector3d::Zero();
   Vector3d move = Vector3d::Zero();
   Vector3d apply(const Vector3d& X) const;  ///< rotate about center, then move
+  /// Share s of it: s times the angle, s times the move.
+  RigidMotion part(double s) const { return {axis, s * degrees, center, s * move}; }
 };
 
 struct SupportSpec {

@@ -39,14 +39,17 @@ struct EquilibriumSolver::Impl {
 namespace {
 
 /// Jump of the prescribed unknowns from q to their place at load fraction s, 3n, zero elsewhere.
+/// The way there is straight; from rest it goes round as supports turn.
 VectorXd prescribed_jump(const Problem& problem, const VectorXd& rest, const VectorXd& from,
                          const VectorXd& q, double s) {
   VectorXd jump = VectorXd::Zero(q.size());
   const auto& loading = problem.loading;
+  const bool round = !loading.turns.empty() && s < 1.0 && from == rest;
   for (size_t i = 0; i < loading.prescribed.size(); ++i) {
     const int u = loading.prescribed[i];
     const double target = rest[u] + loading.displacement[static_cast<Eigen::Index>(i)];
-    jump[u] = from[u] + s * (target - from[u]) - q[u];
+    jump[u] = round ? rest[u] + loading.displacement_at(problem.mesh.X, i, s) - q[u]
+                    : from[u] + s * (target - from[u]) - q[u];
   }
   return jump;
 }
@@ -176,14 +179,17 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
     own.smallest_step = std::max(own.smallest_step, kShortestHeld);
   }
   NewtonOutcome out;
-  double s = 0, step = 1;
+  // One step of half a turn would lead straight through the axis, and one of a whole turn nowhere.
+  const double first = x == rest ? problem.loading.first_step() : 1.0;
+  double s = 0, step = first;
   while (s < 1) {
     if (state.iterations >= own.most_iterations)
       return failed(fmt::format("no equilibrium within {} Newton iterations", state.iterations));
-    step = std::min(step, 1 - s);
+    step = std::min({step, 2.0 * first, 1 - s});
     const double next = step >= 1 - s - 1e-12 ? 1.0 : s + step;
     state.set_tangent(problem, x, s);
-    if (s == 0 && in_equilibrium(at_once, options, x, out_of_balance)) {
+    const bool wound = from == rest && problem.loading.winds();
+    if (s == 0 && !wound && in_equilibrium(at_once, options, x, out_of_balance)) {
       if (options.factored) state.set_tangent(at_once, x, 1.0);
       reached = 1.0;
       return {true, 0.0, ""};

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "capture_io/input_error.h"
@@ -40,6 +42,33 @@ void Loading::prescribe_rigid(const TetMesh& mesh, const Region& region,
     for (int i = 0; i < 3; ++i) added[3 * a + i] = u[i];
   }
   merge(added, *this);
+  std::erase_if(turns, [&](const Turn& turn) { return turn.nodes == region.nodes; });
+  if (motion.degrees != 0.0) turns.push_back({region.nodes, motion});
+}
+
+double Loading::displacement_at(const Matrix3Xd& X, size_t i, double s) const {
+  const int node = prescribed[i] / 3, component = prescribed[i] % 3;
+  double u = s * displacement[static_cast<Eigen::Index>(i)];
+  for (const Turn& turn : turns)
+    if (std::binary_search(turn.nodes.begin(), turn.nodes.end(), node)) {
+      const Vector3d x = X.col(node);
+      u += (turn.motion.part(s).apply(x) - x - s * (turn.motion.apply(x) - x))[component];
+    }
+  return u;
+}
+
+bool Loading::winds() const {
+  constexpr double kHalfTurn = 180.0;
+  return std::any_of(turns.begin(), turns.end(),
+                     [](const Turn& turn) { return std::abs(turn.motion.degrees) >= kHalfTurn; });
+}
+
+double Loading::first_step() const {
+  constexpr double kAtOnce = 30.0;
+  double step = 1.0;
+  for (const Turn& turn : turns)
+    step = std::min(step, kAtOnce / std::max(std::abs(turn.motion.degrees), kAtOnce));
+  return step;
 }
 
 void Loading::release(const Region& region) {

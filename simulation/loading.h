@@ -63,7 +63,20 @@ struct Loading {
   std::vector<int> prescribed;  ///< ascending, unique unknowns
   VectorXd displacement;        ///< of each prescribed unknown at full load [length]
   std::vector<std::shared_ptr<const ForceTerm>> forces;
+  /// Regions that turn: on the way from rest they go round by the angle, not straight through the
+  /// axis; a whole turn ends where it began.
+  struct Turn {
+    std::vector<int> nodes;  ///< ascending
+    RigidMotion motion;
+  };
+  std::vector<Turn> turns;
 
+  /// Displacement of prescribed[i] at the share s of the load, coming from the body at rest X.
+  double displacement_at(const Matrix3Xd& X, size_t i, double s) const;
+  /// A support turns by half a turn or more: where it ends does not tell the way there.
+  bool winds() const;
+  /// Share of the load that turns no support by more than 30 degrees, 1 at most.
+  double first_step() const;
   /// Prescribes component i of all nodes of a region (later calls override).
   void prescribe(const TetMesh& mesh, const Region& region, int component, double displacement);
   /// Prescribes all components so that the region moves rigidly.
