@@ -8,11 +8,11 @@
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
-#include "app/commands/decision_log.h"
 #include "app/commands/kept_work.h"
 #include "app/commands/limit_options.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
+#include "app/report/decision_log.h"
 #include "estimation/output/step_json.h"
 #include "estimation/search/tested.h"
 
@@ -167,8 +167,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
   if (const auto high = high_floor(found.floor); !high.empty())
     hint += (hint.empty() ? "" : ". ") + high;
-  const auto tested =
-      value_or_fail(test(found.steps.back().fitted, bench.capture, fit_options()));
+  const auto tested = value_or_fail(test(found.steps.back().fitted, bench.capture, fit_options()));
   run.update([&](nlohmann::json& timeline) {
     timeline.erase("tested");
     if (tested) timeline["tested"] = to_json(*tested);

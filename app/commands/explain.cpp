@@ -7,8 +7,8 @@
 
 #include "app/commands/add_step.h"
 #include "app/commands/commands.h"
-#include "app/commands/decision_log.h"
 #include "app/commands/run_support.h"
+#include "app/report/decision_log.h"
 
 namespace hookeye {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/commands/decision_log.h"
 #include "app/commands/tables.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/report/answer.h"
+#include "app/report/decision_log.h"
 #include "capture_io/json_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
@@ -192,7 +192,8 @@ namespace {
 /// written, so that no kill leaves it beside a step that it does not mean.
 void drop_verdict(Run& run, bool of_search) {
   run.update([&](nlohmann::json& timeline) {
-    for (const char* key : {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all", "tested"})
+    for (const char* key :
+         {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all", "tested"})
       timeline.erase(key);
     if (!of_search) timeline.erase("search");
   });

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/report/answer.h"
+#include "app/report/decision_log.h"
 #include "app/report/encode_png.h"
 #include "app/report/facts.h"
 #include "app/report/inside.h"
@@ -173,6 +174,22 @@ json RunView::photos_json(json& faults, int factor) {
   return all;
 }
 
+namespace {
+
+/// What was decided of the step's model; what cannot be read is a fault and left out.
+json decisions_json(const fs::path& run, const fs::path& step, json& faults) {
+  json all = json::array();
+  if (!inside(run, step / "decisions.jsonl")) return all;
+  try {
+    for (const Decision& one : decisions_of(step)) all.push_back(to_json(one));
+  } catch (const InputError& error) {
+    faults.push_back(step.filename().string() + "/decisions.jsonl: " + error.wrong());
+  }
+  return all;
+}
+
+}  // namespace
+
 json RunView::step_json(const fs::path& step, json& faults, int factor) {
   const std::string name = step.filename().string();
   json out = {{"folder", name},
@@ -182,6 +199,7 @@ json RunView::step_json(const fs::path& step, json& faults, int factor) {
   if (fs::exists(step / "diagnosis.json"))  // else it has not been diagnosed, which is no fault
     out["diagnosis"] = read_json(folder_, step / "diagnosis.json", name + "/diagnosis.json",
                                  "what this step lacks is not here", faults);
+  out["decisions"] = decisions_json(folder_, step, faults);
   out["residuals"] = json::object();
   out["fields"] = json::object();
   out["files"] = json::array();

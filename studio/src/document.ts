@@ -13,7 +13,7 @@ export interface PhotoEntry {
   name: string;
   example: string;
   camera: string;
-  use: 'fit' | 'validate';
+  use: 'fit' | 'validate' | 'test';
   width: number;
   height: number;
   file: string;
@@ -172,11 +172,25 @@ export interface TimelineStep {
   made_in?: string;
   made_by?: Record<string, string>;
 }
+/** One line of decisions.jsonl (estimation/fit/decision.h). */
+export interface DecisionLine {
+  asked: 'named' | 'screened' | 'refitted' | 'ranked' | 'stands' | 'widened' | 'dropped' | 'swapped' | 'tied' | 'paired' | 'ended';
+  candidate: string;
+  accepted: boolean;
+  value: number | null;
+  limit: number | null;
+  option: string;
+  why: string;
+  where: string;
+  cpu_s?: number;
+}
 export interface StepEntry {
   folder: string;
   metrics: Metrics | null;
   /** `energy`: as of the metrics, its bands reaching for the mesh. */
   diagnosis: {effects: EffectScore[]; gate: number; whiteness_p: number; mesh_note?: string; energy?: EnergyCurve[]} | null;
+  /** Left out by older programs. */
+  decisions?: DecisionLine[];
   residuals: Record<string, Picture>;
   fields: Record<string, string>;
   /** The whole bodies as VTK files; none where a report had no room for them. */

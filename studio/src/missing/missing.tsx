@@ -10,6 +10,7 @@ import {bothOf, decidedBy, triedBy, whyNotNamed} from '../story';
 import {Confusion} from './confusion';
 import {FreeForm} from './free_form';
 import {Removed} from './removed';
+import {Tried} from './tried';
 import {Share, Wide} from '../widgets';
 
 /** The effect under the pointer: looked at, not chosen. */
@@ -132,6 +133,7 @@ export function Missing() {
             ))}
           </tbody>
         </Wide>
+        <Tried />
       </div>
       <div class="side">
         <FreeForm />

@@ -1,4 +1,4 @@
-#include "app/commands/decision_log.h"
+#include "app/report/decision_log.h"
 
 #include <ctime>
 #include <fstream>
