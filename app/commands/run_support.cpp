@@ -51,6 +51,7 @@ nlohmann::json timeline_shape() {
   score["?confusion"] = json::array({{{"effect", "text"}, {"?cosine", some}}});
   const json step = {{"added", "text|null"},
                      {"?dropped", texts},
+                     {"?not_compared", texts},
                      {"effects", texts},
                      {"chi_fit", "number"},
                      {"?chi_validate", some},
@@ -164,6 +165,7 @@ Contested contested_in(const nlohmann::json& step) {
   Contested out;
   if (!step.at("added").is_null()) out.added = step.at("added");
   out.dropped = step.value("dropped", std::vector<std::string>());
+  out.not_compared = step.value("not_compared", std::vector<std::string>());
   for (const auto& rival : step.value("rivals", nlohmann::json::array()))
     out.rivals.push_back({rival.at("effect"), rival.at("score"), rival.at("chi_fit"), 0.0});
   out.chi_fit = number_in(step, "chi_fit");

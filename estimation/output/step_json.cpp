@@ -38,6 +38,7 @@ json timeline_entry(const Step& step) {
   json entry = {{"name", step.name},
                 {"added", step.added.empty() ? json() : json(step.added)},
                 {"dropped", step.dropped},
+                {"not_compared", step.not_compared},
                 {"effects", effects_in(fitted.form)},
                 {"chi_fit", fitted.evaluation.chi(false)},
                 {"chi_validate", held > 0.0 ? json(held) : json()},

@@ -62,12 +62,17 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
   const Racer winner = racers.front();
   std::vector<Racer> kept;
   const EffectScore* mesh = mesh_ahead(diagnosis, diagnosis.limits().tie);
+  const auto leading = [&](const std::string& effect) {
+    return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
+      return score.effect == effect && leads(diagnosis, score);
+    });
+  };
   int places = most;
   for (size_t i = 0; i < racers.size() && static_cast<int>(i) < most; ++i)
-    places -= racers[i].effect == first;
+    places -= racers[i].effect == first || leading(racers[i].effect);
   for (Racer& racer : racers) {
     const bool held = racer.effect == first || (mesh && racer.effect == mesh->effect) ||
-                      sensors_alone(*racer.form.ingredients.back());
+                      leading(racer.effect) || sensors_alone(*racer.form.ingredients.back());
     if (!held && !ties_with_first(diagnosis, racer.effect) && racer.out_of_reach_of(winner)) {
       tell(decided,
            {Asked::refitted,
@@ -172,6 +177,38 @@ std::vector<Raced> raced(const std::vector<Racer>& racers) {
   return out;
 }
 
+namespace {
+
+/// Whoever leads by evidence and could not be screened (its first step led nowhere) is fitted from
+/// coarse to fine all the same.
+std::optional<NumericalFailure> refit_unscreened(Workspace& workspace, const Step& step,
+                                                 const Diagnosis& entered,
+                                                 const DiscoverOptions& options,
+                                                 const DiscoverEvents& events, Contest& out) {
+  for (const EffectScore& score : entered.effects) {
+    const bool ran = std::any_of(out.racers.begin(), out.racers.end(),
+                                 [&](const Racer& racer) { return racer.effect == score.effect; });
+    if (ran || !leads(entered, score)) continue;
+    auto result = announced(events, score.effect,
+                            [&] { return add_effect(workspace, step.fitted, score, options.fit); });
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+      if (cancelled(*failure)) return *failure;
+      tell(options.fit.decided, {Asked::refitted, score.effect, false, {}, failure->reason});
+      out.not_compared.push_back(score.effect);
+      continue;
+    }
+    out.refits.push_back({score.effect, std::get<Fitted>(std::move(result)), 0.0});
+    tell(options.fit.decided, {Asked::refitted,
+                               score.effect,
+                               true,
+                               {},
+                               "leads by evidence: fitted though its first step led nowhere"});
+  }
+  return {};
+}
+
+}  // namespace
+
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
                                                       const std::optional<Beaten>& beaten,
                                                       const DiscoverOptions& options,
@@ -221,8 +258,13 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
            step.diagnosis.floor.limits->floor.at * step.diagnosis.floor.chi, "floor.at"},
           fmt::format("refitted in {} iterations: what it leaves of fitted photos",
                       refits.back().fitted.iterations)});
-    if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) break;
+    if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) {
+      rank(out, step);
+      return out;
+    }
   }
+  if (auto failure = refit_unscreened(workspace, step, entered, options, events, out))
+    return *failure;
   if (!refits.empty()) rank(out, step);
   return out;
 }

@@ -46,6 +46,8 @@ struct Contest {
   double before = 0.0;           ///< score of the step that they start from
   Fitted reference;              ///< whose correlation all scores are of
   double measured_noise2 = 1.0;  ///< Yardstick's
+  /// Who leads by evidence (leads()) and could not be fitted in any form.
+  std::vector<std::string> not_compared;
 };
 
 /// Scores the refits, of which there are some, on fitted and held-out photos with the correlation

@@ -1,5 +1,8 @@
 #include "estimation/search/discover.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -18,36 +21,6 @@
 #include "estimation/search/widening.h"
 
 namespace hookeye {
-
-std::vector<std::string> effects_in(const ModelForm& form) {
-  std::vector<std::string> names;
-  for (size_t i = base_form(form.scene).ingredients.size(); i < form.ingredients.size(); ++i)
-    if (const std::string name = form.ingredients[i]->name();
-        std::find(names.begin(), names.end(), name) == names.end())
-      names.push_back(name);
-  return names;
-}
-
-Contested contested(const Step& step) {
-  const Evaluation& left = step.fitted.evaluation;
-  return {step.added,      step.dropped,   step.rivals,
-          left.chi(false), left.chi(true), measured_r2(left)};
-}
-
-TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& floor) {
-  TakenByNames out;
-  const auto over = [&](double chi) { return std::max(0.0, chi * chi - floor.chi * floor.chi); };
-  for (size_t k = 1; k < steps.size(); ++k) {
-    const Contested &before = steps[k - 1], &after = steps[k];
-    if (numerical(after.added) ||
-        std::any_of(after.dropped.begin(), after.dropped.end(), numerical))
-      continue;
-    out.fit += over(before.chi_fit) - over(after.chi_fit);
-    out.held_out += over(before.chi_validate) - over(after.chi_validate);
-    out.measured += before.measured_r2 - after.measured_r2;
-  }
-  return out;
-}
 
 namespace {
 
@@ -182,6 +155,7 @@ class Search {
       if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
     }
     if (auto failure = wider_.mend(contest, step, out_.floor)) return *failure;
+    if (auto failure = wider_.ask_leaders(contest, step, out_.floor)) return *failure;
     if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
                                        refused_swaps_, options_, events_);
         found && told_standing(options_.fit.decided, refused_by(step, found->second.in))) {
@@ -234,6 +208,7 @@ class Search {
     leading.name = leading.added = first.effect;
     leading.rivals = rivals_of(contest, first.score);
     leading.raced = raced(contest.racers);
+    leading.not_compared = contest.not_compared;
     leading.fitted = first.fitted;
     together_ = std::move(second);
     stand_in(std::move(leading));
@@ -269,6 +244,7 @@ class Search {
     next.name = next.added = winner.effect;
     next.raced = raced(contest.racers);
     next.rivals = rivals_of(contest, winner.score);
+    next.not_compared = contest.not_compared;
     const double tie = newest().diagnosis.limits().tie;
     std::vector<const Refit*> equals;
     for (const auto& rival : contest.refits)
@@ -372,6 +348,19 @@ class Search {
     return stays.empty() ? moved_at_rest(last.fitted, last.diagnosis) : stays;
   }
 
+  /// Who stood out as much as what was added, could not be fitted, and is not in the model.
+  std::string not_compared() const {
+    std::vector<std::string> names;
+    for (const Contested& one : whole_run())
+      for (const std::string& name : one.not_compared)
+        if (std::find(out_.missing.begin(), out_.missing.end(), name) == out_.missing.end() &&
+            std::find(names.begin(), names.end(), name) == names.end())
+          names.push_back(name);
+    if (names.empty()) return "";
+    return fmt::format("; not compared: {}, which stood out as much and could not be fitted",
+                       fmt::join(names, ", "));
+  }
+
   Discovery finish() {
     std::string why;
     const Step& last = newest();
@@ -379,7 +368,7 @@ class Search {
     settle_tie(out_.tie, out_.missing);
     out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
     if (out_.verdict != Verdict::unexplained && !out_.all)
-      if (const std::string doubt = in_doubt(last); !doubt.empty())
+      if (const std::string doubt = in_doubt(last) + not_compared(); !doubt.empty())
         out_.verdict = Verdict::unexplained, why += doubt;
     out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_.words());
     tell(options_.fit.decided, {Asked::ended,

@@ -27,7 +27,8 @@ struct Contested {
   std::vector<std::string> dropped;
   std::vector<Rival> rivals;
   double chi_fit = 0.0, chi_validate = 0.0;
-  double measured_r2 = 0.0;  ///< of forces, moments and positions, in told deviations
+  double measured_r2 = 0.0;               ///< of forces, moments and positions, in told deviations
+  std::vector<std::string> not_compared;  ///< Step::not_compared
 };
 
 struct DiscoverOptions {
@@ -49,6 +50,8 @@ struct Step {
   Diagnosis diagnosis;        ///< of this step's model
   std::vector<Raced> raced;   ///< all that the added effect was chosen from, best first
   std::vector<Rival> rivals;  ///< those of them that were refitted, the added one among them
+  /// Who stood out as much as any when the effect was added, and could not be fitted.
+  std::vector<std::string> not_compared;
 };
 
 /// Names of what stands in `form` beyond the capture's own model, in order; each

@@ -112,6 +112,15 @@ bool ties_with_first(const Diagnosis& diagnosis, const std::string& effect) {
   });
 }
 
+bool leads(const Diagnosis& diagnosis, const EffectScore& score) {
+  if (numerical(score.effect) || !nameable(score, diagnosis)) return false;
+  double most = score.evidence;
+  for (const EffectScore& other : diagnosis.effects)
+    if (!numerical(other.effect) && nameable(other, diagnosis))
+      most = std::max(most, other.evidence);
+  return score.evidence > most - diagnosis.limits().tie;
+}
+
 bool Racer::at_floor() const {
   const double most = form.scene->limits->floor.at * trial.floor;
   return trial.chi_fit <= most && trial.chi_validate <= most;

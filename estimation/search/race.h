@@ -41,6 +41,10 @@ struct Racer {
 /// Of as much evidence as the effect of the largest: two steps from afar say less than the scores.
 bool ties_with_first(const Diagnosis& diagnosis, const std::string& effect);
 
+/// Named, physical, and of as much evidence as any such effect: nobody else may be called the
+/// explanation before it has been fitted.
+bool leads(const Diagnosis& diagnosis, const EffectScore& score);
+
 /// What an effect left of the misfit, with chi of half-size photos after the steps of a race.
 struct Raced {
   std::string effect;

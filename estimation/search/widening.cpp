@@ -254,6 +254,26 @@ std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& s
   return {};
 }
 
+std::optional<NumericalFailure> WiderForms::ask_leaders(Contest& contest, const Step& step,
+                                                        const Floor& floor) {
+  const std::string winner = contest.refits.front().effect;
+  if (numerical(winner)) return {};
+  bool any = false;
+  for (Refit& refit : contest.refits) {
+    const bool leading = std::any_of(
+        step.diagnosis.effects.begin(), step.diagnosis.effects.end(), [&](const auto& score) {
+          return score.effect == refit.effect && leads(step.diagnosis, score);
+        });
+    if (!leading || refit.effect == winner) continue;
+    auto result = ask(refit.fitted, refit.fitted.form.ingredients.size() - 1, floor);
+    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+    if (auto& wide = std::get<std::optional<Fitted>>(result))
+      refit.fitted = std::move(*wide), any = true;
+  }
+  if (any) rank(contest, step);
+  return {};
+}
+
 std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
                                          const Floor& floor, size_t first_effect,
                                          const FitOptions& options, const DiscoverEvents& events) {

@@ -44,6 +44,10 @@ class WiderForms {
   /// both: before what stands is doubted for it, it is asked for a wider form, and the contest is
   /// ranked anew. (Creep that levels off is growing creep to the first loads.)
   std::optional<NumericalFailure> mend(Contest& contest, const Step& step, const Floor& floor);
+  /// Who leads by evidence and lost the contest may have stood in a form that did not suit it (a
+  /// ball for two halves): it is asked for its further forms, and the contest is ranked anew.
+  std::optional<NumericalFailure> ask_leaders(Contest& contest, const Step& step,
+                                              const Floor& floor);
   /// Widening came to this form: a plainer one may do at the floor.
   bool came_to(const Ingredient& form) const;
 
