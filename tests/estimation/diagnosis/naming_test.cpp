@@ -54,6 +54,36 @@ TEST(Naming, TiesAreDeclared) {
               ElementsAre("gravity", "pressure"));
 }
 
+TEST(Naming, NobodyWhoLeadsIsRefusedUnfitted) {
+  // Physical effects among themselves: the mesh leads nobody, and chance leads nothing.
+  const Diagnosis found =
+      of({scored("mesh_resolution", 90.0), scored("stiffness_field", 60.0), scored("gravity", 58.0),
+          scored("swelling", 50.0), scored("creep", 7.0)});
+  std::vector<std::string> leading;
+  for (const EffectScore& score : found.effects)
+    if (leads(found, score)) leading.push_back(score.effect);
+  EXPECT_THAT(leading, ElementsAre("stiffness_field", "gravity"));
+  const Diagnosis quiet = of({scored("creep", 7.0)});
+  EXPECT_FALSE(leads(quiet, quiet.effects[0]));
+}
+
+/// Why each effect is or is not named, with the number that it was held against.
+TEST(Naming, EveryEffectHasADecision) {
+  EffectScore blind = scored("soft_clamp", 50.0);
+  blind.testable = false;
+  blind.why_not = "untestable";
+  const auto decisions =
+      naming_decisions(of({scored("gravity", 60.0), blind, scored("creep", 7.0)}));
+  ASSERT_EQ(decisions.size(), 3u);
+  EXPECT_TRUE(decisions[0].accepted);
+  EXPECT_EQ(decisions[0].by.option, "diagnosis.gate");
+  EXPECT_EQ(decisions[1].why, "untestable");
+  EXPECT_FALSE(decisions[2].accepted);
+  EXPECT_EQ(decisions[2].by.value, 7.0);
+  EXPECT_EQ(decisions[2].by.limit, 8.0);
+  EXPECT_THAT(decisions[2].where, testing::StartsWith("estimation/diagnosis/naming.cpp:"));
+}
+
 TEST(Naming, TheMeshMayBeAllWhereItExplainsMoreThanHalf) {
   EffectScore mesh = scored("mesh_resolution", 50.0), weight = scored("gravity", 60.0);
   mesh.explains = 0.6, weight.explains = 0.9;
