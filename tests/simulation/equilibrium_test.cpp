@@ -162,7 +162,9 @@ TEST(Solver, ATurnGoesRoundByItsAngle) {
       // bar that keeps its volume and its length).
       const double moment = support_moment(e, head, Vector3d(8, 1, 1)).x();
       if (degrees == 45.0 && move == 0.0) first = moment;
-      if (move == 0.0) EXPECT_NEAR(moment / first, degrees / 45.0, 0.25 * std::abs(degrees / 45.0));
+      if (move == 0.0) {
+        EXPECT_NEAR(moment / first, degrees / 45.0, 0.25 * std::abs(degrees / 45.0));
+      }
     }
 }
 
