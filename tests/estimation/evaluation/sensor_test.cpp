@@ -31,8 +31,8 @@ std::shared_ptr<const Scene> sensed_block() {
     scene->photos[e].clear();
     scene->capture.examples[e].photos.clear();
     scene->capture.examples[e].measured = {
-        told(Kind::force_on, {}), told(Kind::moment_on, {1.0, 2.0, 30.0}),
-        told(Kind::position_of, {}), told(Kind::travel_of, Vector3d(1, 2, 2) / 3.0),
+        told(Kind::force_on, Vector3d::Zero()), told(Kind::moment_on, {1.0, 2.0, 30.0}),
+        told(Kind::position_of, Vector3d::Zero()), told(Kind::travel_of, Vector3d(1, 2, 2) / 3.0),
         told(Kind::rotation_of, Vector3d(2, 1, 2) / 3.0)};
   }
   return scene;

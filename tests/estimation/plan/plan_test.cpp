@@ -13,7 +13,7 @@
 #include "estimation/effects/catalogue.h"
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation/photo_evaluation.h"
-#include "estimation/output/step_json.h"
+#include "estimation/plan/plan_json.h"
 #include "estimation/plan/plan_prediction.h"
 #include "estimation/plan/planned_scene.h"
 

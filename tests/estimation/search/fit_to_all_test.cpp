@@ -169,15 +169,24 @@ TEST_F(CreepOfTwoLoads, TellsItsRivalsApartWhereAllAreFitted) {
   const auto tie = [&](const std::vector<Contested>& past) {
     return tie_of_all(workspace, all, past, {}, floor, base, {}, {});
   };
+  /// A step of a run, as far as its contest tells.
+  const auto won = [](const std::string& added, std::vector<Rival> rivals,
+                      std::vector<std::string> dropped = {}) {
+    Contested out;
+    out.added = added;
+    out.rivals = std::move(rivals);
+    out.dropped = std::move(dropped);
+    return out;
+  };
   const Rival creep{"creep", -1.0, floor.chi, 5.0}, far{"creep", -1.0, 9.0, 9.0};
-  EXPECT_THAT(tie({{"softening", {}, {creep}}}), testing::ElementsAre("softening", "creep"));
-  EXPECT_THAT(tie({{"softening", {}, {far}}}), testing::IsEmpty());
-  EXPECT_THAT(tie({{"gravity", {}, {creep}}}), testing::IsEmpty());
+  EXPECT_THAT(tie({won("softening", {creep})}), testing::ElementsAre("softening", "creep"));
+  EXPECT_THAT(tie({won("softening", {far})}), testing::IsEmpty());
+  EXPECT_THAT(tie({won("gravity", {creep})}), testing::IsEmpty());
   // Whoever took the winner's place answers for it.
-  EXPECT_THAT(tie({{"gravity", {}, {creep}}, {"softening", {"gravity"}, {}}}),
+  EXPECT_THAT(tie({won("gravity", {creep}), won("softening", {}, {"gravity"})}),
               testing::ElementsAre("softening", "creep"));
   all.fitted = hookeye::fitted_with(workspace, "creep", "steadily with the order");
-  EXPECT_THAT(tie({{"creep", {}, {{"softening", -1.0, floor.chi, 5.0}}}}), testing::IsEmpty());
+  EXPECT_THAT(tie({won("creep", {{"softening", -1.0, floor.chi, 5.0}})}), testing::IsEmpty());
 }
 
 TEST(FitToAll, WhereNothingIsHeldOutNothingIsAsked) {
