@@ -139,7 +139,7 @@ Image error_map(const Scene& scene, const Fitted& fitted, int e, double full) {
       double near = 1e9, error = 0;
       for (const auto& one : example.measured) {
         const MeasuredSpec& told = scene.capture.examples[e].measured[one.index];
-        if (told.kind != MeasuredSpec::Kind::position) continue;
+        if (told.kind != MeasuredSpec::Kind::position_of) continue;
         const double d = std::hypot(told.point.x() - X, told.point.y() - Y);
         if (d < near) near = d, error = (one.predicted - told.value).norm();
       }
@@ -188,7 +188,7 @@ void draw(const std::vector<Result>& shown, const std::vector<Image>& inputs, in
       double full = 0;
       for (const auto& one : r.stvk_fit.evaluation.find(last)->measured) {
         const auto& told = r.scene->capture.examples[last].measured[one.index];
-        if (told.kind == MeasuredSpec::Kind::position)
+        if (told.kind == MeasuredSpec::Kind::position_of)
           full = std::max(full, (one.predicted - told.value).norm());
       }
       const int left = kLeft + column * (kTile + 4);
