@@ -70,7 +70,9 @@ build_hookeye() {
   elif ! grep -q '^HOOKEYE_TESTS:BOOL=ON$' "$build_folder/CMakeCache.txt" 2>/dev/null; then
     wanted+=("HOOKEYE_TESTS:BOOL=OFF")
   fi
+  # What a build can do without may have been installed since.
   if [ ! -f "$build_folder/build.ninja" ] ||
+    grep -qE '^(GMSH_LIBRARY|CGAL_DIR|VTK_DIR):.*-NOTFOUND$' "$build_folder/CMakeCache.txt" ||
     [ "$(grep -cxF -f <(printf '%s\n' "${wanted[@]}") "$build_folder/CMakeCache.txt")" -lt ${#wanted[@]} ]; then
     say "Configuring ($build_folder)"
     cmake --preset release "${wanted[@]/#/-D}" || die "configuring failed (see above)"

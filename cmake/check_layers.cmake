@@ -25,7 +25,7 @@ set(below_search images model evaluation effects fit diagnosis)
 set(below_synth images model evaluation effects fit)
 set(below_output images model evaluation effects fit diagnosis plan search)
 # First part of the header's path, as a regular expression.
-set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL "vtk[A-Z][A-Za-z]*" embree3 ceres httplib
+set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL pugixml zlib embree3 ceres httplib
     boost xxhash)
 
 set(faults "")

@@ -41,7 +41,7 @@ function(hookeye_layer name)
 endfunction()
 
 # A program that hosts a library for the main one (capture_io/helper.h), from helpers/NAME.cpp:
-# hookeye_helper(vtk LAYER meshing PRIVATE ${VTK_LIBRARIES}). Whatever uses them depends on `helpers`.
+# hookeye_helper(gmsh LAYER meshing PRIVATE ${GMSH_LIBRARY}). Whatever uses them depends on `helpers`.
 add_custom_target(helpers)
 function(hookeye_helper name)
   cmake_parse_arguments(H "" "LAYER" "PRIVATE" ${ARGN})

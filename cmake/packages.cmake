@@ -1,7 +1,7 @@
 # Every third-party package, found once. Debian package names: packages.txt.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(opencv)
-hookeye_opencv(core imgproc video imgcodecs)
+hookeye_opencv(core imgproc video)
 find_package(OpenImageIO REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
@@ -12,7 +12,8 @@ find_package(embree 3 REQUIRED)
 find_package(Ceres REQUIRED)
 find_package(Boost REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(VTK REQUIRED COMPONENTS CommonCore CommonDataModel IOXML IOGeometry IOPLY)
+find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
 
 find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
@@ -21,7 +22,7 @@ find_library(HWY_LIBRARY hwy REQUIRED)
 find_library(METIS_LIBRARY metis REQUIRED)
 find_library(TETGEN_LIBRARY NAMES tet tetgen REQUIRED)
 find_library(TINYOBJ_LIBRARY tinyobjloader_double REQUIRED)
-find_library(GMSH_LIBRARY gmsh REQUIRED)
+find_library(GMSH_LIBRARY gmsh)  # without it no msh is read, and no medit mesh
 find_package(CGAL QUIET)  # without it `hookeye mesh --repair` says so
 find_library(OPENBLAS_LIBRARY openblas)
 if(NOT OPENBLAS_LIBRARY)

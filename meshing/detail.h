@@ -35,15 +35,14 @@ struct RawVolume {
   std::map<std::string, std::vector<int>> node_groups;
 };
 
-// vtk_io.cpp
+// ply.cpp, stl.cpp, vtu.cpp
 TriangleSoup read_ply(const std::filesystem::path& file);
 TriangleSoup read_stl(const std::filesystem::path& file);
-RawVolume read_vtu(const std::filesystem::path& file, const Place& place);
-// gmsh_io.cpp
+RawVolume read_vtu(const std::filesystem::path& file);
+// ask_gmsh.cpp
 RawVolume read_gmsh(const std::filesystem::path& file, const Place& place);
-// inp.cpp
-RawVolume read_inp(const std::filesystem::path& file);
 // text_mesh.cpp
+RawVolume read_inp(const std::filesystem::path& file);
 RawVolume read_text_mesh(const std::filesystem::path& file);
 
 /// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): tetgen.cpp.

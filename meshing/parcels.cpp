@@ -3,8 +3,6 @@
 namespace hookeye::detail {
 namespace {
 
-using Corners = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
 void demand(bool holds) {
   if (!holds) throw WireFault();
 }
@@ -25,26 +23,6 @@ Place unpack_place(Unpacker& from) {
   from.get(place.line);
   from.get(place.column);
   return place;
-}
-
-void pack(Packer& to, const TriangleSoup& soup) {
-  Corners uv(6, static_cast<Eigen::Index>(soup.uv.size()));
-  for (size_t t = 0; t < soup.uv.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      uv.col(static_cast<Eigen::Index>(t)).segment<2>(2 * k) = soup.uv[t][k];
-  to.put(soup.corners).put(uv);
-}
-
-TriangleSoup unpack_soup(Unpacker& from) {
-  TriangleSoup soup;
-  Corners uv;
-  from.get(soup.corners);
-  from.get(uv);
-  demand(soup.corners.cols() % 3 == 0);
-  demand(uv.cols() == 0 || 3 * uv.cols() == soup.corners.cols());
-  for (const auto& column : uv.colwise())
-    soup.uv.push_back({column.segment<2>(0), column.segment<2>(2), column.segment<2>(4)});
-  return soup;
 }
 
 void pack(Packer& to, const RawVolume& volume) {

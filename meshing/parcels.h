@@ -7,13 +7,11 @@
 namespace hookeye::detail {
 
 void pack(Packer& to, const Place& place);
-void pack(Packer& to, const TriangleSoup& soup);
 void pack(Packer& to, const RawVolume& volume);
 /// Without texture coordinates.
 void pack(Packer& to, const SurfaceMesh& surface);
 Place unpack_place(Unpacker& from);
 /// Throw WireFault where counts or indices do not fit each other.
-TriangleSoup unpack_soup(Unpacker& from);
 RawVolume unpack_volume(Unpacker& from);
 SurfaceMesh unpack_surface(Unpacker& from);
 

@@ -30,7 +30,7 @@ RawVolume read_raw(const std::filesystem::path& file, const Place& place) {
   std::string kind = file.extension().string();
   std::transform(kind.begin(), kind.end(), kind.begin(),
                  [](unsigned char c) { return tolower(c); });
-  if (kind == ".vtu") return detail::read_vtu(file, place);
+  if (kind == ".vtu") return detail::read_vtu(file);
   if (kind == ".inp") return detail::read_inp(file);
   if (kind == ".mesh") {
     const bool medit = first_word(file).rfind("MeshVersionFormatted", 0) == 0;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "capture_io/base64.h"
 #include "capture_io/run.h"
-#include "estimation/output/page_data.h"
 
 namespace hookeye {
 namespace {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "capture_io/base64.h"
 #include "capture_io/json_file.h"
-#include "estimation/output/page_data.h"
 
 #ifdef HOOKEYE_HAS_PAGE
 // Symbols that `ld -r -b binary` makes of page.html (app/CMakeLists.txt).

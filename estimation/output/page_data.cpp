@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "capture_io/base64.h"
 #include "capture_io/run.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/energy_curves.h"
@@ -15,24 +16,6 @@
 namespace hookeye {
 
 using nlohmann::json;
-
-std::string base64(const void* bytes, size_t size) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const auto* in = static_cast<const unsigned char*>(bytes);
-  std::string out;
-  out.reserve((size + 2) / 3 * 4);
-  for (size_t i = 0; i < size; i += 3) {
-    const unsigned have = static_cast<unsigned>(std::min<size_t>(3, size - i));
-    const unsigned word =
-        in[i] << 16 | (have > 1 ? in[i + 1] << 8 : 0) | (have > 2 ? in[i + 2] : 0);
-    out += kDigits[word >> 18];
-    out += kDigits[word >> 12 & 63];
-    out += have > 1 ? kDigits[word >> 6 & 63] : '=';
-    out += have > 2 ? kDigits[word & 63] : '=';
-  }
-  return out;
-}
 
 double length_per_px(const Scene& scene, const PhotoState& state) {
   if (state.camera.projection == Camera::Projection::orthographic) return 1.0 / state.camera.fx;

@@ -29,9 +29,6 @@ void write_page_data(const std::filesystem::path& folder, const Scene& scene, co
 void write_page_free_form(const std::filesystem::path& folder, const Scene& scene,
                           const std::vector<FreeForm>& fields);
 
-/// base64 (RFC 4648).
-std::string base64(const void* bytes, size_t size);
-
 /// Length that one pixel covers at the body: from the depth of its rest centroid.
 double length_per_px(const Scene& scene, const PhotoState& state);
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "capture_io/base64.h"
 #include "capture_io/run.h"
 #include "estimation/evaluation/photo_evaluation.h"
 #include "estimation/output/compare_picture.h"

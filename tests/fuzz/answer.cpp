@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         detail::unpack_volume(from);
         break;
       case 1:
-        detail::unpack_soup(from);
+        detail::unpack_surface(from);
         break;
       case 2:
         unpack_stored(from);

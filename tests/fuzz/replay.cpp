@@ -27,9 +27,6 @@ void replay(const std::string& target, const std::string& bytes) {
     on_file(name, reinterpret_cast<const uint8_t*>(content.data()), content.size(), read);
   };
   const auto volume = [](const auto& file) { read_volume(file, {}); };
-  const auto surface = [](const auto& file) { read_surface(file); };
-  if (target == "helper_vtk" && first % 3 == 0) return on("a.vtu", rest, volume);
-  if (target == "helper_vtk") return on(first % 3 == 1 ? "a.ply" : "a.stl", rest, surface);
   if (target == "helper_gmsh" && first % 2) return on("a.msh", "$MeshFormat\n" + rest, volume);
   if (target == "helper_gmsh") return on("a.mesh", "MeshVersionFormatted " + rest, volume);
   if (target == "helper_pictures")

@@ -7,9 +7,9 @@
 #include <Eigen/Dense>
 #include <random>
 
-#include "capture_io/helper.h"
 #include "meshing/detail.h"
 #include "shapes.h"
+#include "support/needs_helper.h"
 
 namespace hookeye {
 namespace {
@@ -22,10 +22,7 @@ const Place kPlace{"part.stl"};
 
 class Repaired : public Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(helper_folder() / "repair"))
-      GTEST_SKIP() << "SKIPPED: this build has no CGAL (apt-get install libcgal-dev)";
-  }
+  void SetUp() override { HOOKEYE_NEEDS_HELPER("repair", "libcgal-dev"); }
 
   /// 60 x 40 x 20, each side of 4 x 4 squares.
   static SurfaceMesh box() { return test::box_surface({60, 40, 20}, 4); }

@@ -6,6 +6,7 @@
 #include "meshing/body.h"
 #include "meshing/detail.h"
 #include "shapes.h"
+#include "support/needs_helper.h"
 #include "support/shared_data.h"
 
 namespace hookeye {
@@ -231,6 +232,7 @@ std::string msh22(const std::string& tet = "1 2 3 4", const std::string& nodes =
 }
 
 TEST(ReadVolume, MshWithGroups) {
+  HOOKEYE_NEEDS_GMSH();
   const Scratch scratch;
   const TetMesh mesh = read_volume(scratch.write("a.msh", msh22()), kPlace);
   EXPECT_EQ(mesh.order, 1);
@@ -242,6 +244,7 @@ TEST(ReadVolume, MshWithGroups) {
 }
 
 TEST(ReadVolume, GroupsOfMsh2BelongToTheElement) {
+  HOOKEYE_NEEDS_GMSH();
   const Scratch scratch;
   // Two triangles of two groups, of one elementary tag; and a third that is in both groups.
   const TetMesh mesh = read_volume(
@@ -256,6 +259,7 @@ TEST(ReadVolume, GroupsOfMsh2BelongToTheElement) {
 }
 
 TEST(ReadVolume, Msh41AndMedit) {
+  HOOKEYE_NEEDS_GMSH();
   const Scratch scratch;
   const TetMesh msh = read_volume(
       scratch.write("a.msh",
@@ -275,6 +279,7 @@ TEST(ReadVolume, Msh41AndMedit) {
 }
 
 TEST(ReadVolume, AMeditFileThatEndsEarlyIsNoSmallerBody) {
+  HOOKEYE_NEEDS_GMSH();
   const Scratch scratch;
   const auto cut = scratch.write(
       "cut.mesh",
@@ -285,6 +290,7 @@ TEST(ReadVolume, AMeditFileThatEndsEarlyIsNoSmallerBody) {
 }
 
 TEST(ReadVolume, MshFaults) {
+  HOOKEYE_NEEDS_GMSH();
   const Scratch scratch;
   const auto fault = [&](const std::string& text) {
     return refusal([&] { read_volume(scratch.write("a.msh", text), kPlace); });
