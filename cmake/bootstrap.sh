@@ -17,8 +17,8 @@ missing_packages() {
   # dpkg-query fails when it does not know one of the names; what it knows is printed all the same.
   have=$(wanted_packages | xargs dpkg-query -W -f '${db:Status-Abbrev} ${Package}\n' 2>/dev/null |
     awk '$1 == "ii" { print $2 }') || true
-  # Another Node.js (18 or newer) with its npm serves as well, and Debian's npm conflicts with it.
-  if command -v node >/dev/null && command -v npm >/dev/null; then have+=$'\nnodejs\nnpm'; fi
+  # Another Node.js (18 or newer) serves as well.
+  if command -v node >/dev/null; then have+=$'\nnodejs'; fi
   wanted_packages | grep -vxF -f <(printf '%s\n' "$have") || true
 }
 

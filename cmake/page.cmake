@@ -4,8 +4,35 @@
 find_program(NODE NAMES node nodejs)
 find_program(NPM npm)
 
+# Sets NPM_COMMAND in the caller: the machine's npm, else one file of the registry that the page's
+# packages come from too. Debian's npm brings 360 packages.
+function(hookeye_npm)
+  set(NPM_COMMAND ${NPM} PARENT_SCOPE)
+  if(NPM OR NOT NODE)
+    return()
+  endif()
+  set(version 9.9.4)
+  set(hash
+    37371088ba6a0ee2e16af772276277b4627f9e2fde6dca87545664bf50b8ffa9
+    5b96b6943db3e0089e1585be286b71458516b6623f60039f23187ff3b4ab9e35)
+  list(JOIN hash "" hash)
+  set(folder ${CMAKE_BINARY_DIR}/npm-${version})
+  if(NOT EXISTS ${folder}/package/bin/npm-cli.js)
+    message(STATUS "Fetching npm ${version}")
+    file(DOWNLOAD https://registry.npmjs.org/npm/-/npm-${version}.tgz ${folder}.tgz STATUS status)
+    file(SHA512 ${folder}.tgz got)
+    if(NOT got STREQUAL hash)
+      message(WARNING "npm ${version} could not be fetched: ${status}")
+      return()
+    endif()
+    file(ARCHIVE_EXTRACT INPUT ${folder}.tgz DESTINATION ${folder})
+  endif()
+  set(NPM_COMMAND ${NODE} ${folder}/package/bin/npm-cli.js PARENT_SCOPE)
+endfunction()
+
 function(hookeye_page target)
-  if(NOT NODE OR NOT NPM)
+  hookeye_npm()
+  if(NOT NODE OR NOT NPM_COMMAND)
     message(WARNING "node or npm is not there: 'hookeye report' and 'hookeye studio' will not work "
                     "(install the packages of packages.txt and configure again)")
     return()
@@ -18,12 +45,12 @@ function(hookeye_page target)
   set(check_types "")
   if(HOOKEYE_TESTS)
     set(omit "")
-    set(check_types COMMAND ${NPM} run --silent types)
+    set(check_types COMMAND ${NPM_COMMAND} run --silent types)
   endif()
   set(fetched ${CMAKE_BINARY_DIR}/page-packages${omit})
   add_custom_command(
     OUTPUT ${fetched}
-    COMMAND ${NPM} install --no-save --no-audit --no-fund --loglevel=error ${omit}
+    COMMAND ${NPM_COMMAND} install --no-save --no-audit --no-fund --loglevel=error ${omit}
     COMMAND ${CMAKE_COMMAND} -E touch ${fetched}
     DEPENDS ${source}/package.json ${source}/package-lock.json
     WORKING_DIRECTORY ${source}
@@ -31,7 +58,7 @@ function(hookeye_page target)
   add_custom_command(
     OUTPUT ${out}/page.html
     ${check_types}
-    COMMAND ${NPM} run --silent build -- --outDir ${out} --logLevel warn
+    COMMAND ${NPM_COMMAND} run --silent build -- --outDir ${out} --logLevel warn
     DEPENDS ${inputs} ${source}/page.html ${source}/vite.config.ts ${source}/tsconfig.json
             ${fetched}
     WORKING_DIRECTORY ${source}

@@ -25,9 +25,9 @@ std::string_view built_page() {
           static_cast<size_t>(_binary_page_html_end - _binary_page_html_start)};
 #else
   throw InputError({"hookeye"},
-                   "this program was built without its page, because Node.js was "
-                   "not there",
-                   "install nodejs and npm (packages.txt) and build again");
+                   "this program was built without its page, because Node.js or its npm "
+                   "was not there",
+                   "install nodejs (packages.txt), be online, and configure and build again");
 #endif
 }
 
