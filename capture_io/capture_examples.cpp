@@ -215,8 +215,8 @@ MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
   else
     measured.region = region(subject, section.what());
   for (const MeasuredKind& other : measured_kinds()) {
-    const YamlNode::Entry* told = section.entry(other.key);
-    if (told && other.key != std::string(kind.key))
+    if (other.key == std::string("none") || other.key == std::string(kind.key)) continue;
+    if (const YamlNode::Entry* told = section.entry(other.key))
       throw InputError(told->place, fmt::format("`{}` has no meaning for `{}`", other.key, name),
                        fmt::format("only {} has `{}`: remove it", other.name, other.key));
   }
