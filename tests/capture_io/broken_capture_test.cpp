@@ -211,9 +211,9 @@ const BrokenCase broken_cases[] = {
           "{region: grip, force: [0, 0, 2.5]}"),
      "capture.yaml:52:7: loads of example `pull` is a map\n"
      "  write `- {region: grip, force: [0, 0, 2.5]}`"},
-    {"UseUnknown", swap("use: validate", "use: test"),
-     "capture.yaml:63:10: use of example `held_out` is `test`\n"
-     "  one of fit, validate is expected"},
+    {"UseUnknown", swap("use: validate", "use: tests"),
+     "capture.yaml:63:10: use of example `held_out` is `tests`\n"
+     "  one of fit, validate, test is expected"},
     {"PhotoUnknownCamera", swap("      front: photos/pull.png", "      fornt: photos/pull.png"),
      "capture.yaml:55:7: example `pull` has a photo of the unknown camera `fornt`\n"
      "  did you mean `front`?"},
@@ -328,7 +328,7 @@ const BrokenCase broken_cases[] = {
     {"TravelOfThreeNumbers",
      swap("{force_on: grip, value: [0, 0, 2.5]",
           "{travel_of: grip, along: [0, 0, 1], value: [0, 0, 2.5]"),
-     "capture.yaml:59:55: `value` has 3 numbers\n"
+     "capture.yaml:59:52: `value` has 3 numbers\n"
      "  1 of them"},
     {"CovarianceThatIsNone", swap("sigma: 0.02", "covariance: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]"),
      "capture.yaml:59:58: `covariance` is none\n"

@@ -93,7 +93,7 @@ TEST(MeasuredFit, ACovarianceWeighsEachDirectionByItself) {
   MeasuredSpec one = measured(Kind::position_of, 0.1), same = one, other = one;
   const Eigen::Matrix3d turned =
       Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-  const Vector3d sigma(0.1, 0.2, 5.0);
+  const Vector3d sigma(0.02, 0.04, 1.0);
   same.covariance_root = Eigen::Matrix3d(0.1 * Eigen::Matrix3d::Identity());
   other.covariance_root = Eigen::Matrix3d(
       Eigen::LLT<Eigen::Matrix3d>(turned * sigma.cwiseAbs2().asDiagonal() * turned.transpose())
