@@ -213,7 +213,7 @@ const BrokenCase broken_cases[] = {
      "  write `- {region: grip, force: [0, 0, 2.5]}`"},
     {"UseUnknown", swap("use: validate", "use: tests"),
      "capture.yaml:63:10: use of example `held_out` is `tests`\n"
-     "  one of fit, validate, test is expected"},
+     "  did you mean `test`? one of fit, validate, test is expected"},
     {"PhotoUnknownCamera", swap("      front: photos/pull.png", "      fornt: photos/pull.png"),
      "capture.yaml:55:7: example `pull` has a photo of the unknown camera `fornt`\n"
      "  did you mean `front`?"},
