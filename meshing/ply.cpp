@@ -252,7 +252,8 @@ class PlyReader {
       fault(fmt::format("face {} has {} corners", face, corners.size()),
             "triangles only: triangulate the surface");
     for (size_t k = 0; k < 3; ++k) {
-      if (!(corners[k] >= 0 && corners[k] < static_cast<double>(points_.size())))
+      if (!(corners[k] >= 0 && corners[k] < static_cast<double>(points_.size()) &&
+            corners[k] == std::floor(corners[k])))
         fault(fmt::format("face {} names vertex {}", face, corners[k]),
               fmt::format("an index below {}", points_.size()));
       const auto at = static_cast<size_t>(corners[k]);
