@@ -19,6 +19,7 @@ missing_packages() {
     awk '$1 == "ii" { print $2 }') || true
   # Another Node.js (18 or newer) serves as well.
   if command -v node >/dev/null; then have+=$'\nnodejs'; fi
+  if command -v npm >/dev/null; then have+=$'\nnpm'; fi
   wanted_packages | grep -vxF -f <(printf '%s\n' "$have") || true
 }
 
