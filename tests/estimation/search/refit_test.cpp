@@ -114,6 +114,7 @@ TEST_F(TwoForms, TheRaceEndsWhereTheFirstLeavesNothing) {
 TEST(Racer, IsJudgedByWhatIsNoNoise) {
   const auto left = [](double fit, double validate, double floor) {
     Racer racer;
+    racer.form.scene = std::make_shared<const Scene>();  // whose limits count
     racer.trial = {{}, fit, validate, floor};
     return racer.structured();
   };
