@@ -139,8 +139,8 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
 }  // namespace
 
 void add_explain(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "explain", "Why an effect was added or refused, by which number, and where in the sources");
+  CLI::App* command =
+      app.add_subcommand("explain", "Why an effect was added or refused: the number and its line");
   const auto arguments = std::make_shared<ExplainArguments>();
   command->add_option("RUN", arguments->run, "Run folder")->required();
   command->add_option("EFFECT", arguments->effect, "All that was decided of this effect");

@@ -47,7 +47,7 @@ void add_limit_options(CLI::App& command, std::vector<std::string>& told) {
             fmt::print("{}", limits_table());
             throw CLI::Success();
           },
-          "Print the numbers that --set can change, and why they are what they are")
+          "Print the numbers that --set can change, and why they are so")
       ->trigger_on_parse();
 }
 
