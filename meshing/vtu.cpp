@@ -203,8 +203,8 @@ Matrix3Xd points_of(const VtuFile& vtu) {
   return Eigen::Map<const Matrix3Xd>(numbers.reals.data(), 3, static_cast<Eigen::Index>(points));
 }
 
-void add_array(pugi::xml_node to, const char* type, const std::string& name,
-               Eigen::Index components, const void* values, size_t bytes) {
+pugi::xml_node add_array(pugi::xml_node to, const char* type, const std::string& name,
+                         Eigen::Index components, const void* values, size_t bytes) {
   pugi::xml_node array = to.append_child("DataArray");
   array.append_attribute("type") = type;
   array.append_attribute("Name") = name.c_str();
@@ -214,11 +214,18 @@ void add_array(pugi::xml_node to, const char* type, const std::string& name,
   std::string stored(reinterpret_cast<const char*>(&head), sizeof head);
   stored.append(static_cast<const char*>(values), bytes);
   array.text() = base64(stored.data(), stored.size()).c_str();
+  return array;
 }
 
 void add_array(pugi::xml_node to, const std::string& name, const Eigen::MatrixXd& values) {
-  add_array(to, "Float64", name, values.rows(), values.data(),
-            sizeof(double) * static_cast<size_t>(values.size()));
+  pugi::xml_node array = add_array(to, "Float64", name, values.rows(), values.data(),
+                                   sizeof(double) * static_cast<size_t>(values.size()));
+  if (values.size() == 0) return;
+  // As VTK tells it: of vectors the range of their lengths.
+  const Eigen::RowVectorXd of =
+      values.rows() == 1 ? Eigen::RowVectorXd(values.row(0)) : values.colwise().norm();
+  array.append_attribute("RangeMin") = fmt::format("{}", of.minCoeff()).c_str();
+  array.append_attribute("RangeMax") = fmt::format("{}", of.maxCoeff()).c_str();
 }
 
 /// A tag ends for VTK at the first '>', in quotes too; pugixml leaves it there, as XML does.
