@@ -14,7 +14,7 @@ namespace hookeye {
 /// A capture opened for estimation. The scene is as told; the workspace follows the model, which
 /// may live on a finer mesh.
 struct Bench {
-  Capture capture;  ///< with the examples that no fit may see (use: test)
+  Capture capture;                     ///< with the examples that no fit may see (use: test)
   std::shared_ptr<const Scene> scene;  ///< without them
   Workspace workspace;
 };

@@ -42,7 +42,7 @@ struct Decision {
   std::string candidate;  ///< "gravity", "creep as 'levels off'"; "": the model
   bool accepted = false;
   Compared by;
-  std::string why;    ///< one plain clause
+  std::string why;     ///< one plain clause
   std::string where;   ///< FILE:LINE of the rule; tell() knows it
   double cpu_s = 0.0;  ///< worked since the decision before it; whoever keeps it knows
 
