@@ -2,7 +2,13 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(opencv)
 hookeye_opencv(core imgproc video)
-find_package(OpenImageIO REQUIRED)
+# Not by its own CMake files: Debian's ask for programs of another package (openimageio-tools, Qt).
+find_package(PkgConfig REQUIRED)
+find_package(Imath REQUIRED)
+pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+add_library(OpenImageIO::OpenImageIO INTERFACE IMPORTED)
+set_target_properties(OpenImageIO::OpenImageIO PROPERTIES
+  INTERFACE_LINK_LIBRARIES "PkgConfig::OpenImageIO;Imath::Imath")
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
