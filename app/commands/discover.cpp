@@ -154,6 +154,19 @@ Discovery search(Run& run, Bench& bench, const DiscoverOptions& options, bool kn
   }
 }
 
+/// What is left of examples that nothing has seen, once the verdict is written: nothing that comes
+/// of it changes or loses that.
+void tell_tested(Run& run, const Bench& bench, const Fitted& last, Session& session) {
+  const auto result = test(last, bench.capture, fit_options());
+  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
+    if (cancelled(*failure)) fail(*failure);
+    session.warn(fmt::format("example '{}' of use: test could not be predicted: {}",
+                             failure->example, failure->reason));
+  } else if (const auto& tested = std::get<std::optional<Tested>>(result)) {
+    run.update([&](nlohmann::json& timeline) { timeline["tested"] = to_json(*tested); });
+  }
+}
+
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
   Bench bench = open_capture(arguments.capture, session, limits_for(arguments.run, arguments.set));
@@ -167,10 +180,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
   if (const auto high = high_floor(found.floor); !high.empty())
     hint += (hint.empty() ? "" : ". ") + high;
-  const auto tested = value_or_fail(test(found.steps.back().fitted, bench.capture, fit_options()));
   run.update([&](nlohmann::json& timeline) {
     timeline.erase("tested");
-    if (tested) timeline["tested"] = to_json(*tested);
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;
     timeline["missing"] = found.missing;
@@ -180,6 +191,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     if (found.all) timeline["fitted_to_all"] = to_json(*found.all);
     tell_floor(timeline, found.floor);
   });
+  tell_tested(run, bench, found.steps.back().fitted, session);
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
   say_answer(run, session);

@@ -218,6 +218,8 @@ std::string tested_sentence(const json& timeline, const json& step, double floor
     for (const json& one : examples) names.push_back(string_in(one, "name"));
     std::string out = fmt::format("on {}, which no fit, score or stop has seen: ", listed(names));
     if (chi > 0.0) out += fmt::format("{:.2f} times the noise floor", chi / floor);
+    if (const double at = limits_of(timeline).floor.at; chi > at * floor)
+      out += fmt::format(", more than {:g}: what was found does not predict it", at);
     if (worst > 0.0)
       out += fmt::format("{}measured values within {:.2g} of their sigma", chi > 0.0 ? ", " : "",
                          worst);

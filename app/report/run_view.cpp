@@ -147,6 +147,7 @@ json RunView::photos_json(json& faults, int factor) {
   for (const auto& example : capture_->examples)
     for (const auto& spec : example.photos)
       for (const auto& [name, plane] : planes_) {
+        if (example.test) continue;  // no step has a residual of it
         if (name.rfind(example.name + "-" + spec.camera, 0) != 0 || plane.spec.file != spec.file)
           continue;
         json one = {{"name", name},

@@ -12,6 +12,7 @@
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/diagnosis/diagnosis_sums.h"
 #include "estimation/diagnosis/mesh_error.h"
+#include "estimation/diagnosis/seen.h"
 #include "estimation/evaluation/gram.h"
 #include "estimation/fit/archived.h"
 #include "estimation/fit/at_floor.h"
@@ -20,11 +21,6 @@
 namespace hookeye {
 
 namespace {
-
-/// Change of the sum of squares by a joint step.
-double change(const Eigen::MatrixXd& H, const VectorXd& s, const VectorXd& step) {
-  return 2.0 * step.dot(s) + step.dot(H * step);
-}
 
 VectorXd joint_step(int columns, const ProjectedHypothesis& hypothesis, const EffectScore& score,
                     const VectorXd& null_values) {
@@ -46,39 +42,6 @@ void displace(const Evaluation& evaluation, const ProjectedHypothesis& hypothesi
   const VectorXd step = joint_step(evaluation.columns, hypothesis, score, nulls(*score.best));
   for (const auto& example : evaluation.examples)
     score.displaced[example.example] = example.equilibrium->q + example.S * step;
-}
-
-/// "seen in both cameras, most in 'side'": where the step removes misfit.
-std::string where_seen(const Scene& scene, const Evaluation& evaluation, const VectorXd& step) {
-  std::map<std::string, double> by_camera, by_example;
-  double total = 0.0;
-  for (const auto& example : evaluation.examples)
-    for (const auto& photo : example.photos) {
-      if (example.held_out) continue;
-      const double fall = -change(photo.sums.JtJ, photo.sums.Jtr, step);
-      const auto& spec = scene.capture.examples[example.example];
-      by_camera[spec.photos[photo.photo].camera] += fall;
-      by_example[spec.name] += fall;
-      total += fall;
-    }
-  if (by_camera.empty() || total <= 0.0) return "";
-  std::vector<std::string> cameras;
-  for (const auto& [name, fall] : by_camera)
-    if (fall > 0.05 * total) cameras.push_back("'" + name + "'");
-  const auto most = std::max_element(by_example.begin(), by_example.end(),
-                                     [](auto& a, auto& b) { return a.second < b.second; });
-  std::string who = fmt::format("{}", fmt::join(cameras, " and "));
-  if (cameras.size() == by_camera.size() && cameras.size() > 1)
-    who = cameras.size() == 2 ? "both cameras" : fmt::format("all {} cameras", cameras.size());
-  return fmt::format("; seen in {}, most in '{}'", who, most->first);
-}
-
-/// "; forces and positions would be off by 1.1 instead of 3.9 times their told noise"
-std::string seen_by_sensors(double before, double after, double count) {
-  const auto off = [&](double r2) { return std::sqrt(r2 / std::max(count, 1.0)); };
-  return fmt::format(
-      "; forces and positions would be off by {:.1f} instead of {:.1f} times their told noise",
-      off(after), off(before));
 }
 
 struct Context {

@@ -1,4 +1,7 @@
 // What stands after the steps of a search, and what names took.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,6 +38,20 @@ TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& fl
     out.measured += before.measured_r2 - after.measured_r2;
   }
   return out;
+}
+
+std::string not_compared(const std::vector<Contested>& steps,
+                         const std::vector<std::string>& missing) {
+  std::vector<std::string> names;
+  const auto has = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  for (const Contested& one : steps)
+    for (const std::string& name : one.not_compared)
+      if (!has(missing, name) && !has(names, name)) names.push_back(name);
+  if (names.empty()) return "";
+  return fmt::format("; not compared: {}, which stood out as much and could not be fitted",
+                     fmt::join(names, ", "));
 }
 
 }  // namespace hookeye

@@ -1,8 +1,5 @@
 #include "estimation/search/discover.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,8 +7,8 @@
 #include <utility>
 
 #include "estimation/diagnosis/diagnosis_sums.h"
-#include "estimation/fit/archive.h"
 #include "estimation/fit/at_floor.h"
+#include "estimation/fit/own_archive.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/fit_to_all.h"
 #include "estimation/search/last_questions.h"
@@ -33,23 +30,6 @@ void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& m
   if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
     tie.clear();
 }
-
-/// Nothing is worked out twice in one search, whether or not what it comes to outlives it.
-class OwnArchive {
- public:
-  explicit OwnArchive(Workspace& workspace) : workspace_(workspace), own_(!workspace.archive()) {
-    if (own_) workspace_.keep_in(std::make_shared<Archive>());
-  }
-  OwnArchive(const OwnArchive&) = delete;
-  OwnArchive& operator=(const OwnArchive&) = delete;
-  ~OwnArchive() {
-    if (own_) workspace_.keep_in(nullptr);
-  }
-
- private:
-  Workspace& workspace_;
-  bool own_;
-};
 
 /// All that a search fits may be given up but for its base.
 DiscoverOptions of_rivals(DiscoverOptions options) {
@@ -348,19 +328,6 @@ class Search {
     return stays.empty() ? moved_at_rest(last.fitted, last.diagnosis) : stays;
   }
 
-  /// Who stood out as much as what was added, could not be fitted, and is not in the model.
-  std::string not_compared() const {
-    std::vector<std::string> names;
-    for (const Contested& one : whole_run())
-      for (const std::string& name : one.not_compared)
-        if (std::find(out_.missing.begin(), out_.missing.end(), name) == out_.missing.end() &&
-            std::find(names.begin(), names.end(), name) == names.end())
-          names.push_back(name);
-    if (names.empty()) return "";
-    return fmt::format("; not compared: {}, which stood out as much and could not be fitted",
-                       fmt::join(names, ", "));
-  }
-
   Discovery finish() {
     std::string why;
     const Step& last = newest();
@@ -368,7 +335,8 @@ class Search {
     settle_tie(out_.tie, out_.missing);
     out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
     if (out_.verdict != Verdict::unexplained && !out_.all)
-      if (const std::string doubt = in_doubt(last) + not_compared(); !doubt.empty())
+      if (const std::string doubt = in_doubt(last) + not_compared(whole_run(), out_.missing);
+          !doubt.empty())
         out_.verdict = Verdict::unexplained, why += doubt;
     out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_.words());
     tell(options_.fit.decided, {Asked::ended,

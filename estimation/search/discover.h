@@ -60,6 +60,11 @@ std::vector<std::string> effects_in(const ModelForm& form);
 
 Contested contested(const Step& step);
 
+/// "; not compared: ...": who stood out as much as what was added, could not be fitted in any form,
+/// and is not in the model. "": nobody.
+std::string not_compared(const std::vector<Contested>& steps,
+                         const std::vector<std::string>& missing);
+
 /// What the named effects took over the steps of a run, one after the other.
 TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& floor);
 

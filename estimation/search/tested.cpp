@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <tuple>
 
 #include "estimation/effects/catalogue.h"
 
@@ -30,7 +32,13 @@ std::variant<std::optional<Tested>, NumericalFailure> test(const Fitted& fitted,
   const auto& examples = scene->capture.examples;
   const size_t own = fitted.form.scene->capture.examples.size();
   if (examples.size() == own) return std::nullopt;
-  const auto [form, start] = transfer(realised(fitted), scene, catalogue());
+  ModelForm form;
+  VectorXd start;
+  try {
+    std::tie(form, start) = transfer(realised(fitted), scene, catalogue());
+  } catch (const std::runtime_error& error) {
+    return NumericalFailure{examples[own].name, 0.0, error.what()};
+  }
   Workspace workspace(scene);
   auto settled = settle_held_out(workspace, form, start, options);
   if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;

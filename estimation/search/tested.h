@@ -24,7 +24,8 @@ struct Tested {
 
 /// The fitted model on the test examples of `whole`, the capture that the search saw without them
 /// (without_tests). Numbers of one such example alone (where its jaw stood) are fitted to it, as
-/// those of a held-out one are. Empty: it has none.
+/// those of a held-out one are. Empty: it has none. Fails where a test example has no equilibrium,
+/// or the model has a part that cannot be told with them.
 std::variant<std::optional<Tested>, NumericalFailure> test(const Fitted& fitted,
                                                            const Capture& whole,
                                                            const FitOptions& options);

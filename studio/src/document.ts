@@ -13,7 +13,7 @@ export interface PhotoEntry {
   name: string;
   example: string;
   camera: string;
-  use: 'fit' | 'validate' | 'test';
+  use: 'fit' | 'validate';
   width: number;
   height: number;
   file: string;

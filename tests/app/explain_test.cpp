@@ -82,6 +82,18 @@ TEST_F(WithATest, NothingSeesItButTheLastLine) {
   EXPECT_EQ(other.at("steps").back().at("chi_fit"), run.at("steps").back().at("chi_fit"));
   EXPECT_EQ(other.at("steps").back().at("chi_validate"), run.at("steps").back().at("chi_validate"));
   EXPECT_GT(other.at("tested").at("chi").get<double>(), 2.0 * tested);
+
+  // Of one that has no equilibrium nothing is lost but itself.
+  std::string text = read(folder_ / "capture/capture.yaml");
+  const size_t force = text.find("force: [", text.find("  press:")), end = text.find(']', force);
+  ASSERT_NE(end, std::string::npos);
+  write("capture/capture.yaml", text.replace(force, end - force, "force: [0, 0, -1e5"));
+  const Result crushed = hookeye("discover capture -o crushed");
+  EXPECT_EQ(crushed.status, 0) << crushed.err;
+  EXPECT_THAT(crushed.err, HasSubstr("example 'press' of use: test could not be predicted"));
+  const json kept = json::parse(read(folder_ / "crushed/run.json"));
+  EXPECT_EQ(kept.at("sentence"), run.at("sentence"));
+  EXPECT_FALSE(kept.contains("tested"));
 }
 
 TEST_F(FittedRun, OptionsAreKeptByTheRunAndOthersAreRefused) {

@@ -83,7 +83,7 @@ export function Facts() {
         {capture ? <>
           <Wide label="Load cases of the capture"><thead><tr><th>load case</th><th>use</th><th>supports and loads</th></tr></thead>
             <tbody>{capture.examples.map((e) => (
-              <tr key={e.name}><td>{e.name}</td><td>{e.use === 'fit' ? 'fitted' : 'held out'}</td><td>{[...e.supports, ...e.loads].join('; ') || 'none'}</td></tr>
+              <tr key={e.name}><td>{e.name}</td><td>{e.use === 'fit' ? 'fitted' : e.use === 'test' ? 'test' : 'held out'}</td><td>{[...e.supports, ...e.loads].join('; ') || 'none'}</td></tr>
             ))}</tbody></Wide>
           <p>Material {capture.laws.join(', ')}, fitted: {capture.fit.join(', ') || 'nothing'}. Texture: {capture.texture}.
             Cameras: {capture.cameras.map((c) => `${c.name} (${c.width} × ${c.height}, ${c.projection})`).join(', ')}.</p>

@@ -122,6 +122,15 @@ TEST(Verdict, WhatAFinerMeshTakesNoNameHasTaken) {
 }
 
 /// Two that leave as much are a choice where that is little, and no answer where it is much.
+TEST(Verdict, WhoLedAndCouldNotBeFittedIsToldUnlessItStands) {
+  Contested first, second;
+  first.added = "swelling", first.not_compared = {"stiffness_field", "creep"};
+  second.added = "creep", second.not_compared = {"stiffness_field"};
+  EXPECT_EQ(not_compared({first, second}, {"swelling", "creep"}),
+            "; not compared: stiffness_field, which stood out as much and could not be fitted");
+  EXPECT_EQ(not_compared({first, second}, {"stiffness_field", "creep"}), "");
+}
+
 TEST(Verdict, ATieIsAmbiguousOnlyAtTheFloor) {
   Fitted fitted = with_one_photo(110.0);
   PhotoEvaluation& photo = fitted.evaluation.examples[0].photos[0];
