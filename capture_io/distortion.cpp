@@ -1,5 +1,6 @@
 #include "capture_io/distortion.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>

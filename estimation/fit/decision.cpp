@@ -34,9 +34,9 @@ std::string short_path(const std::string& path) {
 
 const char* to_string(Asked asked) { return kAsked.at(static_cast<size_t>(asked)); }
 
-bool tell(const Decided& decided, Decision decision, std::source_location where) {
+bool tell(const Decided& decided, Decision decision, SourceLine where) {
   if (decision.where.empty())
-    decision.where = fmt::format("{}:{}", short_path(where.file_name()), where.line());
+    decision.where = fmt::format("{}:{}", short_path(where.file), where.line);
   if (decided) decided(decision);
   return decision.accepted;
 }

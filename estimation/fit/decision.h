@@ -4,11 +4,21 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <source_location>
 #include <string>
 #include <utility>
 
 namespace hookeye {
+
+/// A line of the sources; as a default argument, that of the caller. (std::source_location, which
+/// clang 14 has not.)
+struct SourceLine {
+  const char* file;
+  int line;
+  static constexpr SourceLine current(const char* file = __builtin_FILE(),
+                                      int line = __builtin_LINE()) {
+    return {file, line};
+  }
+};
 
 /// What was asked of a candidate.
 enum class Asked {
@@ -58,8 +68,7 @@ struct Decision {
 using Decided = std::function<void(const Decision&)>;
 
 /// Tells `decided`, if anybody listens. Returns whether it was accepted.
-bool tell(const Decided& decided, Decision decision,
-          std::source_location where = std::source_location::current());
+bool tell(const Decided& decided, Decision decision, SourceLine where = SourceLine::current());
 
 /// One line of decisions.jsonl.
 nlohmann::json to_json(const Decision& decision);

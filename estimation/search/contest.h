@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <source_location>
 #include <string>
 #include <variant>
 #include <vector>
@@ -111,7 +110,7 @@ struct Refusal {
   Why why = Why::none;
   std::string effect;
   Compared by = {};
-  std::source_location where = std::source_location::current();  ///< of the rule
+  SourceLine where = SourceLine::current();  ///< of the rule
   explicit operator bool() const { return why != Why::none; }
   std::string words() const;  ///< "" where it stands
 };

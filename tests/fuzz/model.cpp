@@ -30,6 +30,6 @@ std::shared_ptr<const Scene> scene() {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const auto scene = hookeye::fuzz::scene();
   return hookeye::fuzz::on_file("model.yaml", data, size, [](const auto& file) {
-    hookeye::read_model(file, scene, catalogue());
+    hookeye::read_model(file, scene, hookeye::catalogue());
   });
 }
