@@ -19,7 +19,7 @@ struct Bench {
   Bench() : surface(test::sphere(Vector3d::Zero(), 10, 5, 0.05)), renderer(surface) {
     texture.source = Texture::Source::image;
     texture.image = test::waves(1024, 1024, 30);
-    Camera c = test::camera(Camera::Projection::perspective, false);
+    Camera c = test::camera("perspective", false);
     c.width = kWidth, c.height = kHeight;
     c.fx = c.fy = 1780;  // the body covers 40 %
     c.cx = kWidth / 2.0, c.cy = kHeight / 2.0;

@@ -17,8 +17,4 @@ std::string make_rotation(Eigen::Matrix3d& R) {
   return "";
 }
 
-bool is_distortion_size(size_t count) {
-  return count == 0 || count == 4 || count == 5 || count == 8 || count == 12 || count == 14;
-}
-
 }  // namespace hookeye

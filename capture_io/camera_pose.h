@@ -13,7 +13,4 @@ inline constexpr const char* rotation_rule =
 /// digits); otherwise returns what is wrong with it and leaves it. "" = fine.
 std::string make_rotation(Eigen::Matrix3d& R);
 
-/// OpenCV's models have 0, 4, 5, 8, 12 or 14 coefficients.
-bool is_distortion_size(size_t count);
-
 }  // namespace hookeye

@@ -1,6 +1,8 @@
 // Cameras and light.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 
 #include "capture_io/camera_pose.h"
@@ -21,16 +23,25 @@ void read_size(const YamlNode& node, Camera& camera) {
   }
 }
 
+void read_lens(const YamlNode& node, Camera& camera) {
+  const std::string what = fmt::format("distortion of camera `{}`", camera.name);
+  camera.distortion = read_numbers(node, what);
+  if (!camera.model->takes(camera.distortion.size()))
+    throw InputError(node.place, fmt::format("{} has {} numbers", what, camera.distortion.size()),
+                     camera.model->count_rule());
+  if (std::all_of(camera.distortion.begin(), camera.distortion.end(),
+                  [](double d) { return d == 0; }))
+    camera.distortion.clear();
+}
+
 void read_intrinsics(const YamlNode& node, Camera& camera) {
-  const bool perspective = camera.projection == Camera::Projection::perspective;
+  const bool central = camera.model->central();
   const std::string of = fmt::format(" of camera `{}`", camera.name);
-  std::vector<std::string> keys{"fx", "fy", "cx", "cy", "distortion"};
-  if (!perspective) keys = {"scale", "fx", "fy", "cx", "cy"};
+  std::vector<std::string> keys{"fx", "fy", "cx", "cy", "skew", "distortion"};
+  if (!central) keys.insert(keys.begin(), "scale");
   const YamlSection section(node, "intrinsics" + of, keys);
-  const std::string right = perspective
-                                ? "write `intrinsics: {fx: 1100, fy: 1100, cx: 399.5, cy: 299.5}`"
-                                : "write `intrinsics: {scale: 10, cx: 399.5, cy: 299.5}`";
-  if (!perspective && section.one_of({"scale", "fx"}) == "scale") {
+  const std::string right = camera.model->example();
+  if (!central && section.one_of({"scale", "fx"}) == "scale") {
     if (const YamlNode::Entry* fy = section.entry("fy"))
       throw InputError(fy->place, "intrinsics" + of + " has both `scale` and `fy`",
                        "give `scale` alone, or `fx` and `fy`");
@@ -41,17 +52,8 @@ void read_intrinsics(const YamlNode& node, Camera& camera) {
   }
   camera.cx = read_number(section.need("cx", right), "cx" + of);
   camera.cy = read_number(section.need("cy", right), "cy" + of);
-  if (!perspective) return;
-  if (const YamlNode* distortion = section.find("distortion")) {
-    camera.distortion = read_numbers(*distortion, "distortion" + of);
-    if (!is_distortion_size(camera.distortion.size()))
-      throw InputError(distortion->place,
-                       fmt::format("distortion{} has {} numbers", of, camera.distortion.size()),
-                       "0, 4, 5, 8, 12 or 14 are expected, in OpenCV's order");
-    if (std::all_of(camera.distortion.begin(), camera.distortion.end(),
-                    [](double d) { return d == 0; }))
-      camera.distortion.clear();
-  }
+  if (const YamlNode* skew = section.find("skew")) camera.skew = read_number(*skew, "skew" + of);
+  if (const YamlNode* lens = section.find("distortion")) read_lens(*lens, camera);
 }
 
 void read_pose(const YamlNode& node, Camera& camera) {
@@ -83,23 +85,67 @@ Camera read_calibrated(const YamlNode& node, const std::string& name, const Capt
   }
 }
 
-/// Rays need the distortion undone; far from the centre a polynomial may fold the picture over.
-void check_lens(const Camera& camera, const Place& place, const std::string& what) {
+/// Whether the lens turns space over nowhere on the way from the axis to the ray h: further out a
+/// polynomial may fold the picture back, and another ray may meet the same pixel.
+bool unfolded(const Camera& camera, const Eigen::Vector2d& h) {
+  constexpr int kSteps = 8;
+  for (int i = 1; i <= kSteps; ++i) {
+    const Eigen::Vector2d at = h * i / kSteps;
+    CameraModel::Jacobian3 by_point;
+    camera.model->to_plane(camera.distortion, at.homogeneous(), &by_point, nullptr);
+    if (!(by_point.leftCols<2>().determinant() > 0)) return false;
+  }
+  return true;
+}
+
+/// Rays need the lens undone, in the whole picture.
+void check_lens(const Camera& told, const Place& place, const std::string& what) {
   constexpr double kOff = 0.1;  // px
   constexpr int kSteps = 8;
-  if (camera.distortion.empty()) return;
+  if (told.straight()) return;
+  Camera camera = told;
+  camera.R.setIdentity(), camera.t.setZero();
   for (int i = 0; i <= kSteps; ++i)
     for (int j = 0; j <= kSteps; ++j) {
       const Eigen::Vector2d pixel((camera.width - 1.0) * i / kSteps,
                                   (camera.height - 1.0) * j / kSteps);
       const Ray ray = camera.ray(pixel);
-      if ((camera.project(ray.origin + ray.direction) - pixel).norm() < kOff) continue;  // NaN: no
+      const Eigen::Vector3d on_ray = ray.origin + ray.direction;
+      if ((camera.project(on_ray) - pixel).norm() < kOff &&  // NaN: no
+          unfolded(camera, on_ray.head<2>() / on_ray.z()))
+        continue;
       throw InputError(
           place,
           fmt::format("the distortion of {} cannot be undone at pixel ({:.0f}, {:.0f})", what,
                       pixel.x(), pixel.y()),
-          "look at its coefficients (OpenCV's order: k1, k2, p1, p2, k3 ...) and at fx");
+          camera.model->ray_rule());
     }
+}
+
+/// The kind of camera that is told. Of a calibration that does not say, the file's is taken: those
+/// of cv::fisheye often do not.
+void read_projection(const YamlNode& node, bool calibrated, Camera& camera) {
+  const std::string what = fmt::format("projection of camera `{}`", camera.name);
+  std::vector<std::string> names;
+  for (const CameraModel* model : camera_models()) names.push_back(model->name());
+  const CameraModel& told = camera_model(read_choice(node, what, names));
+  if (calibrated) {
+    if (!told.central())
+      throw InputError(node.place,
+                       "an OpenCV calibration describes a camera whose rays meet in a point",
+                       "give `intrinsics: {scale: ...}` for an orthographic one");
+    if (camera.model != &told && camera.model != camera_models().front())
+      throw InputError(node.place,
+                       fmt::format("{} is `{}`, its calibration is of a {} camera", what,
+                                   told.name(), camera.model->name()),
+                       "leave `projection` out, or give another file");
+    if (!told.takes(camera.distortion.size()))
+      throw InputError(node.place,
+                       fmt::format("{} is `{}`, its calibration has {} coefficients", what,
+                                   told.name(), camera.distortion.size()),
+                       told.count_rule());
+  }
+  camera.model = &told;
 }
 
 Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
@@ -116,14 +162,8 @@ Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
     camera = read_calibrated(*calibration, entry.key, folder, &has_pose);
   }
   camera.name = entry.key;
-  if (const YamlNode* projection = section.find("projection")) {
-    if (read_choice(*projection, "projection of " + what, {"perspective", "orthographic"}) ==
-        "orthographic")
-      camera.projection = Camera::Projection::orthographic;
-    if (calibration && camera.projection == Camera::Projection::orthographic)
-      throw InputError(projection->place, "an OpenCV calibration describes a perspective camera",
-                       "give `intrinsics: {scale: ...}` for an orthographic one");
-  }
+  if (const YamlNode* projection = section.find("projection"))
+    read_projection(*projection, calibration != nullptr, camera);
   if (const YamlNode* size = section.find("size"))
     read_size(*size, camera);
   else if (camera.width == 0)

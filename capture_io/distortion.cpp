@@ -22,15 +22,29 @@ struct Model {
 };
 
 /// The homography of a tilted sensor: diag-like part [[R33,0,-R13],[0,R33,-R23],[0,0,1]] times
-/// R(tx, ty), as on OpenCV's page.
-Eigen::Matrix3d tilt_matrix(double tx, double ty) {
-  Eigen::Matrix3d about_x, about_y, back;
-  about_x << 1, 0, 0, 0, std::cos(tx), std::sin(tx), 0, -std::sin(tx), std::cos(tx);
-  about_y << std::cos(ty), 0, -std::sin(ty), 0, 1, 0, std::sin(ty), 0, std::cos(ty);
-  const Eigen::Matrix3d r = about_y * about_x;
-  back << r(2, 2), 0, -r(0, 2), 0, r(2, 2), -r(1, 2), 0, 0, 1;
-  return back * r;
-}
+/// R(tx, ty), as on OpenCV's page; with its derivatives.
+struct Tilt {
+  Eigen::Matrix3d h, by_tx, by_ty;
+
+  Tilt(double tx, double ty) {
+    Eigen::Matrix3d about_x, about_y, turn_x, turn_y;
+    about_x << 1, 0, 0, 0, std::cos(tx), std::sin(tx), 0, -std::sin(tx), std::cos(tx);
+    about_y << std::cos(ty), 0, -std::sin(ty), 0, 1, 0, std::sin(ty), 0, std::cos(ty);
+    turn_x << 0, 0, 0, 0, -std::sin(tx), std::cos(tx), 0, -std::cos(tx), -std::sin(tx);
+    turn_y << -std::sin(ty), 0, -std::cos(ty), 0, 0, 0, std::cos(ty), 0, -std::sin(ty);
+    const Eigen::Matrix3d r = about_y * about_x, r_tx = about_y * turn_x, r_ty = turn_y * about_x;
+    h = back(r, 1) * r;
+    by_tx = back(r_tx, 0) * r + back(r, 1) * r_tx;
+    by_ty = back(r_ty, 0) * r + back(r, 1) * r_ty;
+  }
+
+ private:
+  static Eigen::Matrix3d back(const Eigen::Matrix3d& r, double last) {
+    Eigen::Matrix3d out;
+    out << r(2, 2), 0, -r(0, 2), 0, r(2, 2), -r(1, 2), 0, 0, last;
+    return out;
+  }
+};
 
 }  // namespace
 
@@ -57,7 +71,7 @@ Eigen::Vector2d distort(const std::vector<double>& coefficients, const Eigen::Ve
   jacobian(1, 0) = shared + 2 * x * prism_y;
   jacobian(1, 1) = radial + 2 * y * y * dradial + 6 * m.p1 * y + 2 * m.p2 * x + 2 * y * prism_y;
   if (m.tx != 0 || m.ty != 0) {
-    const Eigen::Matrix3d h = tilt_matrix(m.tx, m.ty);
+    const Eigen::Matrix3d h = Tilt(m.tx, m.ty).h;
     const Eigen::Vector3d tilted = h * out.homogeneous();
     out = tilted.head<2>() / tilted.z();
     const Eigen::Matrix2d d_tilt =
@@ -66,6 +80,36 @@ Eigen::Vector2d distort(const std::vector<double>& coefficients, const Eigen::Ve
   }
   if (d_dideal) *d_dideal = jacobian;
   return out;
+}
+
+Eigen::Matrix2Xd distortion_derivative(const std::vector<double>& coefficients,
+                                       const Eigen::Vector2d& ideal) {
+  const Model m(coefficients);
+  const double x = ideal.x(), y = ideal.y();
+  const double r2 = x * x + y * y, r4 = r2 * r2, r6 = r4 * r2;
+  const double below = 1 + m.k4 * r2 + m.k5 * r4 + m.k6 * r6;
+  const double radial = (1 + m.k1 * r2 + m.k2 * r4 + m.k3 * r6) / below;
+  const Eigen::Vector2d by_above = ideal / below, by_below = -radial / below * ideal;
+  Eigen::Matrix<double, 2, 14> all = Eigen::Matrix<double, 2, 14>::Zero();
+  all.col(0) = r2 * by_above, all.col(1) = r4 * by_above, all.col(4) = r6 * by_above;
+  all.col(2) << 2 * x * y, r2 + 2 * y * y;
+  all.col(3) << r2 + 2 * x * x, 2 * x * y;
+  all.col(5) = r2 * by_below, all.col(6) = r4 * by_below, all.col(7) = r6 * by_below;
+  all.col(8).x() = all.col(10).y() = r2;
+  all.col(9).x() = all.col(11).y() = r4;
+  if (coefficients.size() > 12) {
+    std::vector<double> upright(coefficients.begin(), coefficients.begin() + 12);
+    const Tilt tilt(m.tx, m.ty);
+    const Eigen::Vector3d before = distort(upright, ideal).homogeneous(), after = tilt.h * before;
+    const Eigen::Vector2d out = after.head<2>() / after.z();
+    const auto flattened = [&](const auto& d) {
+      return ((d.template topRows<2>() - out * d.row(2)) / after.z()).eval();
+    };
+    all.leftCols<12>() = (flattened(tilt.h.leftCols<2>().eval()) * all.leftCols<12>()).eval();
+    all.col(12) = flattened((tilt.by_tx * before).eval());
+    all.col(13) = flattened((tilt.by_ty * before).eval());
+  }
+  return all.leftCols(static_cast<Eigen::Index>(coefficients.size()));
 }
 
 Eigen::Vector2d undistort(const std::vector<double>& coefficients,

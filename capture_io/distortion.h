@@ -12,6 +12,10 @@ namespace hookeye {
 Eigen::Vector2d distort(const std::vector<double>& coefficients, const Eigen::Vector2d& ideal,
                         Eigen::Matrix2d* d_dideal = nullptr);
 
+/// Derivative of distort() by the coefficients: 2 x coefficients.size().
+Eigen::Matrix2Xd distortion_derivative(const std::vector<double>& coefficients,
+                                       const Eigen::Vector2d& ideal);
+
 /// The inverse: fixed-point steps, then Newton to rounding. NaN where the model has no inverse
 /// there (a strong polynomial folds back far outside the picture).
 Eigen::Vector2d undistort(const std::vector<double>& coefficients,

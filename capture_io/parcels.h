@@ -43,8 +43,8 @@ inline StoredImage unpack_stored(Unpacker& from) {
 }
 
 inline void pack(Packer& to, const Camera& camera) {
-  to.put(camera.name).put(camera.width).put(camera.height).put(camera.projection);
-  to.put(camera.fx).put(camera.fy).put(camera.cx).put(camera.cy);
+  to.put(camera.name).put(camera.width).put(camera.height).put(camera.model->name());
+  to.put(camera.fx).put(camera.fy).put(camera.cx).put(camera.cy).put(camera.skew);
   to.put(camera.distortion).put(camera.R).put(camera.t);
 }
 
@@ -53,9 +53,11 @@ inline Camera unpack_camera(Unpacker& from) {
   from.get(camera.name);
   from.get(camera.width);
   from.get(camera.height);
-  from.get(camera.projection);
-  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) from.get(*value);
+  camera.model = find_camera_model(from.take<std::string>());
+  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.skew})
+    from.get(*value);
   from.get(camera.distortion);
+  if (!camera.model || !camera.model->takes(camera.distortion.size())) throw WireFault();
   from.get(camera.R);
   from.get(camera.t);
   return camera;

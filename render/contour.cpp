@@ -25,9 +25,9 @@ bool place(const View& view, const Vector3d& p, const Vector3d& along, const Vec
   if (q.normal.dot(by_point * inwards) > 0) q.normal = -q.normal;
   q.n_by_point = q.normal.transpose() * by_point;
   q.n_by_camera = q.normal.transpose() * by_camera;
-  q.h = view.perspective ? Vector2d(p.head<2>() / p.z()) : Vector2d(p.head<2>());
-  q.depth = view.perspective ? p.z() : p.z() - view.start;
-  const double scale = view.perspective ? p.z() : 1.0;
+  q.h = view.central ? Vector2d(p.head<2>() / p.z()) : Vector2d(p.head<2>());
+  q.depth = view.central ? p.z() : p.z() - view.start;
+  const double scale = view.central ? p.z() : 1.0;
   const Eigen::Matrix2d px_by_h = scale * by_point.leftCols<2>();
   const double step = std::max(step_px, kRayError * p.norm() * by_point.leftCols<2>().norm());
   q.step_h = px_by_h.inverse() * q.normal * step;

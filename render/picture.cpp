@@ -62,7 +62,7 @@ class Tile {
     trace(task_.frame, h, w * rows, &samples);
     const bool any = std::any_of(samples.triangle, samples.triangle + w * rows,
                                  [](int triangle) { return triangle >= 0; });
-    if (any && derivatives && task_.grid.distorted())
+    if (any && derivatives && task_.grid.bent())
       for (int i = 0; i < w * rows; ++i) {
         const Vector2d zoom = task_.grid.zoom(ix + i % w, iy + i / w);
         for (int c = 0; c < 2; ++c) samples.zoom[c][i] = static_cast<float>(zoom[c]);

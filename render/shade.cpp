@@ -36,8 +36,8 @@ Gloss gloss(const Frame& f, const Samples& s, V3 n, size_t at) {
   const Eigen::Matrix3f R = f.view.camera.R.cast<float>();
   const V3 sun = set((f.photo.sun / f.photo.sun.norm()).cast<float>().eval());
   Gloss out;
-  const V3 ray = f.view.perspective ? V3{load(s.h[0] + at), load(s.h[1] + at), set(1)}
-                                    : V3{set(0), set(0), set(1)};
+  const V3 ray = f.view.central ? V3{load(s.h[0] + at), load(s.h[1] + at), set(1)}
+                                : V3{set(0), set(0), set(1)};
   out.eye = (set(0) - inverse_norm(ray)) * ray;
   const V3 sum = sun + transform(R.transpose(), out.eye);
   const V inverse = inverse_norm(sum);
@@ -170,7 +170,7 @@ void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V*
   const V zx = load(s.zoom[0] + at), zy = load(s.zoom[1] + at);
   V zoomed = set(1);
   V3 p = {hx, hy, load(s.depth + at) + set(static_cast<float>(f.view.start))};
-  if (f.view.perspective) {
+  if (f.view.central) {
     g.z = set(0) - (hx * g.x + hy * g.y);
     const V along = dot(ax, one) * load(s.dh[0] + at) + dot(ay, one) * load(s.dh[1] + at);
     zoomed = set(-1) / (s0 * (set(1) + along));  // its depth
@@ -189,7 +189,7 @@ void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V*
     const V gain = set(static_cast<float>(f.photo.gain));
     const V3 eye = l.gloss.eye, by_eye = gain * l.gloss.by_eye;
     turn = turn + cross(by_eye, eye);
-    if (f.view.perspective) {
+    if (f.view.central) {
       const V inverse = inverse_norm({hx, hy, set(1)});
       const V3 seen = {inverse * zx, inverse * zy, set(0)};
       by_zoom = by_zoom + dot(by_eye, seen - dot(eye, seen) * eye);

@@ -164,9 +164,12 @@ bool sees_edge(const ShadowPoint& q, const Samples& s, int i) {
 
 /// Pixels a length takes in the middle of the body [px/length].
 double picture_scale(const Frame& f) {
-  if (!f.view.perspective) return f.view.camera.fx;
-  const double middle = (f.view.camera.R * f.scene.centre() + f.view.camera.t).z();
-  return f.view.camera.fx / std::max(middle, f.view.p.row(2).maxCoeff() / 2);
+  if (!f.view.central) return f.view.camera.fx;
+  const Camera& camera = f.view.local;
+  const Vector3d middle = f.view.camera.R * f.scene.centre() + f.view.camera.t;
+  const double unit = camera.model->unit_at(camera.distortion, middle);
+  // where the body lies about the eye, its middle says little
+  return camera.fx / std::max(unit, f.view.p.row(2).maxCoeff() / 2);
 }
 
 }  // namespace

@@ -13,20 +13,19 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// Perspective: from the eye along R^T (h,1). Orthographic: from R^T ((h,start) - t) along R^T z.
+/// Central: from the eye along R^T (h,1). Parallel: from R^T ((h,start) - t) along R^T z.
 void set_rays(const Frame& f, const Samples& s, RayPacket* rays) {
   const View& view = f.view;
   const Eigen::Matrix3f Rt = view.camera.R.transpose().cast<float>();
   const Vector3d start = view.camera.R.transpose() * (Vector3d(0, 0, view.start) - view.camera.t);
-  const Eigen::Vector3f from =
-      ((view.perspective ? view.eye : start) - f.scene.centre()).cast<float>();
+  const Eigen::Vector3f from = ((view.central ? view.eye : start) - f.scene.centre()).cast<float>();
   float* origin[3] = {rays->org_x, rays->org_y, rays->org_z};
   float* direction[3] = {rays->dir_x, rays->dir_y, rays->dir_z};
   for (int c = 0; c < 3; ++c)
     for (int i = 0; i < kLanes; ++i) {
       const float across = Rt(c, 0) * s.h[0][i] + Rt(c, 1) * s.h[1][i];
-      origin[c][i] = view.perspective ? from[c] : from[c] + across;
-      direction[c][i] = view.perspective ? across + Rt(c, 2) : Rt(c, 2);
+      origin[c][i] = view.central ? from[c] : from[c] + across;
+      direction[c][i] = view.central ? across + Rt(c, 2) : Rt(c, 2);
     }
 }
 
@@ -70,8 +69,8 @@ void drop_unseen(const Frame& f, Samples* s) {
     const RayScene& scene = *f.reference_scene;
     const Vector3d from = interpolate(*f.x_reference, t, *s, i) - scene.centre();
     const Vector3d back = -view.camera.R.row(2).transpose();
-    const Vector3d to = view.perspective ? Vector3d(view.eye - scene.centre())
-                                         : Vector3d(from + (p.z() - view.start) * back);
+    const Vector3d to = view.central ? Vector3d(view.eye - scene.centre())
+                                     : Vector3d(from + (p.z() - view.start) * back);
     const double length = (to - from).norm();
     rays.set(i, from, to - from);
     rays.tnear[i] = float(10 * scene.epsilon() / length);
@@ -92,7 +91,7 @@ void trace(const Frame& f, const Vector2d* h, int count, Samples* s) {
   rays.reset(0, kFar);
   s->count = count;
   for (int i = 0; i < kLanes; ++i) {
-    active[i] = i < count ? -1 : 0;
+    active[i] = i < count && h[i].allFinite() ? -1 : 0;
     for (int c = 0; c < 2; ++c)
       s->h[c][i] = s->zoom[c][i] = static_cast<float>(h[std::min(i, count - 1)][c]);
   }

@@ -7,15 +7,15 @@ namespace hookeye {
 
 namespace {
 
-/// With P the corners in camera axes (third row 1 for an orthographic camera) and Q its inverse,
+/// With P the corners in camera axes (third row 1 where rays are parallel) and Q its inverse,
 /// the ray h meets the plane at b = Q (h,1) / sum. About the centroid's h0, Q (h0,1) = 1/3 1^T s0
 /// with s0 its inverse depth, so that A = Q_xy / s0.
 void set_rays(const View& view, const std::array<int, 3>& t, TriangleTable::Row* row) {
   Matrix3d P;
   for (int k = 0; k < 3; ++k) P.col(k) = view.p.col(t[k]);
   const Vector3d centroid = P.rowwise().mean();
-  const double depth = view.perspective ? centroid.z() : 1.0;
-  if (!view.perspective) P.row(2).setOnes();
+  const double depth = view.central ? centroid.z() : 1.0;
+  if (!view.central) P.row(2).setOnes();
   const double det = P.determinant();
   Eigen::Matrix<double, 3, 2> A = Eigen::Matrix<double, 3, 2>::Zero();
   row->h0.setZero();

@@ -15,7 +15,7 @@ namespace hookeye {
 /// texels to its first, corners to the scene's centre.
 enum TriangleFloat {
   kRayToBary = 0,       ///< 3 x 2, column-major: A of b = (1/3 + A (h-h0)) / (1 + 1^T A (h-h0))
-  kInverseDepth = 6,    ///< of the centroid; 1 with an orthographic camera
+  kInverseDepth = 6,    ///< of the centroid; 1 where rays are parallel
   kNormals = 7,         ///< unit, at the corners
   kVisibility = 16,     ///< of the sky, at the corners
   kFacet = 19,          ///< the triangle's own unit normal

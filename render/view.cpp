@@ -15,11 +15,6 @@ Camera at_origin(Camera camera) {
   return camera;
 }
 
-bool is_distorted(const Camera& camera) {
-  return std::any_of(camera.distortion.begin(), camera.distortion.end(),
-                     [](double k) { return k != 0; });
-}
-
 }  // namespace
 
 RayGrid::RayGrid(const Camera& camera, const PixelFilter& filter)
@@ -38,13 +33,13 @@ RayGrid::RayGrid(const Camera& camera, const PixelFilter& filter)
     y_.push_back((centred(i) - camera_.cy) / camera_.fy);
     x_shift_.push_back(shift(i) / camera_.fx);
   }
-  if (!is_distorted(camera)) return;
+  if (camera.straight()) return;
   undone_.resize(static_cast<size_t>(rows) * columns_);
   zoom_.resize(undone_.size());
   for (int iy = 0; iy < rows; ++iy)
     for (int ix = 0; ix < columns_; ++ix) {
       const Ray ray = camera_.ray({centred(ix) + shift(iy), centred(iy) + shift(ix)});
-      const Vector2d h = camera.projection == Camera::Projection::perspective
+      const Vector2d h = camera.model->central()
                              ? Vector2d(ray.direction.head<2>() / ray.direction.z())
                              : Vector2d(ray.origin.head<2>());
       const size_t at = static_cast<size_t>(iy) * columns_ + ix;
@@ -58,17 +53,13 @@ RayGrid::RayGrid(const Camera& camera, const PixelFilter& filter)
 }
 
 bool RayGrid::serves(const Camera& c, const PixelFilter& filter) const {
-  return filter.n == n_ && filter.margin == margin_ && c.width == camera_.width &&
-         c.height == camera_.height && c.projection == camera_.projection && c.fx == camera_.fx &&
-         c.fy == camera_.fy && c.cx == camera_.cx && c.cy == camera_.cy &&
-         c.distortion == camera_.distortion;
+  return filter.n == n_ && filter.margin == margin_ && camera_.same_optics(c);
 }
 
 View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int, 3>>& triangles)
     : camera(c),
       local(at_origin(c)),
-      perspective(c.projection == Camera::Projection::perspective),
-      distorted(is_distorted(c)),
+      central(c.model->central()),
       eye(c.centre()),
       p((c.R * x).colwise() + c.t) {
   start = p.row(2).minCoeff();
@@ -78,7 +69,7 @@ View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int
   for (size_t f = 0; f < triangles.size(); ++f) {
     Matrix3d corners;
     for (int k = 0; k < 3; ++k) corners.col(k) = p.col(triangles[f][k]);
-    if (!perspective) corners.row(2).setOnes();
+    if (!central) corners.row(2).setOnes();
     const double det = corners.determinant();
     // Normals point outwards: seen from the front, the corners turn clockwise in image axes.
     front[f] = det < 0 ? 1 : det > 0 ? -1 : 0;
@@ -86,13 +77,13 @@ View::View(const Camera& c, const Matrix3Xd& x, const std::vector<std::array<int
   Vector2d low(1e30, 1e30), high = -low;
   for (int v = 0; v < p.cols(); ++v) {
     const Vector2d px = local.project(p.col(v));
-    if (!px.allFinite()) {  // Behind the camera: no bound.
+    if (!px.allFinite()) {  // Behind the camera or past its lens: no bound.
       low.setConstant(-1e30), high.setConstant(1e30);
       break;
     }
     low = low.cwiseMin(px), high = high.cwiseMax(px);
   }
-  const double pad = distorted ? 6 : 2;  // filter, and edges that distortion bends
+  const double pad = c.straight() ? 2 : 6;  // filter, and edges that the lens bends
   x0 = static_cast<int>(std::clamp(std::floor(low.x() - pad), 0.0, double(c.width)));
   y0 = static_cast<int>(std::clamp(std::floor(low.y() - pad), 0.0, double(c.height)));
   x1 = static_cast<int>(std::clamp(std::ceil(high.x() + pad + 1), double(x0), double(c.width)));

@@ -18,9 +18,9 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Directions of all rays of a camera in normalised image coordinates h: the ray is t (h, 1) with a
-/// perspective camera and (h, t) with an orthographic one, in camera axes. Depends on the
-/// intrinsics alone; where there is distortion they are undone once and kept.
+/// All rays of a camera by h (CameraModel::ray): the ray is t (h, 1) of a central camera and (h, t)
+/// where rays are parallel, in camera axes. Depends on the intrinsics alone; where lines do not
+/// stay straight or pixels lean, the rays are found once and kept. NaN where a pixel has none.
 class RayGrid {
  public:
   RayGrid(const Camera& camera, const PixelFilter& filter);
@@ -33,7 +33,7 @@ class RayGrid {
   /// dh/d(log focal length) of a point that stays at its pixel, negated: the surface seems to move
   /// by it (times depth).
   Vector2d zoom(int ix, int iy) const { return undone_.empty() ? h(ix, iy) : at(zoom_, ix, iy); }
-  bool distorted() const { return !undone_.empty(); }
+  bool bent() const { return !undone_.empty(); }
 
  private:
   using Field = std::vector<Eigen::Vector2f>;
@@ -43,16 +43,16 @@ class RayGrid {
   Camera camera_;
   int n_, margin_, columns_;
   Field undone_, zoom_;
-  std::vector<double> x_, y_, x_shift_, y_shift_;  ///< h without distortion, in two parts
+  std::vector<double> x_, y_, x_shift_, y_shift_;  ///< h of a straight camera, in two parts
 };
 
 struct View {
   View(const Camera& camera, const Matrix3Xd& x, const std::vector<std::array<int, 3>>& triangles);
 
-  Camera camera, local;  ///< local: the same camera at the origin
-  bool perspective, distorted;
-  Vector3d eye;                    ///< perspective [length]
-  double start = 0;                ///< orthographic: depth where rays start
+  Camera camera, local;            ///< local: the same camera at the origin
+  bool central;                    ///< rays meet in the eye; else they are parallel
+  Vector3d eye;                    ///< of a central camera [length]
+  double start = 0;                ///< of parallel rays: depth where they start
   Matrix3Xd p;                     ///< vertices in camera axes
   std::vector<signed char> front;  ///< triangle turned to the camera: 1, away: -1, edge-on: 0
   int x0, y0, x1, y1;              ///< pixels [x0, x1) x [y0, y1) that the body may touch

@@ -15,13 +15,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json describe_camera(const Camera& camera) {
+  Json intrinsics = Json::array();
+  for (const Intrinsic& one : camera.intrinsics())
+    intrinsics.push_back({{"name", one.name}, {"unit", one.unit}, {"value", one.value}});
   return {{"name", camera.name},
           {"size", {camera.width, camera.height}},
-          {"projection",
-           camera.projection == Camera::Projection::perspective ? "perspective" : "orthographic"},
+          {"projection", camera.model->name()},
           {"fx", camera.fx},
           {"fy", camera.fy},
           {"distortion", camera.distortion},
+          {"intrinsics", intrinsics},
           {"centre", describe_vector(camera.centre())}};
 }
 
@@ -223,10 +226,9 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
                               2));
   rows = {{"camera", "size", "projection", "fx", "centre [" + capture.units.length + "]"}};
   for (const auto& camera : capture.cameras)
-    rows.push_back(
-        {camera.name, fmt::format("{} x {}", camera.width, camera.height),
-         camera.projection == Camera::Projection::perspective ? "perspective" : "orthographic",
-         fmt::format("{:.5g}", camera.fx), vector_text(camera.centre())});
+    rows.push_back({camera.name, fmt::format("{} x {}", camera.width, camera.height),
+                    camera.model->name(), fmt::format("{:.5g}", camera.fx),
+                    vector_text(camera.centre())});
   if (!capture.cameras.empty()) session.say("\ncameras\n{}", table(rows));
   rows = {{"region", "area [" + capture.units.length + "^2]", "nodes", "centroid", "normal"}};
   const double size = scene.body->mesh.X.cwiseAbs().maxCoeff();

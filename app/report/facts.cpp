@@ -119,12 +119,10 @@ json capture_facts(const Capture& capture) {
               {"examples", json::array()}};
   for (const auto& material : capture.materials) out["laws"].push_back(material.law);
   for (const auto& camera : capture.cameras)
-    out["cameras"].push_back(
-        {{"name", camera.name},
-         {"width", camera.width},
-         {"height", camera.height},
-         {"projection",
-          camera.projection == Camera::Projection::perspective ? "perspective" : "orthographic"}});
+    out["cameras"].push_back({{"name", camera.name},
+                              {"width", camera.width},
+                              {"height", camera.height},
+                              {"projection", camera.model->name()}});
   for (const auto& example : capture.examples)
     out["examples"].push_back(example_facts(example, capture.units));
   return out;

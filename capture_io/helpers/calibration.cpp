@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 
@@ -82,21 +83,38 @@ void read_intrinsics(const Calibration& from, Camera& camera) {
   if (!(camera.fx > 0) || !(camera.fy > 0))
     from.fail(fmt::format("the focal lengths are {} and {} px", camera.fx, camera.fy),
               "both must be above zero");
-  if (k.values[1] != 0)
-    from.fail("the camera matrix has a skew", "OpenCV's cameras have none: entry (0, 1) must be 0");
+  camera.skew = k.values[1];
+}
+
+/// OpenCV's flag, or the name that ROS and Kalibr give the distortion.
+void read_model(const Calibration& from, Camera& camera) {
+  const auto [flag_name, flag] = from.find({"fisheye_model"});
+  if (!flag_name.empty() && from.number(flag, flag_name) != 0) {
+    camera.model = &camera_model("fisheye");
+    return;
+  }
+  const auto [name, node] = from.find({"distortion_model"});
+  if (name.empty()) return;
+  const std::string told = node.isString() ? static_cast<std::string>(node) : std::string();
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), told) != names.end();
+  };
+  if (is({"equidistant", "fisheye"}))
+    camera.model = &camera_model("fisheye");
+  else if (!is({"plumb_bob", "rational_polynomial", "thin_prism", "radtan", "none"}))
+    from.fail(fmt::format("`{}` is {}", name, told.empty() ? "no name" : "`" + told + "`"),
+              "one of plumb_bob, rational_polynomial, thin_prism, radtan, none, and of a fisheye "
+              "equidistant or fisheye is expected");
 }
 
 void read_distortion(const Calibration& from, Camera& camera) {
-  const auto [fisheye, flag] = from.find({"fisheye_model"});
-  if (!fisheye.empty() && from.number(flag, fisheye) != 0)
-    from.fail("this is a fisheye calibration", "calibrate with OpenCV's standard model");
   const auto [name, node] = from.find({"distortion_coefficients", "D", "distCoeffs", "dist_coeffs",
                                        "Distortion_Coefficients", "D1"});
   if (name.empty()) return;
   camera.distortion = from.numbers(node, name).values;
-  if (!is_distortion_size(camera.distortion.size()))
+  if (!camera.model->takes(camera.distortion.size()))
     from.fail(fmt::format("`{}` has {} coefficients", name, camera.distortion.size()),
-              "0, 4, 5, 8, 12 or 14 are expected");
+              camera.model->count_rule());
 }
 
 void read_size(const Calibration& from, Camera& camera) {
@@ -160,6 +178,7 @@ Camera read(const std::filesystem::path& file, bool& has_pose) {
                        "write it with cv::FileStorage (yml, xml or json)");
     const Calibration from(storage, file.string());
     read_intrinsics(from, camera);
+    read_model(from, camera);
     read_distortion(from, camera);
     read_size(from, camera);
     has_pose = read_pose(from, camera);

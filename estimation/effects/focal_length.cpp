@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye {
 
 namespace {
 
-/// fx and fy of one camera, or of all, times exp(z).
+/// fx, fy and skew of one camera, or of all, times exp(z): a focal length, of a fisheye too; the
+/// scale where rays are parallel.
 class FocalLength final : public Effect {
  public:
   std::string name() const override { return "focal_length"; }
@@ -14,7 +17,8 @@ class FocalLength final : public Effect {
   std::string title() const override { return "wrong focal length"; }
   bool several() const override { return true; }
   std::string manual() const override {
-    return "A camera's focal length (its scale, where it is orthographic) is not the told one. "
+    return "A camera's focal length (its magnification, where it is orthographic) is not the told "
+           "one. "
            "For a body that is flat along the optical axis this is the same as a camera wrong in "
            "distance from the start; it is easily taken for swelling.";
   }
@@ -32,15 +36,29 @@ class FocalLength final : public Effect {
     return all;
   }
 
-  std::string sentence(const Model&, const Ingredient& ingredient,
+  std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
-    return fmt::format(
-        "the focal length of {} is {} % {} than told",
-        ingredient.variant() == "all cameras" ? "all cameras" : "camera " + ingredient.variant(),
-        figure(100.0 * std::abs(std::expm1(values[0]))), values[0] >= 0 ? "longer" : "shorter");
+    const std::string& of = ingredient.variant();
+    const std::string percent = figure(100.0 * std::abs(std::expm1(values[0])));
+    const bool more = values[0] >= 0;
+    if (is_scale(model, of))
+      return fmt::format("the magnification of {} is {} % {} than told",
+                         of == "all cameras" ? of : "camera " + of, percent,
+                         more ? "larger" : "smaller");
+    return fmt::format("the focal length of {} is {} % {} than told",
+                       of == "all cameras" ? of : "camera " + of, percent,
+                       more ? "longer" : "shorter");
   }
 
  private:
+  /// Whether the rays of the camera, or of all, are parallel.
+  static bool is_scale(const Model& model, const std::string& variant) {
+    const auto& cameras = model.scene->capture.cameras;
+    return std::all_of(cameras.begin(), cameras.end(), [&](const Camera& camera) {
+      return (variant != "all cameras" && variant != camera.name) || !camera.model->central();
+    });
+  }
+
   /// "": all cameras.
   std::shared_ptr<const Ingredient> zoom(const std::string& camera) const {
     IngredientSpec spec;

@@ -84,15 +84,9 @@ double Evaluation::motion_px() const {
 }
 
 Camera camera_at_level(const Camera& camera, int level) {
-  Camera coarse = camera;
-  const double s = std::pow(0.5, level);
+  Camera coarse = camera.resized(std::pow(0.5, level));
   coarse.width >>= level;
   coarse.height >>= level;
-  coarse.fx *= s;
-  coarse.fy *= s;
-  // pixel centres are integers: coordinate c of the fine image is (c + 1/2) s - 1/2 of the coarse
-  coarse.cx = (camera.cx + 0.5) * s - 0.5;
-  coarse.cy = (camera.cy + 0.5) * s - 0.5;
   return coarse;
 }
 

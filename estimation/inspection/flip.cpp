@@ -19,12 +19,6 @@ Camera posed(Camera camera, const Matrix3d& R, const Vector3d& t) {
   return camera;
 }
 Camera scaled(Camera camera, double s) { return posed(camera, camera.R, s * camera.t); }
-Camera resized(Camera camera, double s) {
-  camera.fx *= s, camera.fy *= s;
-  camera.cx = (camera.cx + 0.5) * s - 0.5;
-  camera.cy = (camera.cy + 0.5) * s - 0.5;
-  return camera;
-}
 
 Camera inverted(const Camera& c) { return posed(c, c.R.transpose(), -c.R.transpose() * c.t); }
 Camera from_gl(const Camera& c) { return posed(c, kGl * c.R, kGl * c.t); }
@@ -68,10 +62,10 @@ std::vector<Flip> make_flips() {
        one_length + "cm for m?", Of::pose, [](const Camera& c) { return scaled(c, 0.01); }},
       {"intrinsics_of_twice_the_size", "fx, fy, cx and cy are halved",
        by_size + "they are those of pictures twice as large", Of::intrinsics,
-       [](const Camera& c) { return resized(c, 0.5); }},
+       [](const Camera& c) { return c.resized(0.5); }},
       {"intrinsics_of_half_the_size", "fx, fy, cx and cy are doubled",
        by_size + "they are those of pictures half as large", Of::intrinsics,
-       [](const Camera& c) { return resized(c, 2.0); }}};
+       [](const Camera& c) { return c.resized(2.0); }}};
   const std::string as_calibrated = "hand over the photos as the calibration saw them";
   const std::pair<Turn, const char*> turns[] = {{Turn::half, "turned by 180 degrees"},
                                                 {Turn::mirrored, "mirrored left to right"},

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 
+#include "capture_io/yaml_place.h"
 #include "meshing/extent.h"
 
 namespace hookeye {
@@ -75,17 +77,29 @@ void look_at_measurements(const Scene& scene, const ExampleSpec& example, Senten
   }
 }
 
-/// The picture meets the rectangle about the body at rest; loads rarely bring it into a picture
-/// that it was far from.
-bool sees(const Camera& camera, const Matrix3Xd& X) {
+/// "" where the picture meets the rectangle about the body at rest, else where that lies. Loads
+/// rarely bring the body into a picture that it was far from.
+std::string beside_the_picture(const Camera& camera, const Matrix3Xd& X) {
   Vector2d low(1e30, 1e30), high = -low;
   for (Eigen::Index v = 0; v < X.cols(); ++v) {
     const Vector2d px = camera.project(X.col(v));
     if (!px.allFinite()) continue;  // behind the camera
     low = low.cwiseMin(px), high = high.cwiseMax(px);
   }
-  return high.x() > -0.5 && high.y() > -0.5 && low.x() < camera.width - 0.5 &&
-         low.y() < camera.height - 0.5;
+  if (!(low.x() <= high.x())) return "which lies behind it";
+  if (high.x() > -0.5 && high.y() > -0.5 && low.x() < camera.width - 0.5 &&
+      low.y() < camera.height - 0.5)
+    return "";
+  return fmt::format(
+      "which it would show at x from {:.0f} to {:.0f}, y from {:.0f} to {:.0f} of {} x {} px",
+      low.x(), high.x(), low.y(), high.y(), camera.width, camera.height);
+}
+
+/// Where the capture tells a camera; "" of one that comes from no file.
+std::string told_at(const Capture& capture, const Camera& camera) {
+  if (!std::filesystem::is_regular_file(capture.file)) return "";
+  const YamlPlaces places(capture.file, capture.file.string());
+  return places.of({"cameras", camera.name}).str() + ": ";
 }
 
 void look_at_photos(const Scene& scene, Sentences* out) {
@@ -99,11 +113,16 @@ void look_at_photos(const Scene& scene, Sentences* out) {
                                    scene.capture.examples[e].name, photo.camera));
     }
   if (scene.capture.body.fit_placement) return;
-  for (const Camera& camera : scene.capture.cameras)
-    if (used.count(camera.name) && !sees(camera, scene.body->surface.mesh.X))
-      out->push_back(fmt::format(
-          "camera {} looks past the body at rest: check its pose, its units and the body's",
-          camera.name));
+  for (const Camera& camera : scene.capture.cameras) {
+    if (!used.count(camera.name)) continue;
+    const std::string where = beside_the_picture(camera, scene.body->surface.mesh.X);
+    if (where.empty()) continue;
+    out->push_back(fmt::format(
+        "{}camera {} looks past the body at rest, {}: check its pose, its {}, its units and the "
+        "body's",
+        told_at(scene.capture, camera), camera.name, where,
+        camera.model->central() ? "focal length" : "scale (px per length)"));
+  }
 }
 
 /// Stretch along x at constant volume from which the energy falls again (above 1: a pull, below: a

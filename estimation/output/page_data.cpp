@@ -18,8 +18,7 @@ namespace hookeye {
 using nlohmann::json;
 
 double length_per_px(const Scene& scene, const PhotoState& state) {
-  if (state.camera.projection == Camera::Projection::orthographic) return 1.0 / state.camera.fx;
-  return state.camera.depth(scene.body->mesh.X.rowwise().mean()) / state.camera.fx;
+  return state.camera.length_per_px(scene.body->mesh.X.rowwise().mean());
 }
 
 std::string photo_name(const Scene& scene, const PhotoEvaluation& photo) {

@@ -271,17 +271,13 @@ std::string capture_lines(const PlanCandidate& candidate) {
   if (candidate.kind == PlanCandidate::Kind::view) {
     const Camera& c = candidate.view;
     const Eigen::Matrix3d& R = c.R;
-    const bool flat = c.projection == Camera::Projection::orthographic;
-    std::string lens;
-    for (const double x : c.distortion) lens += (lens.empty() ? "" : ", ") + number(x);
-    if (!lens.empty()) lens = ", distortion: [" + lens + "]";
     return fmt::format(
         "  {}:\n    size: [{}, {}]\n    projection: {}\n"
-        "    intrinsics: {{fx: {}, fy: {}, cx: {}, cy: {}{}}}\n"
+        "    intrinsics: {}\n"
         "    pose: {{rotation: [{}, {}, {}],\n           translation: {}}}\n",
-        candidate.name, c.width, c.height, flat ? "orthographic" : "perspective", number(c.fx),
-        number(c.fy), number(c.cx), number(c.cy), lens, list(R.row(0).transpose()),
-        list(R.row(1).transpose()), list(R.row(2).transpose()), list(c.t));
+        candidate.name, c.width, c.height, c.model->name(), intrinsics_text(c, number),
+        list(R.row(0).transpose()), list(R.row(1).transpose()), list(R.row(2).transpose()),
+        list(c.t));
   }
   std::string text = fmt::format("  {}:\n", candidate.name);
   if (!candidate.load.supports.empty()) text += "    supports:\n";

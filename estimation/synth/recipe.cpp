@@ -187,10 +187,36 @@ void read_material(const YamlNode& node, Recipe& recipe) {
   }
 }
 
+/// One name for all cameras or a list, and the numbers of the lenses.
+void read_models(const YamlSection& section, CameraRecipe& cameras) {
+  std::vector<std::string> names;
+  for (const CameraModel* model : camera_models()) names.push_back(model->name());
+  if (const YamlNode* told = section.find("projection")) {
+    const bool each = told->kind == YamlNode::Kind::sequence;
+    cameras.projection.clear();
+    for (const YamlNode& one : each ? told->items : std::vector<YamlNode>{*told})
+      cameras.projection.push_back(read_choice(one, "projection of cameras", names));
+    if (each && told->items.size() != static_cast<size_t>(cameras.count))
+      throw InputError(
+          told->place,
+          fmt::format("{} cameras have {} projections", cameras.count, told->items.size()),
+          "one name for all, or a list of one a camera");
+  }
+  const YamlNode* lens = section.find("distortion");
+  if (lens) cameras.distortion = read_numbers(*lens, "distortion of cameras");
+  for (const std::string& name : cameras.projection)
+    if (const CameraModel& model = camera_model(name);
+        model.central() && !model.takes(cameras.distortion.size()))
+      throw InputError(
+          lens->place,
+          fmt::format("distortion of {} cameras has {} numbers", name, cameras.distortion.size()),
+          model.count_rule());
+}
+
 void read_cameras(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(
-      node, "cameras",
-      {"count", "size", "distance", "focal", "azimuth", "spread", "elevation", "look_at"});
+  const YamlSection section(node, "cameras",
+                            {"count", "size", "distance", "focal", "projection", "distortion",
+                             "azimuth", "spread", "elevation", "look_at"});
   CameraRecipe& cameras = recipe.cameras;
   cameras.place = node.place;
   maybe(section, "count", cameras.count, 1, 16);
@@ -204,6 +230,7 @@ void read_cameras(const YamlNode& node, Recipe& recipe) {
   }
   maybe(section, "distance", cameras.distance, 1.0, 1000.0);
   cameras.focal = read_positive(section.need("focal", "focal: 1500, in px"), "focal of cameras");
+  read_models(section, cameras);
   maybe(section, "azimuth", cameras.azimuth, read_number);
   maybe(section, "spread", cameras.spread, read_number);
   maybe(section, "elevation", cameras.elevation, -80.0, 80.0);

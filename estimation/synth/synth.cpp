@@ -103,6 +103,12 @@ void check_in_view(const Recipe& recipe, const detail::Truth& truth) {
       double beyond = -1e300;
       for (Eigen::Index v = 0; v < x.cols(); ++v) {
         const Eigen::Vector2d px = photo.camera.project(x.col(v));
+        if (!px.allFinite())
+          throw InputError(recipe.cameras.place,
+                           fmt::format("in example {} a part of the body lies behind {}, or past "
+                                       "its lens",
+                                       scene.capture.examples[e].name, photo.camera.name),
+                           "a longer distance or another look_at");
         beyond = std::max({beyond, -px.x(), -px.y(), px.x() - (photo.camera.width - 1),
                            px.y() - (photo.camera.height - 1)});
       }

@@ -56,11 +56,11 @@ std::string camera_text(const Camera& camera) {
   std::string rows;
   for (int i = 0; i < 3; ++i) rows += (i ? ", " : "") + list(camera.R.row(i).transpose());
   return fmt::format(
-      "  {}:\n    size: [{}, {}]\n    projection: perspective\n"
-      "    intrinsics: {{fx: {}, fy: {}, cx: {}, cy: {}}}\n"
+      "  {}:\n    size: [{}, {}]\n    projection: {}\n"
+      "    intrinsics: {}\n"
       "    pose:\n      rotation: [{}]\n      translation: {}\n",
-      camera.name, camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, rows,
-      list(camera.t));
+      camera.name, camera.width, camera.height, camera.model->name(),
+      intrinsics_text(camera, [](double x) { return fmt::format("{}", x); }), rows, list(camera.t));
 }
 
 std::string region_text(const RegionSpec& region, bool own) {
@@ -173,7 +173,12 @@ std::vector<Camera> make_cameras(const Recipe& recipe) {
     camera.name = fmt::format("cam{}", i);
     camera.width = rig.width;
     camera.height = rig.height;
-    camera.fx = camera.fy = rig.focal;
+    const std::string& kind = rig.projection[i % rig.projection.size()];
+    camera.model = &camera_model(kind);
+    // Parallel rays: as large a picture as the focal length makes at the rig's distance.
+    camera.fx = camera.fy =
+        camera.model->central() ? rig.focal : rig.focal / (rig.distance * height);
+    if (camera.model->central()) camera.distortion = rig.distortion;
     camera.cx = 0.5 * (rig.width - 1);
     camera.cy = 0.5 * (rig.height - 1);
     const Vector3d forward = -from;

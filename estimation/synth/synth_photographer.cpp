@@ -69,6 +69,13 @@ void write_stage(const Truth& truth, const fs::path& albedo, const fs::path& sta
       if (state.specular != 0.0)
         throw InputError({stage.string()}, "another photographer does not know our gloss",
                          "a recipe without `specular`");
+      const CameraModel& model = *state.camera.model;
+      if (!state.camera.straight() || !model.central())
+        throw InputError(
+            {stage.string()},
+            fmt::format("another photographer does not know the {} camera {}",
+                        state.camera.straight() ? model.name() : "bent", state.camera.name),
+            "a recipe with `projection: perspective` and without `distortion`");
       out["photos"].push_back(photo_json(example, k, state));
     }
   }

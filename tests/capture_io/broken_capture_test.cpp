@@ -94,14 +94,57 @@ const BrokenCase broken_cases[] = {
     {"SingularFocal", swap("fx: 11", "fx: 0"),
      "capture.yaml:18:22: fx of camera `front` is `0`\n"
      "  a number above zero is expected"},
-    {"UnknownProjection", swap("orthographic", "fisheye"),
-     "capture.yaml:23:17: projection of camera `top` is `fisheye`\n"
-     "  one of perspective, orthographic is expected"},
+    {"UnknownProjection", swap("orthographic", "cylindrical"),
+     "capture.yaml:23:17: projection of camera `top` is `cylindrical`\n"
+     "  one of perspective, fisheye, orthographic is expected"},
+    {"FisheyeWithTangentialTerms", swap("projection: perspective", "projection: fisheye"),
+     "capture.yaml:18:64: distortion of camera `front` has 5 numbers\n"
+     "  0 or 4 are expected: k1, k2, k3, k4 of cv::fisheye, which has no tangential terms"},
+    {"FisheyeTooWide",
+     swap("perspective\n    intrinsics: {fx: 11, fy: 12, cx: 3.5, cy: 2.5, distortion: [0.1, 0, 0, "
+          "0, 0]}",
+          "fisheye\n    intrinsics: {fx: 2, fy: 2, cx: 3.5, cy: 2.5}"),
+     "capture.yaml:15:3: the distortion of camera `front` cannot be undone at pixel (0, 0)\n"
+     "  rays are followed up to 89 degrees off the axis, where k1 .. k4 let the radius grow: look "
+     "at them and at fx, or crop the photos (and `size`, `cx`, `cy` with them)"},
+    {"FisheyeFolds",
+     swap("perspective\n    intrinsics: {fx: 11, fy: 12, cx: 3.5, cy: 2.5, distortion: [0.1, 0, 0, "
+          "0, 0]}",
+          "fisheye\n    intrinsics: {fx: 11, fy: 12, cx: 3.5, cy: 2.5, distortion: [-3, 0, 0, 0]}"),
+     "capture.yaml:15:3: the distortion of camera `front` cannot be undone at pixel (0, 0)\n"
+     "  rays are followed up to 89 degrees off the axis, where k1 .. k4 let the radius grow: look "
+     "at them and at fx, or crop the photos (and `size`, `cx`, `cy` with them)"},
+    {"OrthographicTilt", swap("scale: 2,", "scale: 2, distortion: [0,0,0,0,0,0,0,0,0,0,0,0,1,0],"),
+     "capture.yaml:24:40: distortion of camera `top` has 14 numbers\n"
+     "  0, 4, 5, 8 or 12 are expected, in OpenCV's order, for lengths in place of x/z (k1 in "
+     "1/length^2)"},
+    {"SkewIsNoNumber", swap("fx: 11,", "skew: leaning, fx: 11,"),
+     "capture.yaml:18:24: skew of camera `front` is `leaning`\n"
+     "  a number is expected"},
+    {"CalibrationOfAFisheye",
+     [](CaptureFixture& c) {
+       c.replace("left: {calibration", "left: {projection: perspective, calibration");
+       c.write_file("left.yml",
+                    "%YAML:1.0\n---\nK: [20., 0., 3., 0., 20., 2., 0., 0., 1.]\n"
+                    "fisheye_model: 1\n");
+     },
+     "capture.yaml:20:22: projection of camera `left` is `perspective`, its calibration is of a "
+     "fisheye camera\n"
+     "  leave `projection` out, or give another file"},
+    {"CalibrationOfNoFisheye",
+     swap("left: {calibration", "left: {projection: fisheye, calibration"),
+     "capture.yaml:20:22: projection of camera `left` is `fisheye`, its calibration has 5 "
+     "coefficients\n"
+     "  0 or 4 are expected: k1, k2, k3, k4 of cv::fisheye, which has no tangential terms"},
+    {"CalibrationOfParallelRays",
+     swap("left: {calibration", "left: {projection: orthographic, calibration"),
+     "capture.yaml:20:22: an OpenCV calibration describes a camera whose rays meet in a point\n"
+     "  give `intrinsics: {scale: ...}` for an orthographic one"},
     {"DistortionThree", swap("distortion: [0.1, 0, 0, 0, 0]", "distortion: [0.1, 0, 0]"),
      "capture.yaml:18:64: distortion of camera `front` has 3 numbers\n"
      "  0, 4, 5, 8, 12 or 14 are expected, in OpenCV's order"},
     {"DistortionFolds", swap("distortion: [0.1, 0, 0, 0, 0]", "distortion: [-80, 0, 0, 0, 0]"),
-     "capture.yaml:15:3: the distortion of camera `front` cannot be undone at pixel (0, 1)\n"
+     "capture.yaml:15:3: the distortion of camera `front` cannot be undone at pixel (0, 0)\n"
      "  look at its coefficients (OpenCV's order: k1, k2, p1, p2, k3 ...) and at fx"},
     {"RotationReflected", swap("[[1,0,0],[0,0,-1],[0,1,0]]", "[[1,0,0],[0,0,1],[0,1,0]]"),
      "capture.yaml:19:22: rotation of camera `front` is a reflection\n"

@@ -55,6 +55,27 @@ TEST(CalibrationTest, RotationVectorAndMissingPose) {
   EXPECT_FALSE(has_pose);
 }
 
+/// A fisheye is told by OpenCV's flag, or by the name that ROS and Kalibr give its distortion.
+TEST(CalibrationTest, FisheyeAndSkew) {
+  const TemporaryFolder folder;
+  const std::string k = "%YAML:1.0\n---\nK: [100., 2., 5., 0., 101., 6., 0., 0., 1.]\n";
+  const std::string d = "D: [0.1, 0.2, 0.3, 0.4]\n";
+  const std::pair<std::string, std::string> files[] = {
+      {d + "fisheye_model: 1\n", "fisheye"},
+      {d + "fisheye_model: 0\n", "perspective"},
+      {d + "distortion_model: equidistant\n", "fisheye"},
+      {d + "distortion_model: \"plumb_bob\"\n", "perspective"},
+      {d, "perspective"},
+      {"fisheye_model: 1\n", "fisheye"}};
+  for (const auto& [text, model] : files) {
+    write_text(folder / "a.yml", k + text);
+    const Camera camera = read_opencv_calibration(folder / "a.yml");
+    EXPECT_EQ(camera.model->name(), model) << text;
+    EXPECT_EQ(camera.skew, 2);
+    EXPECT_EQ(camera.distortion.size(), text.find("D:") == 0 ? 4u : 0u);
+  }
+}
+
 /// OpenCV's reader calls itself for every level: a stack has an end.
 TEST(CalibrationTest, DeepNestingIsNoCrash) {
   const TemporaryFolder folder;
@@ -89,10 +110,11 @@ TEST(CalibrationTest, FaultsAreNamed) {
       {"K: hello\n", "`K` is not a matrix"},
       {"K: [100., 0., 5.]\n", "`K` has 3 numbers"},
       {"K: [0., 0., 5., 0., 100., 5., 0., 0., 1.]\n", "the focal lengths are 0 and 100 px"},
-      {"K: [100., 1., 5., 0., 100., 5., 0., 0., 1.]\n", "the camera matrix has a skew"},
       {"K: [.Nan, 1., 5., 0., 100., 5., 0., 0., 1.]\n", "`K` is not finite"},
       {k + "D: [1., 2., 3.]\n", "`D` has 3 coefficients"},
-      {k + "fisheye_model: 1\n", "this is a fisheye calibration"},
+      {k + "fisheye_model: 1\nD: [1., 2., 3., 4., 5.]\n", "`D` has 5 coefficients"},
+      {k + "distortion_model: mercator\n", "`distortion_model` is `mercator`"},
+      {k + "distortion_model: 3\n", "`distortion_model` is no name"},
       {k + "image_width: 0\nimage_height: 3\n", "the picture size is 0 x 3"},
       {k + "R: [0., 0., 0.]\n", "the pose is incomplete"},
       {k + "R: [0., 0., 0.]\nT: [1., 2.]\n", "`T` has 2 numbers"},

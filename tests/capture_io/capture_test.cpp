@@ -63,7 +63,7 @@ TEST(CaptureTest, CamerasAndLight) {
   EXPECT_EQ(front.t, Vector3d(0, 40, 300));
   EXPECT_EQ(c.camera("left").fx, 20);
   EXPECT_EQ(c.camera("left").t, Vector3d(1, 2, 300));
-  EXPECT_EQ(c.camera("top").projection, Camera::Projection::orthographic);
+  EXPECT_EQ(c.camera("top").model->name(), "orthographic");
   EXPECT_EQ(c.camera("top").fy, 2);
   EXPECT_THROW(c.camera("back"), std::out_of_range);
   EXPECT_TRUE(c.light.given);

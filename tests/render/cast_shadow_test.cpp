@@ -19,7 +19,7 @@ struct CastShadow : testing::Test {
         renderer(surface) {
     texture.source = Texture::Source::uniform;
     texture.albedo = 0.8;
-    state = test::state(test::camera(Camera::Projection::perspective, false));
+    state = test::state(test::camera("perspective", false));
     // From the side, so that the shadow falls beside the ball that casts it.
     state.sun = Vector3d(0.45, 0.25, -0.5);
     options.visibility_rays = 0;
@@ -205,14 +205,14 @@ struct ShadowEdge : CastShadow {
     }
   }
   void compare_sun_and_camera(const std::string& what) {
-    const bool orthographic = state.camera.projection == Camera::Projection::orthographic;
+    const bool parallel = !state.camera.model->central();
     for (int column = 0; column < kSpecular; ++column) {
       if (column == kLogGain || column == kAmbient) continue;  // move no edge
-      if (orthographic && column == kMove + 2) continue;  // along the line of sight: nothing moves
-      const double h = column < 2    ? 0.002
+      if (parallel && column == kMove + 2) continue;  // along the line of sight: nothing moves
+      const double h = column < 2    ? test::turning_step(state.camera)
                        : column == 2 ? 0.03
                        : column < 5  ? 0.1
-                       : column == 5 ? 1.0
+                       : column == 5 ? 0.02 * state.camera.t.z()
                                      : 0.02;
       compare(
           nullptr, VectorXd::Unit(kPhotoColumns, column), h,
@@ -235,9 +235,11 @@ TEST_F(ShadowEdge, of_a_ball_on_another) {
 }
 
 TEST_F(ShadowEdge, before_other_cameras) {
-  state.camera = test::camera(Camera::Projection::perspective, true);
+  state.camera = test::camera("perspective", true);
   compare_sun_and_camera("distorted");
-  state.camera = test::camera(Camera::Projection::orthographic, false);
+  state.camera = test::camera("fisheye", true);
+  compare_sun_and_camera("fisheye");
+  state.camera = test::camera("orthographic", false);
   compare_sun_and_camera("orthographic");
 }
 

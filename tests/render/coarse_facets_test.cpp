@@ -26,7 +26,7 @@ std::string name_of(const testing::TestParamInfo<Setting>& info) {
 
 /// The camera of the other tests with three times as many pixels along the same picture.
 Camera close_up(bool distorted) {
-  Camera c = test::camera(Camera::Projection::perspective, distorted);
+  Camera c = test::camera("perspective", distorted);
   c.width *= 3, c.height *= 3;
   c.fx *= 3, c.fy *= 3, c.cx *= 3, c.cy *= 3;
   return c;

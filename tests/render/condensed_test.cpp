@@ -14,7 +14,7 @@ TEST(condensed, equals_explicit_rows) {
                                          test::sphere({2, 1, 4}, 8, 2, 0.03, {-0.25, 0}));
   Renderer renderer(surface);
   Texture texture;
-  PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  PhotoState state = test::state(test::camera("perspective", false));
   for (bool from_photo : {false, true}) {
     if (from_photo) {
       texture.source = Texture::Source::photo;
@@ -80,7 +80,7 @@ void expect_same(const ImageDerivative& first, const ImageDerivative& second) {
 
 TEST(condensed, without_parameters_and_without_a_body) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 2, 0.05);
-  const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  const PhotoState state = test::state(test::camera("perspective", false));
   Renderer renderer(surface);
   testing::internal::CaptureStdout();
   for (const double aside : {0.0, 1e3}) {
@@ -104,7 +104,7 @@ TEST(renderer, threads_agree_bit_by_bit) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
   Renderer renderer(surface);
   Texture texture;
-  const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  const PhotoState state = test::state(test::camera("perspective", false));
   RenderOptions one, two;
   two.parallel = true;
   const Rendering a = renderer.render(surface.X, nullptr, texture, state, one, true);
@@ -117,7 +117,7 @@ TEST(renderer, threads_agree_bit_by_bit) {
 TEST(renderer, without_the_photos_numbers_motions_stay_the_same) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
   Renderer renderer(surface);
-  PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  PhotoState state = test::state(test::camera("perspective", false));
   for (const int rays : {1, 3}) {
     RenderOptions with, without;
     with.rays_per_axis = without.rays_per_axis = rays;
@@ -156,7 +156,7 @@ TEST(renderer, memory_used_again_leaves_nothing_behind) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
   Renderer renderer(surface);
   Texture texture;
-  PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  PhotoState state = test::state(test::camera("perspective", false));
   const Rendering fresh = renderer.render(surface.X, nullptr, texture, state, {}, true);
   Rendering again;
   PhotoState large = state;
@@ -176,7 +176,7 @@ TEST(renderer, instruction_sets_agree) {
   Texture texture;
   texture.source = Texture::Source::image;
   texture.image = test::waves(256, 256, 4);
-  const PhotoState state = test::state(test::camera(Camera::Projection::perspective, false));
+  const PhotoState state = test::state(test::camera("perspective", false));
   const auto picture = [&](int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
     return Renderer(surface).render(surface.X, nullptr, texture, state, {}, true);

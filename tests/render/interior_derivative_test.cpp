@@ -11,7 +11,7 @@ using Source = Texture::Source;
 
 struct Setting {
   Source source;
-  Camera::Projection projection;
+  const char* model;
   bool distorted, smooth;
 };
 
@@ -20,7 +20,7 @@ std::string name_of(const testing::TestParamInfo<Setting>& info) {
   std::string out = s.source == Source::image   ? "image"
                     : s.source == Source::photo ? "photo"
                                                 : "uniform";
-  out += s.projection == Camera::Projection::perspective ? "_perspective" : "_orthographic";
+  out += std::string("_") + s.model;
   if (s.distorted) out += "_distorted";
   return out + (s.smooth ? "" : "_flat");
 }
@@ -32,7 +32,7 @@ class Interior : public testing::TestWithParam<Setting> {
         renderer(surface),
         x(surface.X + 0.05 * test::field(surface.X, 0.7)),
         x_reference(surface.X),
-        state(test::state(test::camera(GetParam().projection, GetParam().distorted))) {
+        state(test::state(test::camera(GetParam().model, GetParam().distorted))) {
     texture.source = GetParam().source;
     texture.albedo = 0.8;
     texture.image = test::waves(1024, 1024, 4);
@@ -155,8 +155,7 @@ TEST_P(SmoothInterior, photo_columns) {
   for (int column = 0; column < kBlur; ++column) {
     const bool light = column >= kAmbient;
     if (light && !state.shaded) continue;
-    if (column == kMove + 2 && state.camera.projection == Camera::Projection::orthographic)
-      continue;
+    if (column == kMove + 2 && !state.camera.model->central()) continue;
     // A uniform ball turned about the optical axis hardly changes: only breaks of slope remain.
     if (column == kRotate + 2 && GetParam().source == Source::uniform) continue;
     const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
@@ -180,14 +179,17 @@ TEST_P(SmoothInterior, photo_columns) {
   }
 }
 
-constexpr auto kPerspective = Camera::Projection::perspective;
-constexpr auto kOrthographic = Camera::Projection::orthographic;
+constexpr auto kPerspective = "perspective", kFisheye = "fisheye", kOrthographic = "orthographic";
 const auto kPhotos = testing::Values(Setting{Source::photo, kPerspective, false, true},
                                      Setting{Source::photo, kPerspective, true, true},
+                                     Setting{Source::photo, kFisheye, true, true},
                                      Setting{Source::photo, kOrthographic, false, true});
 const auto kShaded = testing::Values(Setting{Source::image, kPerspective, false, true},
                                      Setting{Source::image, kPerspective, true, true},
+                                     Setting{Source::image, kFisheye, false, true},
+                                     Setting{Source::image, kFisheye, true, true},
                                      Setting{Source::image, kOrthographic, false, true},
+                                     Setting{Source::image, kOrthographic, true, true},
                                      Setting{Source::uniform, kPerspective, false, true},
                                      Setting{Source::uniform, kOrthographic, false, true},
                                      Setting{Source::uniform, kPerspective, true, true});

@@ -63,17 +63,29 @@ inline SurfaceMesh both(const SurfaceMesh& a, const SurfaceMesh& b) {
   return out;
 }
 
-inline Camera camera(Camera::Projection projection, bool distorted) {
+/// A fisheye is near the body, which it sees beside its axis.
+inline Camera camera(const std::string& model, bool distorted) {
   Camera c;
   c.width = 80, c.height = 64;
-  c.projection = projection;
-  const bool perspective = projection == Camera::Projection::perspective;
-  c.fx = perspective ? 130 : 2.7, c.fy = perspective ? 128 : 2.6;
+  c.model = &camera_model(model);
+  const bool fisheye = model == "fisheye", central = c.model->central();
+  c.fx = fisheye ? 45 : central ? 130 : 2.7, c.fy = fisheye ? 44 : central ? 128 : 2.6;
   c.cx = 40.3, c.cy = 31.2;
-  if (distorted) c.distortion = {-0.2, 0.05, 0.003, -0.002, 0.01};
+  if (distorted && fisheye)
+    c.distortion = {-0.08, 0.03, -0.01, 0.002};
+  else if (distorted && central)
+    c.distortion = {-0.2, 0.05, 0.003, -0.002, 0.01};
+  else if (distorted)  // by length
+    c.distortion = {-4e-4, 2e-7, 3e-4, -2e-4};
+  if (distorted) c.skew = 0.02 * c.fx;
   c.R = Eigen::AngleAxisd(0.3, Vector3d(0.2, 1, -0.4).normalized()).toRotationMatrix();
-  c.t = {0.5, -0.3, 50};
+  c.t = fisheye ? Vector3d(6, -4, 22) : Vector3d(0.5, -0.3, 50);
   return c;
+}
+
+/// Turns the picture of camera() by a quarter of a pixel [rad].
+inline double turning_step(const Camera& camera) {
+  return camera.model->central() ? 0.26 / camera.fx : 0.002;
 }
 
 /// Smooth picture with values about 0.5.

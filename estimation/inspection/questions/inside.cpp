@@ -29,8 +29,7 @@ double winding(const SurfaceMesh& surface, const Vector3d& point) {
 void ask_inside(Sight& sight, Warnings& warnings) {
   const Scene& scene = sight.scene();
   for (const Camera& camera : scene.capture.cameras) {
-    if (camera.projection != Camera::Projection::perspective || sight.doubted(camera.name))
-      continue;
+    if (!camera.model->central() || sight.doubted(camera.name)) continue;
     if (winding(scene.body->surface.mesh, camera.centre()) < 0.5) continue;
     const Vector3d centre = camera.centre();
     warnings.say(
