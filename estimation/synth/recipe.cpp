@@ -324,6 +324,16 @@ void read_noise(const YamlNode& node, Recipe& recipe) {
     noise.bits = std::stoi(read_choice(*bits, "bits", {"8", "16"}));
 }
 
+void read_photos(const YamlNode& node, Recipe& recipe) {
+  const YamlSection section(node, "photos", {"kind", "threshold"});
+  recipe.photos.place = node.place;
+  const YamlNode* kind = section.find("kind");
+  if (!kind || read_choice(*kind, "kind of the photos", {"image", "silhouette"}) == "image") return;
+  double threshold = 0.5;
+  maybe(section, "threshold", threshold, 0.01, 0.99);
+  recipe.photos.silhouette = threshold;
+}
+
 void read_truth(const YamlNode& node, Recipe& recipe) {
   const YamlSection section(node, "truth",
                             {"edge_factor", "order", "rays_per_axis", "visibility_rays"});
@@ -351,9 +361,10 @@ void read_examples(const YamlNode& node, Recipe& recipe) {
 
 Recipe parse_recipe(const std::string& text, const std::string& name) {
   const YamlNode root = parse_yaml(text, name);
-  const YamlSection top(root, "a recipe",
-                        {"hookeye_recipe", "title", "seed", "units", "body", "material", "cameras",
-                         "light", "regions", "examples", "hidden", "noise", "truth"});
+  const YamlSection top(
+      root, "a recipe",
+      {"hookeye_recipe", "title", "seed", "units", "body", "material", "cameras", "gravity",
+       "light", "regions", "examples", "hidden", "noise", "photos", "truth"});
   const YamlNode& version = top.need("hookeye_recipe", "begin with `hookeye_recipe: 1`");
   if (read_integer(version, "hookeye_recipe") != 1)
     throw InputError(version.place, "a recipe of another version", "hookeye_recipe: 1");
@@ -392,7 +403,10 @@ Recipe parse_recipe(const std::string& text, const std::string& name) {
   if (const YamlNode* hidden = top.find("hidden"))
     for (const YamlNode& node : read_list(*hidden, "hidden", "a list of effects; [] hides nothing"))
       recipe.hidden.push_back(read_hidden(node));
+  if (const YamlNode* gravity = top.find("gravity"))
+    recipe.gravity = read_vector3(*gravity, "gravity");
   read_noise(or_empty("noise"), recipe);
+  read_photos(or_empty("photos"), recipe);
   read_truth(or_empty("truth"), recipe);
   return recipe;
 }

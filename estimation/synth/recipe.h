@@ -98,6 +98,14 @@ struct NoiseRecipe {
   double moment = 0.003;  ///< the same, times the body's height
 };
 
+/// What the capture has of each photo.
+struct PhotoRecipe {
+  /// Coverage of a pixel above which it is the body's: black and white silhouettes, without
+  /// texture. Empty: pictures.
+  std::optional<double> silhouette;
+  Place place;
+};
+
 /// How the truth is computed: never as the fit will.
 struct TruthRecipe {
   double edge_factor = 0.7;  ///< edge of the truth's tetrahedra over the told one
@@ -115,6 +123,7 @@ struct Recipe {
   ShapeRecipe shape;
   std::vector<RegionSpec> regions;  ///< of a surface, `base` among them; a shape has its own
   double density = 0.0;             ///< told; 0: not
+  std::optional<Vector3d> gravity;  ///< told, and acting in all examples [length/s^2]
   double edge = 0.0;                ///< told `mesh:` [length]
   int order = 2;
   TextureRecipe texture;
@@ -124,6 +133,7 @@ struct Recipe {
   std::vector<ExampleRecipe> examples;
   std::vector<HiddenRecipe> hidden;
   NoiseRecipe noise;
+  PhotoRecipe photos;
   TruthRecipe truth;
 };
 

@@ -89,6 +89,7 @@ Capture true_capture(const Recipe& recipe, const SynthBody& body, const fs::path
       PhotoSpec photo;
       photo.camera = camera.name;
       photo.place = example.place;
+      if (recipe.photos.silhouette) photo.kind = PhotoSpec::Kind::silhouette;
       example.photos.push_back(photo);
     }
   return capture;
@@ -129,6 +130,11 @@ void add_noise(const NoiseRecipe& noise, Normal normal, Image& image) {
   }
 }
 
+/// White where the body covers more than `threshold` of a pixel.
+void cut_out(double threshold, Image& image) {
+  for (float& value : image.values) value = value > threshold ? 1.0f : 0.0f;
+}
+
 detail::Pictures our_pictures(const Recipe& recipe, const detail::Truth& truth,
                               const SynthOptions& options) {
   const auto scene = truth.model.scene;
@@ -161,6 +167,7 @@ void write_photos(const Recipe& recipe, const detail::Truth& truth, detail::Pict
       const std::string& camera = example.photos[k].camera;
       const std::string purpose = fmt::format("photo {} {}", example.name, camera);
       add_noise(recipe.noise, Normal(detail::random_of(recipe.seed, purpose)), pictures[e][k]);
+      if (recipe.photos.silhouette) cut_out(*recipe.photos.silhouette, pictures[e][k]);
       write_image(folder / detail::photo_name(recipe, example.name, camera), pictures[e][k]);
     }
   }
@@ -225,7 +232,7 @@ Json truth_json(const Recipe& recipe, const detail::Truth& truth) {
 SynthBody write_body(const Recipe& recipe, const fs::path& folder) {
   SynthBody body = detail::make_synth_body(recipe);
   write_surface_obj(folder / "surface.obj", body.surface);
-  write_image(folder / "albedo.png", body.albedo);
+  if (!recipe.photos.silhouette) write_image(folder / "albedo.png", body.albedo);
   for (const RegionSpec& region : body.regions)
     if (const auto* faces = std::get_if<RegionSpec::Faces>(&region.shape))
       write_triangles(folder / detail::faces_file(region), faces->triangles);
@@ -241,6 +248,9 @@ std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const
   if (fs::exists(out))
     throw InputError({given.string()}, "this folder is there already",
                      "name a new one, or remove it first");
+  if (recipe.photos.silhouette && !options.photographer.empty())
+    throw InputError(recipe.photos.place, "another photographer takes no silhouettes",
+                     "a recipe without `kind: silhouette`");
   Staging staging(out);
   const fs::path& folder = staging.folder();
   const SynthBody body = write_body(recipe, folder);

@@ -133,9 +133,12 @@ std::string examples_text(const Recipe& recipe, const SynthBody& body, const Cap
           recipe.noise.moment * force_unit(recipe, body, example) * recipe.shape.height(), out);
     if (!options.photos) continue;
     out += "    photos:\n";
-    for (const Camera& camera : cameras)
-      fmt::format_to(to, "      {}: {}\n", camera.name,
-                     quoted(photo_name(recipe, example.name, camera.name)));
+    for (const Camera& camera : cameras) {
+      const std::string file = quoted(photo_name(recipe, example.name, camera.name));
+      fmt::format_to(
+          to, "      {}: {}\n", camera.name,
+          recipe.photos.silhouette ? fmt::format("{{file: {}, kind: silhouette}}", file) : file);
+    }
   }
   return out;
 }
@@ -206,6 +209,22 @@ std::string photo_name(const Recipe& recipe, const std::string& example,
   return fmt::format("photos/{}_{}.{}", example, camera, recipe.noise.bits == 8 ? "png" : "tif");
 }
 
+namespace {
+
+std::string light_and_noise_text(const Recipe& recipe) {
+  const double strength = recipe.light.sun.norm();
+  const Vector3d toward =
+      strength > 0.0 ? Vector3d(recipe.light.sun / strength) : Vector3d::UnitZ();
+  const NoiseModel noise = told_noise(recipe.noise);
+  return fmt::format(
+      "light:\n  ambient: {}\n  sun: {{toward: {}, strength: {}}}\n"
+      "photos:\n  encoding: linear\n  background: black\n"
+      "  noise: {{full_well: {}, read: {}}}\n",
+      recipe.light.ambient, list(toward), strength, noise.full_well, noise.read);
+}
+
+}  // namespace
+
 std::string capture_text(const Recipe& recipe, const SynthBody& body, const CaptureText& options) {
   std::string out;
   auto to = std::back_inserter(out);
@@ -214,23 +233,15 @@ std::string capture_text(const Recipe& recipe, const SynthBody& body, const Capt
   fmt::format_to(to, "body:\n  surface: surface.obj\n  mesh: {{edge: {}, order: {}}}\n",
                  recipe.edge, recipe.order);
   if (recipe.density > 0.0) fmt::format_to(to, "  density: {}\n", recipe.density);
-  fmt::format_to(to, "  texture: {{image: albedo.png, encoding: linear}}\n");
+  if (!recipe.photos.silhouette) out += "  texture: {image: albedo.png, encoding: linear}\n";
   const MaterialRecipe& material = recipe.material;
   fmt::format_to(to, "model:\n  material: {}\n  fit: [{}]\n",
                  law_text(options.truth ? material.truth : material.told),
                  fmt::join(material.fit, ", "));
+  if (recipe.gravity) fmt::format_to(to, "  gravity: {}\n", list(*recipe.gravity));
   out += "cameras:\n";
   for (const Camera& camera : make_cameras(recipe)) out += camera_text(camera);
-  const double strength = recipe.light.sun.norm();
-  const Vector3d toward =
-      strength > 0.0 ? Vector3d(recipe.light.sun / strength) : Vector3d::UnitZ();
-  fmt::format_to(to, "light:\n  ambient: {}\n  sun: {{toward: {}, strength: {}}}\n",
-                 recipe.light.ambient, list(toward), strength);
-  const NoiseModel noise = told_noise(recipe.noise);
-  fmt::format_to(to,
-                 "photos:\n  encoding: linear\n  background: black\n"
-                 "  noise: {{full_well: {}, read: {}}}\n",
-                 noise.full_well, noise.read);
+  if (!recipe.photos.silhouette) out += light_and_noise_text(recipe);
   out += regions_text(recipe, body);
   return out + examples_text(recipe, body, options);
 }

@@ -120,6 +120,35 @@ TEST_F(SynthTest, HiddenEffectsMustBeInTheCatalogueAndInRange) {
   EXPECT_TRUE(fs::is_empty(folder_.path())) << "a failed synthesis leaves nothing behind";
 }
 
+/// Black and white pictures of the loaded body, and a weight that the capture tells.
+TEST_F(SynthTest, TakesSilhouettesAndAToldWeight) {
+  const std::string text = recipe_text("", kSameAsFit) +
+                           "gravity: [0, -9810, 0]\nphotos: {kind: silhouette, threshold: 0.5}\n";
+  make(text, "cut");
+  const Capture capture = read_capture(folder_ / "cut");
+  ASSERT_TRUE(capture.gravity.has_value());
+  EXPECT_EQ(capture.gravity->y(), -9810.0);
+  EXPECT_FALSE(fs::exists(folder_ / "cut/albedo.png"));
+  for (const ExampleSpec& example : capture.examples)
+    for (const PhotoSpec& photo : example.photos) {
+      EXPECT_EQ(photo.kind, PhotoSpec::Kind::silhouette);
+      const Image image = read_image(photo.file, Encoding{});
+      double white = 0.0;
+      for (const float value : image.values) {
+        EXPECT_TRUE(value == 0.0f || value == 1.0f);
+        white += value;
+      }
+      EXPECT_GT(white, 0.02 * static_cast<double>(image.pixels()));
+      EXPECT_LT(white, 0.8 * static_cast<double>(image.pixels()));
+    }
+  SynthOptions other;
+  other.photographer = "true";
+  EXPECT_THROW(synthesize(parse_recipe(text, "recipe.yaml"), folder_ / "other", other), InputError);
+  EXPECT_EQ(fault(text + "noise: {}\n"), "no fault");
+  EXPECT_THAT(fault(replaced(text, "kind: silhouette", "kind: silhouete")),
+              testing::HasSubstr("did you mean `silhouette`?"));
+}
+
 TEST_F(SynthTest, SameSeedSameBytesAndOtherSeedOtherPhotos) {
   const std::string text = recipe_text("", kFast);
   make(text, "a");
