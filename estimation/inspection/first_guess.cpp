@@ -94,6 +94,7 @@ FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
                                    Eigen::MatrixXd(loading.displacement))
                          .col(0);
   guess.strain = largest_strain(mesh, u);
+  guess.turned = loading.first_step() < 1.0;
   guess.linear = body.surface.deformed(mesh, X + u) - body.surface.mesh.X;
   return guess;
 }
@@ -105,7 +106,7 @@ void CoarseModel::find_equilibrium(int e, FirstGuess* guess) const {
     guess->x = scene_->body->surface.mesh.X;
     return;
   }
-  if (guess->strain > options_.most_strain) {
+  if (guess->strain > options_.most_strain && !guess->turned) {
     guess->failure = fmt::format("strained by {:.3g} to first order", guess->strain);
     return;
   }

@@ -15,6 +15,8 @@ struct FirstGuess {
   /// where nothing moves the body; empty where nothing holds it.
   Matrix3Xd linear;
   double strain = 0.0;  ///< largest of an element, to first order: |sym grad u|
+  /// A support turns by more than 30 degrees: nothing is right to first order.
+  bool turned = false;
   /// In equilibrium: positions of the vertices; empty: none was found, or sought.
   Matrix3Xd x;
   std::string failure;  ///< why x is empty

@@ -48,6 +48,21 @@ TEST(Inspection, SilhouettesAreToldWithoutATexture) {
   }
 }
 
+/// To first order half a turn strains a body by several times; it is a turn all the same.
+TEST(Inspection, ALargeTurnIsNoWrongUnit) {
+  InspectedCapture capture;
+  capture.change("texture: \\{image[^}]*\\}", "texture: {uniform: 0.5}");
+  capture.change("degrees: [0-9.]+", "degrees: 170");
+  const Inspection seen = capture.inspect();
+  EXPECT_THAT(said(seen), testing::Not(HasSubstr("strain the body")));
+  const Capture told = read_capture(capture.folder());
+  const auto twist = std::find_if(
+      seen.guesses.begin(), seen.guesses.end(),
+      [&](const GuessLook& guess) { return told.examples.at(guess.example).name == "twist"; });
+  ASSERT_NE(twist, seen.guesses.end());
+  EXPECT_FALSE(std::isnan(twist->displacement)) << twist->failure;
+}
+
 TEST(Inspection, DrawsTheBodyOverEveryPhoto) {
   const InspectedCapture capture;
   const auto scene = load_scene(read_capture(capture.folder()));

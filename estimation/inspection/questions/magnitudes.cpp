@@ -99,7 +99,9 @@ void ask_of_strains(Sight& sight, Warnings& warnings) {
   for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
     const int e = static_cast<int>(i);
     const FirstGuess& guess = *sight.guess(e);
-    if (sight.load_case(e).first_order.count > 0.0 || guess.strain <= options.most_strain) continue;
+    if (sight.load_case(e).first_order.count > 0.0 || guess.strain <= options.most_strain ||
+        guess.turned)
+      continue;
     warnings.say(
         loads_of(sight, e),
         fmt::format("example `{}` would strain the body by {:.3g} to first order",
