@@ -214,6 +214,12 @@ std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& 
           {layers(model, across), in_layers}};
 }
 
+Effect::Further layers_like(const Model& model, const Vector3d& across, double a) {
+  VectorXd values(5);
+  values << a, 0.0, 0.0, 0.0, 0.05 * body_size(*model.scene).size;
+  return {.form = layers(model, across), .values = values};
+}
+
 Effect::Further ball_like(const Model& model, const VectorXd& blob) {
   VectorXd values(6);
   values << blob[0] / std::sqrt(8.0), blob.segment<3>(1),

@@ -18,6 +18,8 @@ bool is_graded(const std::string& variant);
 std::shared_ptr<const Ingredient> graded_form(const Model& model, const std::string& variant);
 /// Gradient and layers, where they are most like a log of the stiffness told element by element.
 std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& log_factor);
+/// Two layers parted through the body's middle: exp(a) times as stiff beyond as before.
+Effect::Further layers_like(const Model& model, const Vector3d& across, double a);
 /// The ball, where it is most like a Gaussian of these values (free_place): of one integral over
 /// the body of its logarithm and of that squared.
 Effect::Further ball_like(const Model& model, const VectorXd& blob);

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 
 #include "estimation/effects/graded_stiffness.h"
+#include "estimation/effects/own_directions.h"
 
 namespace hookeye {
 
@@ -10,6 +11,7 @@ namespace {
 
 const int kFieldBumps = 16, kBlobs = 16;
 const char* const kFreeBlob = "free blob";
+const char* const kHalves = "halves across";
 
 /// Element forces of what a field scales. At its null that is every part, for a candidate comes
 /// last; once it is in, the parts with weights (an effect added after it appends its part without
@@ -79,9 +81,10 @@ class StiffnessField final : public Effect {
   std::string title() const override { return "stiffness varies over the body"; }
   std::string manual() const override {
     return "Some part of the body is stiffer or softer than the rest: an inclusion, a void, "
-           "uneven cure. A field can imitate much else (soft clamps, wrong loads), so it is "
-           "believed only where one blob, or held-out examples, say the same. The refit goes on to "
-           "a ball with an edge, to a stiffness that changes along a direction and to two layers.";
+           "uneven cure, one half of a casting. A field can imitate much else (soft clamps, wrong "
+           "loads), so it is believed only where one blob, or held-out examples, say the same. The "
+           "refit goes on to a ball with an edge, to a stiffness that changes along a direction and "
+           "to two layers.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {
@@ -92,6 +95,8 @@ class StiffnessField final : public Effect {
         field(model, spread_centres(scene, kFieldBumps), bump_radius(scene, kFieldBumps), forces)};
     for (const Vector3d& c : spread_centres(scene, kBlobs))
       all.push_back(blob(model, c, 0.12 * size, forces));
+    const Eigen::Matrix3d axes = own_axes(scene.body->mesh);
+    for (int axis = 0; axis < 3; ++axis) all.push_back(halves(model, axes.col(axis), forces));
     return all;
   }
 
@@ -99,6 +104,8 @@ class StiffnessField final : public Effect {
                                             const std::string& variant) const override {
     if (variant == kFreeBlob) return free_blob(model);
     if (auto graded = graded_form(model, variant)) return graded;
+    if (const auto across = across_of(variant))
+      return halves(model, *across, std::make_shared<ScaledForces>());
     if (const auto place = blob_in(variant))
       return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>());
     const auto n = numbers_in(variant);
@@ -111,6 +118,11 @@ class StiffnessField final : public Effect {
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
                                                std::shared_ptr<const Ingredient> scored,
                                                VectorXd& values) const override {
+    if (const auto across = across_of(scored->variant())) {
+      const Effect::Further layers = layers_like(model, *across, values[0]);
+      values = layers.values;
+      return layers.form;
+    }
     const auto place = blob_in(scored->variant());
     if (!place) return scored;
     values = freed(*place, values[0]);
@@ -152,6 +164,10 @@ class StiffnessField final : public Effect {
       return fmt::format("stiffness varies over the body by factors from {} to {}",
                          figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
     if (is_graded(ingredient.variant())) return graded_sentence(model, ingredient, values);
+    if (const auto across = across_of(ingredient.variant())) {
+      const Effect::Further layers = layers_like(model, *across, values[0]);
+      return graded_sentence(model, *layers.form, layers.values);
+    }
     const Blob place = blob_of(ingredient, values);
     return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
                        values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
@@ -208,6 +224,27 @@ class StiffnessField final : public Effect {
     spec.variant = blob_text({centre, radius});
     spec.parameters = {amplitude("stiffness_field.a")};
     return linear(std::move(spec), {gaussian_bump(model.scene->body->mesh, centre, radius)},
+                  std::move(forces));
+  }
+
+  static std::optional<Vector3d> across_of(const std::string& variant) {
+    const auto n = numbers_in(variant);
+    if (!starts_with(variant, kHalves) || n.size() != 3) return std::nullopt;
+    return Vector3d(n[0], n[1], n[2]);
+  }
+
+  /// One half of the body stiffer and the other softer by as much, parted across `across` in the
+  /// middle: as two castings in one mould are. No sign of `across` is another candidate.
+  std::shared_ptr<const Ingredient> halves(const Model& model, const Vector3d& across,
+                                           std::shared_ptr<ScaledForces> forces) const {
+    IngredientSpec spec;
+    spec.variant = fmt::format("{} {}", kHalves, direction_text(across));
+    const Vector3d n = across_of(spec.variant)->normalized();
+    const BodySize body = body_size(*model.scene);
+    const VectorXd t =
+        (element_centres(model.scene->body->mesh).colwise() - body.centre).transpose() * n;
+    spec.parameters = {amplitude("stiffness_field.a")};
+    return linear(std::move(spec), {0.5 * (t.array() / (0.1 * body.size)).tanh()},
                   std::move(forces));
   }
 

@@ -283,7 +283,7 @@ bool turn_case(const Case& c, std::string& variant, VectorXd& values) {
   } else if (name == "load_direction" || name == "floor_contact") {
     return false;  // axes and sides are chosen anew
   } else if (variant.rfind("along", 0) == 0 || variant.rfind("pulling along", 0) == 0 ||
-             variant.rfind("blob", 0) == 0) {
+             variant.rfind("blob", 0) == 0 || variant.rfind("halves", 0) == 0) {
     if (!std::regex_search(variant, match, triple)) return false;
     variant = match.prefix().str() + "(-" + match[2].str() + ", " + match[1].str() + ", " +
               match[3].str() + ")" + match.suffix().str();
