@@ -178,14 +178,15 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   const Discovery found = search(run, bench, options, kept.from_before());
   // What held-out photos alone show there are the values.
   std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
-  if (const auto high = high_floor(found.floor); !high.empty())
-    hint += (hint.empty() ? "" : ". ") + high;
+  for (const std::string& told : {high_floor(found.floor), copied_floor(found.floor)})
+    if (!told.empty()) hint += (hint.empty() ? "" : ". ") + told;
   run.update([&](nlohmann::json& timeline) {
     timeline.erase("tested");
     timeline["verdict"] = to_string(found.verdict);
     timeline["sentence"] = found.sentence;
     timeline["missing"] = found.missing;
     timeline["tie"] = found.tie;
+    timeline["untold"] = found.untold;
     timeline["hint"] = hint;
     timeline.erase("fitted_to_all");
     if (found.all) timeline["fitted_to_all"] = to_json(*found.all);

@@ -195,7 +195,7 @@ namespace {
 void drop_verdict(Run& run, bool of_search) {
   run.update([&](nlohmann::json& timeline) {
     for (const char* key :
-         {"verdict", "sentence", "missing", "tie", "hint", "fitted_to_all", "tested"})
+         {"verdict", "sentence", "missing", "tie", "untold", "hint", "fitted_to_all", "tested"})
       timeline.erase(key);
     if (!of_search) timeline.erase("search");
   });

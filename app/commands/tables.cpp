@@ -294,6 +294,17 @@ std::string high_floor(const Floor& floor) {
       of, chi);
 }
 
+std::string copied_floor(const Floor& floor) {
+  if (floor.copies <= 0.0) return "";
+  return fmt::format(
+      "the reference images leave {:.2g} of the specified noise, less than no model could take "
+      "from "
+      "the photos of the loaded body: they repeat the noise of what they are compared with, as "
+      "stills of one video or strongly compressed photos do. The noise floor is that of the loaded "
+      "photos",
+      floor.copies);
+}
+
 std::string choice_table(const json& before, const json& step, double floor, const Limits& limits) {
   if (step.at("added").is_null()) return "";
   const std::string added = step.at("added");

@@ -24,6 +24,9 @@ std::string choice_table(const nlohmann::json& before, const nlohmann::json& ste
 /// That the reference images are missed by far more than their noise, which hides what is wrong
 /// with all photos alike; "" where they are not.
 std::string high_floor(const Floor& floor);
+/// Rest photos that repeat the noise of what they are compared with (Floor::copies); "": they do
+/// not.
+std::string copied_floor(const Floor& floor);
 
 /// A number of `run.json`; 0: null, or left out.
 double number_in(const nlohmann::json& object, const char* key);

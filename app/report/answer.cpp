@@ -17,6 +17,7 @@
 #include "capture_io/run.h"
 #include "estimation/diagnosis/diagnosis.h"
 #include "estimation/fit/at_floor.h"
+#include "estimation/search/verdict.h"
 
 namespace hookeye {
 
@@ -117,6 +118,16 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
   const std::string with = found.size() == 1 ? "With it" : "With them";
   if (verdict == "unexplained") {
     if (left.at_floor) return std::nullopt;  // sensors, or one camera: the long sentence says which
+    if (const Names untold = strings_in(timeline, "untold"); !untold.empty())
+      return fmt::format(
+          "{}These photos cannot tell what {}is missing: {} is left, and {} stand{} out by more "
+          "than "
+          "chance, but not by enough to be named (`hookeye plan RUN` names views and loads that "
+          "can "
+          "tell)",
+          found.empty() ? "" : capital(listed(found)) + " is missing, but it is not enough. ",
+          found.empty() ? "" : "else ", left.text(), any_of_them(untold),
+          untold.size() > 1 ? "" : "s");
     return found.empty()
                ? fmt::format("No effect of the catalogue explains what is left{}: {}", on,
                              left.text())
@@ -199,9 +210,10 @@ std::string misfit_sentence(const json& step, const json& metrics, double floor,
       fmt::format("normalised residual {:.3f} on fitted photos", number_in(step, "chi_fit"));
   if (held_out > 0.0) out += fmt::format(", {:.3f} on held-out ones", held_out);
   out += fmt::format("; noise floor {:.3f}{}", floor,
-                     source == "rest photos" ? " (reference images)"
-                     : source.empty()        ? ""
-                                             : " (" + source + ")");
+                     source == "rest photos"     ? " (reference images)"
+                     : source == "loaded photos" ? " (what no model could take from the photos)"
+                     : source.empty()            ? ""
+                                                 : " (" + source + ")");
   if (px > 0.0) out += fmt::format("; surface off by {:.2g} px", px);
   return out + met_forces(metrics);
 }

@@ -283,13 +283,14 @@ std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, co
   const int base = fitted.form.size();
   out.effective_count = sums.effective.count;
   out.whiteness_p = sums.whiteness_p;
-  tell_of_refined_mesh(fitted, evaluation, sums, out);
+  VectorXd mesh_step = tell_of_refined_mesh(fitted, evaluation, sums, out);
 
   Scored scored = score_photos(fitted.form, std::move(candidates), sums, options);
   if (!scored.null.empty())
     out.gate = scored.null[static_cast<size_t>(out.limits().gate * (scored.null.size() - 1))];
   if (const Candidate* mesh = mesh_candidate(scored.candidates, scored.evidence))
-    tell_of_mesh(fitted, evaluation, sums, *mesh, out);
+    mesh_step = tell_of_mesh(fitted, evaluation, sums, *mesh, out);
+  out.motions = motions_left(scene, evaluation, out.floor, mesh_step);
   score_sensors(sums, base, out.mesh_in_measured, out.limits(), scored);
   for (size_t i = 0; i < scored.candidates.size(); ++i) {
     const auto [at, first] = scored.best.emplace(scored.candidates[i].effect->name(), i);

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "estimation/diagnosis/adequacy.h"
 #include "estimation/fit/fit.h"
 #include "estimation/fit/floor.h"
 #include "estimation/model/effect.h"
@@ -60,6 +61,7 @@ struct Diagnosis {
   double effective_count = 0.0;
   double whiteness_p = 1.0;  ///< smallest photo p-value, Bonferroni
   Floor floor;
+  std::vector<MotionLeft> motions;  ///< that photos keep, fitted and held out
   const DiagnosisLimits& limits() const { return floor.limits->diagnosis; }
   /// Change of the fitted parameters that an ever finer mesh would bring, to first order: what the
   /// next refinement brings, extrapolated (Richardson: the error falls with the square of the edge,

@@ -89,9 +89,25 @@ json to_json(const Floor& floor) {
           {"cell_inflation", floor.cell_inflation},
           {"per_px2", floor.per_px2},
           {"source", floor.source},
+          {"copies", floor.copies},
           {"by_camera", floor.by_camera},
           {"moved_at_rest", floor.moved_at_rest}};
 }
+
+namespace {
+
+json to_json(const std::vector<MotionLeft>& motions) {
+  json out = json::array();
+  for (const MotionLeft& motion : motions)
+    out.push_back({{"example", motion.example},
+                   {"photo", motion.photo},
+                   {"held_out", motion.held_out},
+                   {"px", motion.px},
+                   {"most_px", motion.most_px}});
+  return out;
+}
+
+}  // namespace
 
 json to_json(const Diagnosis& diagnosis) {
   json effects = json::array();
@@ -103,6 +119,7 @@ json to_json(const Diagnosis& diagnosis) {
   }
   return {
       {"floor", to_json(diagnosis.floor)},
+      {"motions", to_json(diagnosis.motions)},
       {"gate", diagnosis.gate},
       {"effective_count", diagnosis.effective_count},
       {"whiteness_p", diagnosis.whiteness_p},
@@ -163,6 +180,21 @@ EffectScore score_from_json(const json& one, const Model& model) {
 
 }  // namespace
 
+namespace {
+
+/// Of a diagnosis that is older than they are: none.
+std::vector<MotionLeft> motions_from_json(const json& list, const Scene& scene) {
+  std::vector<MotionLeft> out;
+  for (const json& one : list) {
+    out.push_back(
+        {one.at("example"), one.at("photo"), one.at("held_out"), one.at("px"), one.at("most_px")});
+    (void)scene.capture.examples.at(out.back().example).photos.at(out.back().photo);
+  }
+  return out;
+}
+
+}  // namespace
+
 Diagnosis diagnosis_from_json(const json& document, const Model& model,
                               const std::filesystem::path& file) {
   Diagnosis out;
@@ -174,8 +206,10 @@ Diagnosis diagnosis_from_json(const json& document, const Model& model,
     out.floor.cell_inflation = floor.value("cell_inflation", 1.0);
     out.floor.per_px2 = floor.value("per_px2", 0.0);
     out.floor.source = floor.at("source");
+    out.floor.copies = floor.value("copies", 0.0);
     out.floor.by_camera = floor.value("by_camera", out.floor.by_camera);
     out.floor.moved_at_rest = floor.value("moved_at_rest", out.floor.moved_at_rest);
+    out.motions = motions_from_json(document.value("motions", json::array()), *model.scene);
     out.gate = document.at("gate");
     out.effective_count = document.at("effective_count");
     out.whiteness_p = document.at("whiteness_p");

@@ -84,8 +84,8 @@ const Candidate* mesh_candidate(const std::vector<Candidate>& candidates,
   return out;
 }
 
-void tell_of_mesh(const Fitted& fitted, const Evaluation& evaluation, const DiagnosisSums& sums,
-                  const Candidate& mesh, Diagnosis& out) {
+VectorXd tell_of_mesh(const Fitted& fitted, const Evaluation& evaluation, const DiagnosisSums& sums,
+                      const Candidate& mesh, Diagnosis& out) {
   const int base = fitted.form.size();
   const bool linear = fitted.form.scene->body->mesh.order == 1;
   const double to_the_limit =
@@ -103,12 +103,16 @@ void tell_of_mesh(const Fitted& fitted, const Evaluation& evaluation, const Diag
         linear ? std::string("quadratic tetrahedra")
                : fmt::format("a finer mesh, {} times the edge,", kFinerEdge),
         moved);
+  VectorXd step = VectorXd::Zero(evaluation.columns);
+  step.head(base) = out.mesh_shift;
+  step[mesh.hypothesis.first] = to_the_limit;
+  return step;
 }
 
-void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
-                          const DiagnosisSums& sums, Diagnosis& out) {
+VectorXd tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
+                              const DiagnosisSums& sums, Diagnosis& out) {
   const auto share = fitted_share(fitted, sums.fitted.JtJ);
-  if (!share) return;
+  if (!share) return {};
   const double next = share->next;
   out.mesh_fall = std::pow(next, 2) * share->column.M(0, 0) / std::max(sums.photo_count, 1.0);
   VectorXd by_share = VectorXd::Zero(share->last + 1);
@@ -131,6 +135,9 @@ void tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation,
         "a still finer mesh would move {}, by what the refinement changed; the intervals allow for "
         "it",
         moved);
+  VectorXd step = VectorXd::Zero(std::max<Eigen::Index>(evaluation.columns, change.size()));
+  step.head(change.size()) = change;
+  return step;
 }
 
 double imitated_by_mesh(const Fitted& fitted, const DiagnosisSums& sums,

@@ -57,6 +57,8 @@ struct PhotoEvaluation {
   /// residual made linear, which `sums` hold too when pictures are on.
   FlowField flow, aligned;
   double linear_r2 = 0.0;
+  /// Pictures of textured photos only: variance_after_free_motion() of the aligned pictures.
+  double free_variance = 1.0;
   double motion_px = 0.0;  ///< registered: rms motion between model and photo
   double chi() const;
 };

@@ -384,6 +384,9 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
         one.aligned = residual_flow(rendering.I, registered ? registered->residual : residual,
                                     sigma, !mask_photo);
         one.linear_r2 = loss(residual, 0.0);
+        if (!mask_photo)
+          one.free_variance = variance_after_free_motion(
+              rendering.I, registered ? registered->residual : residual, sigma);
         one.triangle = std::move(rendering.triangle);
       }
       if (options.pictures || options.residuals) {

@@ -1,76 +1,16 @@
 #include "estimation/fit/floor.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "capture_io/distributions.h"
+#include "estimation/fit/smooth_motion.h"
 #include "meshing/extent.h"
 
 namespace hookeye {
 
 namespace {
-
-/// Monomials of a cell's place up to `degree`, over the field's extent.
-Eigen::VectorXd monomials(const FlowField& flow, const FlowCell& cell, int degree) {
-  const auto& first = flow.cells.front().centre_px;
-  const double x = (cell.centre_px.x() - first.x()) / 300.0;
-  const double y = (cell.centre_px.y() - first.y()) / 300.0;
-  Eigen::VectorXd out((degree + 1) * (degree + 2) / 2);
-  int k = 0;
-  for (int n = 0; n <= degree; ++n)
-    for (int i = 0; i <= n; ++i) out[k++] = std::pow(x, n - i) * std::pow(y, i);
-  return out;
-}
-
-struct SmoothPart {
-  double explained = 0.0;  ///< of |r|^2
-  double by_motion = 0.0;  ///< of that, what brightness alone does not explain
-  double numbers = 0.0;
-  Eigen::VectorXd coefficients;  ///< three of every monomial
-};
-
-/// The basis of a cell's motion and brightness: 3 x numbers.
-Eigen::MatrixXd basis_of(const FlowField& flow, const FlowCell& cell, int degree) {
-  const Eigen::VectorXd phi = monomials(flow, cell, degree);
-  Eigen::MatrixXd basis(3, 3 * phi.size());
-  for (int k = 0; k < phi.size(); ++k)
-    basis.middleCols<3>(3 * k) = phi[k] * Eigen::Matrix3d::Identity();
-  return basis;
-}
-
-/// What motion and brightness that are polynomials of the place explain of a photo's residual:
-/// weight, swelling, placement and exposure are smooth, what a renderer gets wrong is not.
-SmoothPart smooth_part(const FlowField& flow, int degree) {
-  const int size = 3 * (degree + 1) * (degree + 2) / 2;
-  Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
-  for (const auto& cell : flow.cells) {
-    const Eigen::MatrixXd basis = basis_of(flow, cell, degree);
-    A += basis.transpose() * cell.information * basis;
-    b += basis.transpose() * (cell.information * cell.estimate);
-  }
-  const Eigen::VectorXd found = A.completeOrthogonalDecomposition().solve(b);
-  const auto brightness = Eigen::seqN(2, size / 3, 3);
-  const Eigen::VectorXd b_bright = b(brightness);
-  const Eigen::VectorXd bright =
-      Eigen::MatrixXd(A(brightness, brightness)).completeOrthogonalDecomposition().solve(b_bright);
-  const double explained = b.dot(found);
-  return {explained, explained - b_bright.dot(bright), static_cast<double>(size), found};
-}
-
-/// The field without its smooth part.
-FlowField without_smooth(FlowField flow, const SmoothPart& smooth, int degree) {
-  const FlowField whole = flow;  // monomials are over its extent
-  for (FlowCell& cell : flow.cells) {
-    const Eigen::Vector3d moved = basis_of(whole, cell, degree) * smooth.coefficients;
-    cell.estimate -= moved;
-    cell.z -=
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(cell.information).operatorSqrt() * moved;
-  }
-  return flow;
-}
 
 /// |r|^2 of `pixels` pixels as the middle cell has them, its own motion and brightness out.
 double r2_of_middle_cell(const FlowField& flow, double pixels) {
@@ -90,11 +30,18 @@ struct Left {
   double chi() const { return std::sqrt(std::max(r2, 0.0) / count); }
 };
 
+/// |r|^2 that a mask may be off by: a rim is trusted no further than FloorLimits::rim_px, for what
+/// cuts it out shifts all of it alike.
+double r2_of_rim(const PhotoEvaluation& photo, const FloorLimits& limits) {
+  return limits.rim_px * limits.rim_px * motion_information(photo.flow);
+}
+
 /// What is left of a photo at rest without what moved. Polynomials take the motion out where the
 /// picture is linear in it. Past that the pictures are aligned, and rims and what came into view
 /// are no noise: the middle cell speaks for all. (An aligned contour is where it should be,
 /// whatever the noise: silhouettes have polynomials alone.)
-Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
+Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree,
+                    const FloorLimits& limits) {
   Left left;
   for (const auto& cell : photo.flow.cells) left.r2 += cell.r2, left.count += cell.pixels;
   if (!silhouette && photo.motion_px > kLinearPx)
@@ -103,8 +50,20 @@ Left without_motion(const PhotoEvaluation& photo, bool silhouette, int degree) {
   // Cells have the residual made linear, which grows with a contour's motion where its pixels have
   // long changed all they can: of those it is the share that is left.
   if (silhouette && left.r2 > 0.0)
-    return {photo.r2 * (1.0 - moved.explained / left.r2), photo.count - moved.numbers};
+    return {
+        std::min(photo.r2, photo.r2 * (1.0 - moved.explained / left.r2) + r2_of_rim(photo, limits)),
+        photo.count - moved.numbers};
   return {left.r2 - moved.explained, left.count - moved.numbers};
+}
+
+/// What no model could take from a photo of a loaded body: what stays once every cell has moved,
+/// brightened and sharpened on its own.
+Left without_free_motion(const PhotoEvaluation& photo, bool silhouette, const FloorLimits& limits) {
+  if (!silhouette) return {photo.free_variance * photo.count, photo.count};
+  double all = 0.0, moved = 0.0;
+  for (const auto& cell : photo.flow.cells) all += cell.r2, moved += cell.explained;
+  const double rough = all > 0.0 ? photo.r2 * (1.0 - moved / all) : photo.r2;
+  return {std::min(photo.r2, std::max(rough, 0.0) + r2_of_rim(photo, limits)), photo.count};
 }
 
 /// The example's equilibrium is the body as it was given.
@@ -130,15 +89,6 @@ struct MotionAtRest {
   double fall() const { return (explained - numbers * noise2()) / count; }
 };
 
-/// Highest degree for which a polynomial has a term for so many cells; -1: too few cells.
-int degree_for(const FlowField& flow, const FloorLimits& limits) {
-  int degree = -1;
-  while (degree < limits.most_degree && (degree + 2) * (degree + 3) / 2 * limits.cells_a_term <=
-                                            static_cast<int>(flow.cells.size()))
-    ++degree;
-  return degree;
-}
-
 /// Sum of the inflations of photos, the channels of each in one entry; and how many they are.
 struct Inflations {
   double sum = 0.0, count = 0.0;
@@ -162,15 +112,62 @@ double fall_per_px2(const Evaluation& evaluation) {
   return pixels > 0.0 ? information / pixels : 0.0;
 }
 
-}  // namespace
-
-Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
-  Floor floor;
-  floor.limits = scene.limits;
-  const FloorLimits& limits = scene.limits->floor;
-  floor.per_px2 = fall_per_px2(evaluation);
+struct Lefts {
   Left all;
   std::map<std::string, Left> cameras;
+  void add(const std::string& camera, const Left& left) {
+    all.add(left);
+    cameras[camera].add(left);
+  }
+  std::map<std::string, double> by_camera(const FloorLimits& limits) const {
+    std::map<std::string, double> out;
+    for (const auto& [camera, left] : cameras)
+      if (left.count >= limits.least_pixels) out[camera] = left.chi();
+    return out;
+  }
+};
+
+const PhotoSpec& spec_of(const Scene& scene, const PhotoEvaluation& photo) {
+  return scene.capture.examples[photo.example].photos[photo.photo];
+}
+
+bool is_silhouette(const Scene& scene, const PhotoEvaluation& photo) {
+  return spec_of(scene, photo).kind == PhotoSpec::Kind::silhouette;
+}
+
+/// Of fitted photos of the loaded body. Noise and what a renderer gets wrong are a camera's in all
+/// its photos alike; where the model is far off, cells still hold motion that is not theirs alone.
+/// So that photo of a camera speaks which keeps least.
+Lefts left_by_free_motion(const Scene& scene, const Evaluation& evaluation) {
+  std::map<std::string, Left> counts;
+  std::map<std::string, double> least;
+  for (const auto& example : evaluation.examples) {
+    if (example.held_out || is_rest(scene.capture.examples[example.example])) continue;
+    for (const auto& photo : example.photos) {
+      if (smooth_degree(photo.flow, scene.limits->floor) < 0 || photo.count <= 0.0) continue;
+      const Left left =
+          without_free_motion(photo, is_silhouette(scene, photo), scene.limits->floor);
+      const std::string& camera = spec_of(scene, photo).camera;
+      const double variance = left.r2 / left.count;
+      const auto [at, first] = least.emplace(camera, variance);
+      if (!first) at->second = std::min(at->second, variance);
+      counts[camera].add(left);
+    }
+  }
+  Lefts out;
+  for (const auto& [camera, left] : counts)
+    out.add(camera, {least.at(camera) * left.count, left.count});
+  return out;
+}
+
+/// Of cells' standardised estimates. Noise that was told too large leaves less than 1; what photos
+/// keep beyond noise that was told rightly is rough, and cells tell themselves what of it they see.
+double variance_of_noise(double chi) { return std::min(1.0, chi * chi); }
+
+/// False: they have too few pixels.
+bool of_rest_photos(const Scene& scene, const Evaluation& evaluation, Floor& floor) {
+  const FloorLimits& limits = scene.limits->floor;
+  Lefts lefts;
   std::map<std::string, MotionAtRest> moved;
   double cells = 0.0, cell_count = 0.0;
   Inflations inflations;
@@ -179,14 +176,13 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
     std::map<int, std::vector<FlowField>> channels;  // by photo
     const bool as_given = unmoved(scene, example);
     for (const auto& photo : example.photos) {
-      const int degree = degree_for(photo.flow, limits);
+      const int degree = smooth_degree(photo.flow, limits);
       if (degree < 0) continue;
-      const auto& spec = scene.capture.examples[example.example].photos[photo.photo];
-      const bool silhouette = spec.kind == PhotoSpec::Kind::silhouette;
-      const Left left = without_motion(photo, silhouette, degree);
-      all.add(left);
-      cameras[spec.camera].add(left);
-      if (as_given && !silhouette) moved[spec.camera].add(photo, degree, left);
+      const std::string& camera = spec_of(scene, photo).camera;
+      const bool silhouette = is_silhouette(scene, photo);
+      const Left left = without_motion(photo, silhouette, degree, limits);
+      lefts.add(camera, left);
+      if (as_given && !silhouette) moved[camera].add(photo, degree, left);
       // Cells are judged after the motion that the registration found, however rough, is out.
       const SmoothPart aligned = smooth_part(photo.aligned, degree);
       cells -= aligned.explained;
@@ -198,16 +194,39 @@ Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
     }
     for (const auto& [photo, fields] : channels) inflations.add(fields);
   }
-  if (all.count < limits.least_pixels) return floor;
-  floor.chi = all.chi();
-  for (const auto& [camera, left] : cameras)
-    if (left.count >= limits.least_pixels) floor.by_camera[camera] = left.chi();
+  if (lefts.all.count < limits.least_pixels) return false;
+  floor.chi = lefts.all.chi();
+  floor.by_camera = lefts.by_camera(limits);
   for (const auto& [camera, motion] : moved)
     if (motion.count >= limits.least_pixels && !motion.by_chance(limits.chance))
       floor.moved_at_rest[camera] = motion.fall();
   floor.source = "rest photos";
   floor.cell_inflation = std::max(1.0, inflations.sum / inflations.count);
-  if (cell_count > 0.0) floor.cell_variance = std::max(1.0, cells / cell_count);
+  floor.cell_variance = variance_of_noise(floor.chi);
+  if (cell_count > 0.0) floor.cell_variance = std::max(floor.cell_variance, cells / cell_count);
+  return true;
+}
+
+}  // namespace
+
+Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
+  Floor floor;
+  floor.limits = scene.limits;
+  floor.per_px2 = fall_per_px2(evaluation);
+  const FloorLimits& limits = scene.limits->floor;
+  const Lefts free = left_by_free_motion(scene, evaluation);
+  const bool told = free.all.count >= limits.least_pixels;
+  const bool rest = of_rest_photos(scene, evaluation, floor);
+  // Stills of one video, or a texture that is the photo itself, repeat their own noise: they keep
+  // less than was told, and less than the loaded photos.
+  const double most = floor.chi * limits.at;
+  if (rest && !(told && most < 1.0 && most < free.all.chi())) return floor;
+  if (rest) floor.copies = floor.chi;
+  if (!told) return floor;
+  floor.chi = free.all.chi();
+  floor.cell_variance = variance_of_noise(floor.chi);
+  floor.by_camera = free.by_camera(limits);
+  floor.source = "loaded photos";
   return floor;
 }
 

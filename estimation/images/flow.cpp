@@ -85,13 +85,63 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
   return field;
 }
 
+double variance_after_free_motion(const Image& model, const Image& residual, const Image& sigma,
+                                  int cell_px) {
+  constexpr int kFree = 5;  // motion, brightness, background, sharpness
+  struct Cell {
+    Eigen::Matrix<double, kFree, kFree> A = Eigen::Matrix<double, kFree, kFree>::Zero();
+    Eigen::Matrix<double, kFree, 1> b = Eigen::Matrix<double, kFree, 1>::Zero();
+    double r2 = 0.0;
+    int pixels = 0;
+  };
+  const int columns = (model.width - 1) / cell_px + 1, rows = (model.height - 1) / cell_px + 1;
+  std::vector<Cell> cells(static_cast<size_t>(columns) * rows);
+  for (int y = 2; y + 2 < model.height; ++y)
+    for (int x = 2; x + 2 < model.width; ++x) {
+      if (std::isnan(residual.at(x, y))) continue;
+      const Eigen::Vector2d g = gradient(model, residual, x, y);
+      if (!g.allFinite()) continue;
+      const double here = model.at(x, y);
+      const double sharpness = model.at(x + 1, y) + model.at(x - 1, y) + model.at(x, y + 1) +
+                               model.at(x, y - 1) - 4.0 * here;
+      Eigen::Matrix<double, kFree, 1> d(g.x(), g.y(), here, 1.0, sharpness);
+      d /= sigma.at(x, y);
+      Cell& cell = cells[static_cast<size_t>(y / cell_px) * columns + x / cell_px];
+      const double r = residual.at(x, y);
+      cell.A += d * d.transpose();
+      cell.b += d * r;
+      cell.r2 += r * r;
+      ++cell.pixels;
+    }
+  std::vector<double> left;
+  for (const Cell& cell : cells) {
+    if (cell.pixels < cell_px * cell_px / 4) continue;
+    const auto solved = cell.A.completeOrthogonalDecomposition();
+    left.push_back(std::max(0.0, cell.r2 - cell.b.dot(solved.solve(cell.b))) /
+                   static_cast<double>(cell.pixels - solved.rank()));
+  }
+  if (left.empty()) return 1.0;
+  const auto middle = left.begin() + static_cast<std::ptrdiff_t>(left.size() / 2);
+  std::nth_element(left.begin(), middle, left.end());
+  return *middle;
+}
+
 double FlowField::rms_px() const {
   double sum = 0.0, noise = 0.0, n = 0.0;
   for (const auto& cell : cells) {
-    if (!cell.reliable) continue;
-    const Eigen::Matrix3d covariance = cell.information.inverse();
-    sum += cell.estimate.head<2>().squaredNorm();
-    noise += covariance(0, 0) + covariance(1, 1);
+    const bool rim = cell.information(2, 2) == 0.0;  // no brightness: it tells of one direction
+    if (!cell.reliable && !rim) continue;
+    if (rim) {
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(
+          cell.information.topLeftCorner<2, 2>());
+      if (eigen.eigenvalues()[1] < 1.0) continue;
+      sum += std::pow(eigen.eigenvectors().col(1).dot(cell.estimate.head<2>()), 2);
+      noise += 1.0 / eigen.eigenvalues()[1];
+    } else {
+      const Eigen::Matrix3d covariance = cell.information.inverse();
+      sum += cell.estimate.head<2>().squaredNorm();
+      noise += covariance(0, 0) + covariance(1, 1);
+    }
     n += 1.0;
   }
   return n > 0.0 ? std::sqrt(std::max(0.0, (sum - noise) / n)) : 0.0;

@@ -27,7 +27,8 @@ struct FlowCell {
 struct FlowField {
   int cell_px = 16;
   std::vector<FlowCell> cells;
-  /// Root mean square of u over reliable cells with the noise's part removed [px].
+  /// Root mean square of u over reliable cells with the noise's part removed [px]; of a
+  /// silhouette's rim, across it.
   double rms_px() const;
 };
 
@@ -35,6 +36,12 @@ struct FlowField {
 /// sought: a silhouette has no brightness.
 FlowField residual_flow(const Image& model, const Image& residual, const Image& sigma,
                         bool gain = true, int cell_px = 16);
+
+/// Mean square of `residual` in the middle cell once every cell has moved, brightened, changed its
+/// background and its sharpness on its own: what no model could remove. `model` and `residual` are
+/// aligned. No cells: 1, the told noise.
+double variance_after_free_motion(const Image& model, const Image& residual, const Image& sigma,
+                                  int cell_px = 16);
 
 /// Correlation of z over the cells of one photo.
 struct FlowStatistics {

@@ -202,9 +202,7 @@ class Search {
     if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
     auto& pair = std::get<std::optional<Pair>>(beside);
     if (!pair) {
-      if (explains_photos(step.fitted, step.diagnosis.floor) &&
-          measured_explained(step.fitted, step.diagnosis))
-        return false;
+      if (explained(step.fitted, step.diagnosis)) return false;
       auto tried = refit_pairs(workspace_, step, contest, options_, events_);
       if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
       pair = std::get<std::optional<Pair>>(std::move(tried));
@@ -338,7 +336,8 @@ class Search {
       if (const std::string doubt = in_doubt(last) + not_compared(whole_run(), out_.missing);
           !doubt.empty())
         out_.verdict = Verdict::unexplained, why += doubt;
-    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_.words());
+    if (out_.verdict == Verdict::unexplained) out_.untold = cannot_be_told(last.diagnosis);
+    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_.words(), out_.untold);
     tell(options_.fit.decided, {Asked::ended,
                                 "",
                                 out_.verdict == Verdict::explained,

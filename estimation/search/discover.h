@@ -74,6 +74,7 @@ struct Discovery {
   std::string sentence;              ///< one line: what was missing, how sure, what else
   std::vector<std::string> missing;  ///< effects in the last step's model, as they were added
   std::vector<std::string> tie;      ///< effects that could not be told apart
+  std::vector<std::string> untold;   ///< cannot_be_told(), where the verdict is unexplained
   /// Where the held-out photos are missed by values alone: not a step, as they stay held out.
   std::optional<FitToAll> all;
   Floor floor;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "estimation/fit/at_floor.h"
+#include "estimation/search/measured_explained.h"
 #include "estimation/search/refit_score.h"
 #include "estimation/search/widening.h"
 
@@ -10,7 +10,7 @@ namespace hookeye {
 
 LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const DiscoverOptions& options,
                         const DiscoverEvents& events) {
-  if (explains_photos(newest.fitted, newest.diagnosis.floor)) return std::nullopt;
+  if (photos_explained(newest.fitted, newest.diagnosis)) return std::nullopt;
   for (const EffectScore& score : newest.diagnosis.effects) {
     if (!numerical(score.effect) || !score.testable ||
         score.evidence < std::max(newest.diagnosis.limits().nameable, newest.diagnosis.gate))

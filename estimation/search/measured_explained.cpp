@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "capture_io/distributions.h"
+#include "estimation/fit/at_floor.h"
 
 namespace hookeye {
 
@@ -43,6 +44,14 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::s
   }
   if (fine && why) why->clear();
   return fine;
+}
+
+bool photos_explained(const Fitted& fitted, const Diagnosis& diagnosis) {
+  return explains_photos(fitted, diagnosis.floor) && !most_moved(diagnosis.motions);
+}
+
+bool explained(const Fitted& fitted, const Diagnosis& diagnosis) {
+  return photos_explained(fitted, diagnosis) && measured_explained(fitted, diagnosis);
 }
 
 }  // namespace hookeye

@@ -1,4 +1,4 @@
-// Whether the sensors are explained too.
+// Whether the photos and the sensors are explained.
 #pragma once
 
 #include <string>
@@ -12,5 +12,11 @@ namespace hookeye {
 /// the 99.9 % point of its distribution. `why` names the worst where they are not.
 bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
                         std::string* why = nullptr);
+
+/// The photos are at the floor (explains_photos), none of them shows the body moved
+/// (Diagnosis::motions), and the sensors are explained.
+bool explained(const Fitted& fitted, const Diagnosis& diagnosis);
+/// The photos alone.
+bool photos_explained(const Fitted& fitted, const Diagnosis& diagnosis);
 
 }  // namespace hookeye

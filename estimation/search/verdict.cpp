@@ -16,9 +16,7 @@
 namespace hookeye {
 
 bool only_numerical_left(const Fitted& fitted, const Diagnosis& diagnosis, const FitToAll* all) {
-  const bool explained =
-      all || (explains_photos(fitted, diagnosis.floor) && measured_explained(fitted, diagnosis));
-  return explained &&
+  return (all || explained(fitted, diagnosis)) &&
          std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& effect) {
            return numerical(effect.effect) || !nameable(effect, diagnosis);
          });
@@ -101,7 +99,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
   const auto standing =
       only_numerical_left(fitted, diagnosis, all) ? std::vector<std::string>() : leaders(diagnosis);
   std::string sensors;
-  const bool photos = all || explains_photos(fitted, diagnosis.floor);
+  const bool photos = all || photos_explained(fitted, diagnosis);
   const bool measured = all || measured_explained(fitted, diagnosis, &sensors);
   if (why) {
     *why = fmt::format(
@@ -113,6 +111,9 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
             ? ""
             : fmt::format(", more than {:g}", diagnosis.floor.limits->floor.at));
     if (!all) *why += left_in_one_camera(fitted, diagnosis.floor);
+    if (const MotionLeft* moved = most_moved(diagnosis.motions); moved && !all)
+      *why += (at_floor(fitted, diagnosis.floor) ? ", but " : ", and ") +
+              in_words(*moved, *fitted.form.scene);
     if (!sensors.empty()) *why += ", but " + sensors;
     if (all) *why += held_out_by_values(*all, diagnosis.floor);
     if (!standing.empty())
@@ -241,8 +242,37 @@ std::string named_with_tie(std::vector<std::string> missing, const std::vector<s
 
 }  // namespace
 
+std::vector<std::string> cannot_be_told(const Diagnosis& diagnosis) {
+  std::vector<std::string> out;
+  for (const EffectScore& score : diagnosis.effects)
+    if (score.testable && !numerical(score.effect) && score.evidence > diagnosis.gate &&
+        score.evidence < diagnosis.limits().nameable)
+      out.push_back(score.effect);
+  return out;
+}
+
+std::string any_of_them(const std::vector<std::string>& effects) {
+  constexpr size_t kTold = 3;
+  std::vector<std::string> told(
+      effects.begin(),
+      effects.begin() + static_cast<std::ptrdiff_t>(std::min(effects.size(), kTold)));
+  if (effects.size() > kTold)
+    told.push_back(effects.size() == kTold + 1
+                       ? effects.back()
+                       : fmt::format("{} other effects", effects.size() - kTold));
+  const std::string last = told.empty() ? "" : told.back();
+  if (told.size() < 2) return last;
+  told.pop_back();
+  return fmt::format("{} or {}", fmt::join(told, ", "), last);
+}
+
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
-                const std::vector<std::string>& tie, std::string why, const std::string& refused) {
+                const std::vector<std::string>& tie, std::string why, const std::string& refused,
+                const std::vector<std::string>& untold) {
+  if (verdict == Verdict::unexplained && !untold.empty())
+    why += fmt::format(
+        "; {} stand{} out by more than chance, but these photos hold too little to tell",
+        any_of_them(untold), untold.size() > 1 ? "" : "s");
   if (!refused.empty()) why += "; nothing more was added: " + refused;
   std::vector<std::string> physical = missing, mesh;
   std::erase_if(physical, numerical);
@@ -255,9 +285,11 @@ std::string say(Verdict verdict, const std::vector<std::string>& missing,
                        named_with_tie(physical, tie), physical.size() == 1 ? "it" : "them",
                        mesh.empty() ? "" : " on " + finer, why);
   if (verdict != Verdict::explained)
-    return fmt::format(
-        "{}: {}{}", refused.empty() ? "not in the catalogue" : "nothing that was tried explains it",
-        mesh.empty() ? "" : "even on " + finer + ", ", why);
+    return fmt::format("{}: {}{}",
+                       !refused.empty() ? "nothing that was tried explains it"
+                       : untold.empty() ? "not in the catalogue"
+                                        : "not told by these photos",
+                       mesh.empty() ? "" : "even on " + finer + ", ", why);
   if (!mesh.empty()) return fmt::format("nothing is missing but {}: on it, {}", finer, why);
   return fmt::format(
       "{}: {}", refused.empty() ? "nothing is missing" : "nothing that is missing pays for itself",

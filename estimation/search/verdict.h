@@ -62,9 +62,17 @@ std::vector<std::string> effects_in_words(const Fitted& fitted);
 /// floor: its values are not fitted to those. A hint in words; "": none.
 std::string too_little_to_name(const Diagnosis& diagnosis);
 
+/// Effects any of which would take most of what is over the floor (SearchLimits::hint), though none
+/// has evidence enough to be named: the photos hold too few independent residuals to tell. By
+/// falling evidence.
+std::vector<std::string> cannot_be_told(const Diagnosis& diagnosis);
+/// "stiffness_field, pressure, creep or 4 other effects".
+std::string any_of_them(const std::vector<std::string>& effects);
+
 /// One line: what was missing, how sure, what else. `why` is judge()'s, `refused` why the effect
-/// that came farthest was not added ("": none was refused).
+/// that came farthest was not added ("": none was refused), `untold` cannot_be_told()'s.
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
-                const std::vector<std::string>& tie, std::string why, const std::string& refused);
+                const std::vector<std::string>& tie, std::string why, const std::string& refused,
+                const std::vector<std::string>& untold = {});
 
 }  // namespace hookeye

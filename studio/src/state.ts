@@ -117,7 +117,12 @@ export const floor = computed(
   () => run.value.timeline.floor ?? step.value?.metrics?.floor ?? {chi: 1, source: 'noise model'},
 );
 /** In the field's words. */
-export const floorSource = (source: string): string => (source === 'rest photos' ? 'the reference images' : `the ${source}`);
+export const floorSource = (source: string): string =>
+  source === 'rest photos'
+    ? 'the reference images'
+    : source === 'loaded photos'
+      ? 'what no model could take from the photos'
+      : `the ${source}`;
 export const units = computed(
   () => run.value.capture?.units ?? {length: 'length', force: 'force', stress: 'stress'},
 );

@@ -46,6 +46,12 @@ TEST(Answer, SaysInPlainWordsWhatIsMissing) {
   EXPECT_EQ(sentence(timeline("unexplained", {"creep"}, 3.1, 4.0)),
             "Creep is missing, but it is not enough: 3.10 times the noise floor (4.00 on held-out "
             "photos) is left, and nothing else of the catalogue explains it");
+  json untold = timeline("unexplained", json::array(), 3.1, 0.0);
+  untold["untold"] = {"stiffness_field", "pressure"};
+  EXPECT_EQ(sentence(untold),
+            "These photos cannot tell what is missing: 3.10 times the noise floor is left, and "
+            "stiffness_field or pressure stand out by more than chance, but not by enough to be "
+            "named (`hookeye plan RUN` names views and loads that can tell)");
   json tie = timeline("ambiguous", {"creep"}, 1.0, 1.0);
   tie["tie"] = {"creep", "softening"};
   EXPECT_EQ(sentence(tie),

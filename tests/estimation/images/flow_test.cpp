@@ -175,5 +175,32 @@ TEST(Registration, MakesAMotionOfManyPixelsLinear) {
   EXPECT_NEAR(v, -2.0, 0.3);
 }
 
+/// A photo that is moved, brighter, less sharp and over a lighter background keeps its noise alone;
+/// noise that was told too low shows.
+TEST(Flow, WhatNoModelCouldRemoveIsTheNoise) {
+  const float told = 0.01f;
+  const Image model = speckle(0.0, 0.0), sigma = constant(told);
+  for (const float noise : {0.01f, 0.02f}) {
+    std::mt19937 engine(11);
+    std::normal_distribution<float> normal(0.0f, noise);
+    Image photo = speckle(0.12, -0.08);
+    const Image sharp = photo;
+    for (int y = 1; y + 1 < kHeight; ++y)
+      for (int x = 1; x + 1 < kWidth; ++x) {
+        const float around = sharp.at(x - 1, y) + sharp.at(x + 1, y) + sharp.at(x, y - 1) +
+                             sharp.at(x, y + 1) - 4.0f * sharp.at(x, y);
+        photo.at(x, y) += 0.1f * around;
+      }
+    for (float& value : photo.values) value = 1.03f * value + 0.02f + normal(engine);
+    const Image residual = over_noise(model, photo, told);
+    double plain = 0.0;
+    for (const float r : residual.values) plain += r * r;
+    const double truth = std::pow(noise / told, 2);
+    EXPECT_GT(plain / static_cast<double>(residual.values.size()), 3.0 * truth);
+    EXPECT_NEAR(variance_after_free_motion(model, residual, sigma) / truth, 1.0, 0.1);
+  }
+  EXPECT_EQ(variance_after_free_motion(model, constant(std::nanf("")), sigma), 1.0);
+}
+
 }  // namespace
 }  // namespace hookeye

@@ -171,6 +171,56 @@ TEST(Verdict, TheSentenceSaysWhatIsMissingAndOnWhichMesh) {
       "left");
 }
 
+/// Many would explain what is left and none has the evidence: that is no word about the catalogue.
+TEST(Verdict, SaysWherePhotosCannotTell) {
+  Diagnosis diagnosis;
+  diagnosis.effects.resize(3);
+  const char* const names[] = {"stiffness_field", "pressure", "creep"};
+  for (int i = 0; i < 3; ++i) {
+    EffectScore& score = diagnosis.effects[i];
+    score.effect = names[i], score.evidence = 3.0 - i;
+  }
+  diagnosis.gate = 1.5;
+  EXPECT_THAT(cannot_be_told(diagnosis), testing::ElementsAre("stiffness_field", "pressure"));
+  EXPECT_EQ(
+      say(Verdict::unexplained, {}, {}, "much is left", "", cannot_be_told(diagnosis)),
+      "not told by these photos: much is left; stiffness_field or pressure stand out by more than "
+      "chance, but these photos hold too little to tell");
+  EXPECT_EQ(any_of_them({"a", "b", "c", "d"}), "a, b, c or d");
+  EXPECT_EQ(any_of_them({"a", "b", "c", "d", "e"}), "a, b, c or 2 other effects");
+  diagnosis.effects[0].evidence = 50.0;
+  EXPECT_THAT(cannot_be_told(diagnosis), testing::ElementsAre("pressure"));
+}
+
+/// Without photos of the unloaded body, the loaded ones tell what no model could take from them.
+TEST(Floor, LoadedPhotosTellWhatNoModelCouldTake) {
+  const SmallScene small({.same_renderer = true});
+  Workspace workspace(small.scene);
+  const ModelForm form = base_form(small.scene);
+  Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  const Floor rest = measure_floor(*small.scene, fitted.evaluation);
+  EXPECT_EQ(rest.source, "rest photos");
+  EXPECT_EQ(rest.copies, 0.0);
+  Evaluation loaded = fitted.evaluation;
+  std::erase_if(loaded.examples, [&](const auto& example) {
+    return is_rest(small.scene->capture.examples[example.example]);
+  });
+  const Floor floor = measure_floor(*small.scene, loaded);
+  EXPECT_EQ(floor.source, "loaded photos");
+  EXPECT_NEAR(floor.chi, 1.0, 0.05);
+  EXPECT_THAT(floor.by_camera, testing::SizeIs(2));
+  // Reference images that repeat the noise of what they are compared with.
+  Evaluation copied = fitted.evaluation;
+  for (auto& example : copied.examples)
+    if (is_rest(small.scene->capture.examples[example.example]))
+      for (auto& photo : example.photos)
+        for (auto& cell : photo.flow.cells) cell.r2 *= 0.04, cell.estimate *= 0.2, cell.z *= 0.2;
+  const Floor of_copies = measure_floor(*small.scene, copied);
+  EXPECT_EQ(of_copies.source, "loaded photos");
+  EXPECT_NEAR(of_copies.copies, 0.2, 0.02);
+  EXPECT_NEAR(of_copies.chi, floor.chi, 1e-12);
+}
+
 /// The told model of a capture that hides nothing, nothing diagnosed.
 std::pair<Fitted, Diagnosis> at_its_floor(const SmallScene& small) {
   Workspace workspace(small.scene);
