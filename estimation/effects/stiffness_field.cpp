@@ -83,7 +83,8 @@ class StiffnessField final : public Effect {
     return "Some part of the body is stiffer or softer than the rest: an inclusion, a void, "
            "uneven cure, one half of a casting. A field can imitate much else (soft clamps, wrong "
            "loads), so it is believed only where one blob, or held-out examples, say the same. The "
-           "refit goes on to a ball with an edge, to a stiffness that changes along a direction and "
+           "refit goes on to a ball with an edge, to a stiffness that changes along a direction "
+           "and "
            "to two layers.";
   }
 
