@@ -297,11 +297,9 @@ std::string high_floor(const Floor& floor) {
 std::string copied_floor(const Floor& floor) {
   if (floor.copies <= 0.0) return "";
   return fmt::format(
-      "the reference images leave {:.2g} of the specified noise, less than no model could take "
-      "from "
-      "the photos of the loaded body: they repeat the noise of what they are compared with, as "
-      "stills of one video or strongly compressed photos do. The noise floor is that of the loaded "
-      "photos",
+      "the reference images leave {:.2g} times the specified noise, less than the best model could "
+      "leave of the loaded photos: they repeat the noise of what they are compared with, as stills "
+      "of one video or strongly compressed photos do. The noise floor is that of the loaded photos",
       floor.copies);
 }
 

@@ -121,10 +121,8 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
     if (const Names untold = strings_in(timeline, "untold"); !untold.empty())
       return fmt::format(
           "{}These photos cannot tell what {}is missing: {} is left, and {} stand{} out by more "
-          "than "
-          "chance, but not by enough to be named (`hookeye plan RUN` names views and loads that "
-          "can "
-          "tell)",
+          "than chance, but not by enough to be named (`hookeye plan RUN` names views and loads "
+          "that can tell)",
           found.empty() ? "" : capital(listed(found)) + " is missing, but it is not enough. ",
           found.empty() ? "" : "else ", left.text(), any_of_them(untold),
           untold.size() > 1 ? "" : "s");

@@ -87,8 +87,7 @@ std::string in_words(const MotionLeft& motion, const Scene& scene) {
   const ExampleSpec& example = scene.capture.examples[motion.example];
   return fmt::format(
       "the {} of camera '{}' in '{}' still shows the body moved smoothly, by {:.2g} px where "
-      "noise, "
-      "renderer and mesh leave {:.2g} at most",
+      "noise, renderer and mesh leave {:.2g} at most",
       example.photos[motion.photo].kind == PhotoSpec::Kind::silhouette ? "silhouette" : "photo",
       example.photos[motion.photo].camera, example.name, motion.px, motion.most_px);
 }

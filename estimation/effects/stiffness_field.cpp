@@ -84,8 +84,7 @@ class StiffnessField final : public Effect {
            "uneven cure, one half of a casting. A field can imitate much else (soft clamps, wrong "
            "loads), so it is believed only where one blob, or held-out examples, say the same. The "
            "refit goes on to a ball with an edge, to a stiffness that changes along a direction "
-           "and "
-           "to two layers.";
+           "and to two layers.";
   }
 
   Ingredients candidates(const Model& model, std::string*) const override {

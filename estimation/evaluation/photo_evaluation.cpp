@@ -381,12 +381,10 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);
       if (options.pictures) {
         one.flow = residual_flow(rendering.I, residual, sigma, !mask_photo);
-        one.aligned = residual_flow(rendering.I, registered ? registered->residual : residual,
-                                    sigma, !mask_photo);
+        const Image& rest = registered ? registered->residual : residual;
+        one.aligned = residual_flow(rendering.I, rest, sigma, !mask_photo);
         one.linear_r2 = loss(residual, 0.0);
-        if (!mask_photo)
-          one.free_variance = variance_after_free_motion(
-              rendering.I, registered ? registered->residual : residual, sigma);
+        if (!mask_photo) one.free_variance = variance_after_free_motion(rendering.I, rest, sigma);
         one.triangle = std::move(rendering.triangle);
       }
       if (options.pictures || options.residuals) {

@@ -30,6 +30,25 @@ Eigen::Vector2d gradient(const Image& model, const Image& residual, int x, int y
   return {along(1, 0), along(0, 1)};
 }
 
+/// Cells in rows, left to right, and the pixels of each that count and have a slope.
+struct CellRows {
+  int cell_px, columns, rows;
+  CellRows(const Image& picture, int px)
+      : cell_px(px), columns((picture.width - 1) / px + 1), rows((picture.height - 1) / px + 1) {}
+  size_t size() const { return static_cast<size_t>(columns) * rows; }
+  /// visit(cell, x, y, slope)
+  template <class Visit>
+  void for_each_pixel(const Image& model, const Image& residual, const Visit& visit) const {
+    for (int y = 2; y + 2 < model.height; ++y)
+      for (int x = 2; x + 2 < model.width; ++x) {
+        if (std::isnan(residual.at(x, y))) continue;
+        const Eigen::Vector2d slope = gradient(model, residual, x, y);
+        if (slope.allFinite())
+          visit(static_cast<size_t>(y / cell_px) * columns + x / cell_px, x, y, slope);
+      }
+  }
+};
+
 FlowCell solve_cell(const CellSums& sums, int column, int row) {
   FlowCell cell{};
   cell.column = column;
@@ -60,28 +79,24 @@ FlowField residual_flow(const Image& model, const Image& residual, const Image& 
                         int cell_px) {
   FlowField field;
   field.cell_px = cell_px;
-  const int columns = (model.width - 1) / cell_px + 1, rows = (model.height - 1) / cell_px + 1;
-  std::vector<CellSums> cells(static_cast<size_t>(columns) * rows);
-  for (int y = 2; y + 2 < model.height; ++y)
-    for (int x = 2; x + 2 < model.width; ++x) {
-      if (std::isnan(residual.at(x, y))) continue;
-      const Eigen::Vector2d g = gradient(model, residual, x, y);
-      if (!g.allFinite()) continue;
-      const double s = sigma.at(x, y);
-      const Eigen::Vector3d d(g.x() / s, g.y() / s, gain ? model.at(x, y) / s : 0.0);
-      CellSums& sums = cells[static_cast<size_t>(y / cell_px) * columns + x / cell_px];
-      const double r = residual.at(x, y);
-      sums.A += d * d.transpose();
-      sums.b += d * r;
-      sums.r2 += r * r;
-      sums.position += Eigen::Vector2d(x, y);
-      ++sums.pixels;
-    }
+  const CellRows grid(model, cell_px);
+  std::vector<CellSums> cells(grid.size());
+  grid.for_each_pixel(model, residual, [&](size_t at, int x, int y, const Eigen::Vector2d& g) {
+    const double s = sigma.at(x, y), r = residual.at(x, y);
+    const Eigen::Vector3d d(g.x() / s, g.y() / s, gain ? model.at(x, y) / s : 0.0);
+    CellSums& sums = cells[at];
+    sums.A += d * d.transpose();
+    sums.b += d * r;
+    sums.r2 += r * r;
+    sums.position += Eigen::Vector2d(x, y);
+    ++sums.pixels;
+  });
   // A quarter of the cell at least, of a band along a contour an eighth.
   const int least = cell_px * cell_px / (gain ? 4 : 8);
-  for (int i = 0; i < rows * columns; ++i)
+  for (size_t i = 0; i < cells.size(); ++i)
     if (cells[i].pixels >= least && cells[i].A.trace() > 0.0)
-      field.cells.push_back(solve_cell(cells[i], i % columns, i / columns));
+      field.cells.push_back(solve_cell(cells[i], static_cast<int>(i) % grid.columns,
+                                       static_cast<int>(i) / grid.columns));
   return field;
 }
 
@@ -94,25 +109,20 @@ double variance_after_free_motion(const Image& model, const Image& residual, con
     double r2 = 0.0;
     int pixels = 0;
   };
-  const int columns = (model.width - 1) / cell_px + 1, rows = (model.height - 1) / cell_px + 1;
-  std::vector<Cell> cells(static_cast<size_t>(columns) * rows);
-  for (int y = 2; y + 2 < model.height; ++y)
-    for (int x = 2; x + 2 < model.width; ++x) {
-      if (std::isnan(residual.at(x, y))) continue;
-      const Eigen::Vector2d g = gradient(model, residual, x, y);
-      if (!g.allFinite()) continue;
-      const double here = model.at(x, y);
-      const double sharpness = model.at(x + 1, y) + model.at(x - 1, y) + model.at(x, y + 1) +
-                               model.at(x, y - 1) - 4.0 * here;
-      Eigen::Matrix<double, kFree, 1> d(g.x(), g.y(), here, 1.0, sharpness);
-      d /= sigma.at(x, y);
-      Cell& cell = cells[static_cast<size_t>(y / cell_px) * columns + x / cell_px];
-      const double r = residual.at(x, y);
-      cell.A += d * d.transpose();
-      cell.b += d * r;
-      cell.r2 += r * r;
-      ++cell.pixels;
-    }
+  const CellRows grid(model, cell_px);
+  std::vector<Cell> cells(grid.size());
+  grid.for_each_pixel(model, residual, [&](size_t at, int x, int y, const Eigen::Vector2d& g) {
+    const double here = model.at(x, y), r = residual.at(x, y);
+    const double sharpness = model.at(x + 1, y) + model.at(x - 1, y) + model.at(x, y + 1) +
+                             model.at(x, y - 1) - 4.0 * here;
+    Eigen::Matrix<double, kFree, 1> d(g.x(), g.y(), here, 1.0, sharpness);
+    d /= sigma.at(x, y);
+    Cell& cell = cells[at];
+    cell.A += d * d.transpose();
+    cell.b += d * r;
+    cell.r2 += r * r;
+    ++cell.pixels;
+  });
   std::vector<double> left;
   for (const Cell& cell : cells) {
     if (cell.pixels < cell_px * cell_px / 4) continue;

@@ -246,7 +246,8 @@ std::vector<std::string> cannot_be_told(const Diagnosis& diagnosis) {
   std::vector<std::string> out;
   for (const EffectScore& score : diagnosis.effects)
     if (score.testable && !numerical(score.effect) && score.evidence > diagnosis.gate &&
-        score.evidence < diagnosis.limits().nameable)
+        score.evidence < diagnosis.limits().nameable &&
+        score.explains >= diagnosis.floor.limits->search.worth_a_name)
       out.push_back(score.effect);
   return out;
 }

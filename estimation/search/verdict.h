@@ -62,9 +62,9 @@ std::vector<std::string> effects_in_words(const Fitted& fitted);
 /// floor: its values are not fitted to those. A hint in words; "": none.
 std::string too_little_to_name(const Diagnosis& diagnosis);
 
-/// Effects any of which would take most of what is over the floor (SearchLimits::hint), though none
-/// has evidence enough to be named: the photos hold too few independent residuals to tell. By
-/// falling evidence.
+/// Effects that stand out by more than chance (Diagnosis::gate), would take a share that is worth a
+/// name (SearchLimits::worth_a_name), and have not the evidence to be named: the photos hold too
+/// few independent residuals to tell. By falling evidence.
 std::vector<std::string> cannot_be_told(const Diagnosis& diagnosis);
 /// "stiffness_field, pressure, creep or 4 other effects".
 std::string any_of_them(const std::vector<std::string>& effects);
