@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +19,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "capture_io/interrupted.h"
 #include "capture_io/message.h"
 #include "capture_io/wire.h"
 
@@ -79,6 +81,10 @@ int raised(int descriptor) {
   return high;
 }
 
+double seconds_of(const timeval& t) {
+  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+}
+
 class Process {
  public:
   explicit Process(const std::string& name) {
@@ -121,15 +127,20 @@ class Process {
     while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
-  /// For waitpid's macros, where it has ended by itself; waits a moment, since its socket closes
-  /// first.
-  std::optional<int> status_if_ended() {
+  struct Death {
+    int status = -1;       ///< for waitpid's macros
+    double seconds = 0.0;  ///< of computing
+  };
+  /// Where it has ended by itself; waits a moment, since its socket closes first.
+  std::optional<Death> death() {
     for (int i = 0; i < 200; ++i) {
       int status = -1;
-      const pid_t found = ::waitpid(process_, &status, WNOHANG);
+      rusage used{};
+      const pid_t found = ::wait4(process_, &status, WNOHANG, &used);
       if (found != 0) {
         close();
-        return found > 0 ? status : -1;
+        return Death{found > 0 ? status : -1,
+                     seconds_of(used.ru_utime) + seconds_of(used.ru_stime)};
       }
       ::usleep(5000);
     }
@@ -167,27 +178,29 @@ std::string size_of(const fs::path& file) {
                        : fmt::format("this file of {:.3g} MB", static_cast<double>(size) / 1e6);
 }
 
-[[noreturn]] void no_memory(const HelperRequest& request) {
-  throw InputError(request.place,
-                   fmt::format("reading {} takes too much memory", size_of(request.place.file)),
-                   request.right);
+InputError no_memory(const HelperRequest& request) {
+  return {request.place,
+          fmt::format("reading {} takes too much memory", size_of(request.place.file)),
+          request.right};
 }
 
 [[noreturn]] void died(Process& process, const HelperRequest& request) {
-  const auto ended = process.status_if_ended();
-  const int status = ended.value_or(-1);
+  const auto ended = process.death();
+  const auto [status, seconds] = ended.value_or(Process::Death{});
   if (!ended) process.end(true);
   constexpr int kNotLoaded = 127;  // by the loader, which misses a library
   if (ended && WIFEXITED(status) && WEXITSTATUS(status) == kNotLoaded)
     throw std::runtime_error(fmt::format(
         "the helper {} cannot be loaded: install the libraries that it needs", request.name));
   const int signal = ended && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-  if (signal == SIGKILL) no_memory(request);  // by the kernel, out of memory
+  if (signal == SIGINT || signal == SIGTERM) throw Interrupted();
+  if (signal == SIGKILL) throw HelperDied(no_memory(request), true, seconds);  // by the kernel
   if (!ended || signal == SIGXCPU)
-    throw InputError(request.place,
-                     fmt::format("reading {} takes too long", size_of(request.place.file)),
-                     request.right);
-  throw InputError(request.place, request.damaged, request.right);
+    throw HelperDied(
+        {request.place, fmt::format("reading {} takes too long", size_of(request.place.file)),
+         request.right},
+        false, ended ? seconds : request.limits.seconds);
+  throw HelperDied({request.place, request.damaged, request.right}, true, seconds);
 }
 
 [[noreturn]] void rethrow(Unpacker& from) {
@@ -247,7 +260,7 @@ std::string detail::ask_helper(const HelperRequest& request) {
       case Answer::input_error:
         rethrow(in);
       case Answer::no_memory:
-        no_memory(request);
+        throw no_memory(request);
       case Answer::failed:
         throw std::runtime_error(in.take<std::string>());
     }

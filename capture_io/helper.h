@@ -22,6 +22,19 @@ HelperLimits limits_for(const std::filesystem::path& file);
 /// For what is not a stranger's.
 inline constexpr HelperLimits unlimited{1e15, 1e6};
 
+/// Thrown where a helper crashed, answered nonsense or went beyond its limits.
+class HelperDied : public InputError {
+ public:
+  HelperDied(const InputError& told, bool in_time, double seconds)
+      : InputError(told), in_time_(in_time), seconds_(seconds) {}
+  bool in_time() const { return in_time_; }    ///< false: by its limit of computing
+  double seconds() const { return seconds_; }  ///< of computing, in its whole life
+
+ private:
+  bool in_time_;
+  double seconds_;
+};
+
 /// One request to libexec/hookeye/NAME.
 struct HelperRequest {
   std::string name;
@@ -40,8 +53,8 @@ std::string ask_helper(const HelperRequest& request);
 }  // namespace detail
 
 /// Starts the helper where it does not run, hands over the request and has `unpack` take the answer
-/// from an Unpacker. What the helper finds wrong comes as its InputError. Throws
-/// std::runtime_error where there is no such program.
+/// from an Unpacker. What the helper finds wrong comes as its InputError. Throws HelperDied, and
+/// Interrupted where Ctrl-C ended the helper; std::runtime_error where there is no such program.
 template <class Unpack>
 auto ask_helper(const HelperRequest& request, const Unpack& unpack) {
   const std::string answer = detail::ask_helper(request);

@@ -1,6 +1,7 @@
 #include "capture_io/helper_main.h"
 
 #include <poll.h>
+#include <signal.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -88,6 +89,13 @@ void allow(double memory, double seconds) {
   const double space = address_space();
   if (space > 0.0) limit(RLIMIT_AS, space + memory);
   limit(RLIMIT_CPU, std::ceil(seconds_used() + seconds));
+}
+
+void die_of_interrupts() {
+  sigset_t interrupts;
+  sigemptyset(&interrupts);
+  for (const int signal : {SIGINT, SIGTERM}) sigaddset(&interrupts, signal);
+  pthread_sigmask(SIG_UNBLOCK, &interrupts, nullptr);
 }
 
 int serve(const std::function<std::string(Unpacker&)>& answer) {

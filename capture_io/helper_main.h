@@ -15,4 +15,7 @@ int serve(const std::function<std::string(Unpacker&)>& answer);
 /// computing over what it has used.
 void allow(double memory, double seconds);
 
+/// From here on Ctrl-C ends the helper too: for one that computes long and is asked once.
+void die_of_interrupts();
+
 }  // namespace hookeye

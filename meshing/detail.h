@@ -45,7 +45,7 @@ RawVolume read_gmsh(const std::filesystem::path& file, const Place& place);
 RawVolume read_inp(const std::filesystem::path& file);
 RawVolume read_text_mesh(const std::filesystem::path& file);
 
-/// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): tetgen.cpp.
+/// Sign of det[b-a, c-a, d-a], exact (Shewchuk's predicates, which TetGen carries): predicates.cpp.
 int orientation(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& d);
 
 struct TetGenTask {
@@ -61,7 +61,8 @@ struct TetGenAnswer {
   double seconds = 0.0;         ///< of computing that it took
   bool in_time = true;          ///< false: it was ended
 };
-/// Tetrahedra of order 1 within a closed surface, boundary_parent being its triangles (tetgen.cpp).
+/// Tetrahedra of order 1 within a closed surface, boundary_parent being its triangles
+/// (ask_tetgen.cpp). Throws Interrupted where Ctrl-C ended TetGen.
 TetGenAnswer tetrahedra(const SurfaceMesh& skin, const TetGenTask& task);
 
 /// fill(), whose attempts take `seconds` of computing together.
@@ -97,17 +98,6 @@ std::vector<Vector3d> cavities(const SurfaceMesh& surface);
 double rounding(const SurfaceMesh& surface);
 /// Of a surface that bounds no body: inspect.cpp.
 InputError no_body(const SurfaceMesh& surface, const SurfaceFaults& faults, const Place& place);
-
-// child.cpp: libraries that may end the process run in one of their own.
-/// In the child: no core file, no handlers of the parent, nothing printed, no life without it.
-void die_quietly();
-struct Ended {
-  bool well = false;     ///< not by a signal, nor with a fault
-  bool in_time = true;   ///< false: by its limit of the processor's time
-  double seconds = 0.0;  ///< of computing
-};
-/// In the parent: waits. Throws Interrupted where Ctrl-C ended the child.
-Ended await(int process);
 
 /// Jacobian determinant of an element at barycentric coordinates (6 x volume when straight).
 double jacobian(const TetMesh& mesh, int element, const Eigen::Vector4d& barycentric);
