@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "capture_io/interrupted.h"
 #include "capture_io/wire.h"
 
 namespace hookeye {
@@ -99,6 +100,28 @@ TEST_F(Helpers, WhateverEndsOneIsAnErrorOfTheInputAndTheNextRequestWorks) {
     EXPECT_EQ(refusal(task), told) << task;
     EXPECT_EQ(ask("echo"), "echo") << "after " << task;
   }
+}
+
+TEST_F(Helpers, WhoAsksMayLearnHowOneDied) {
+  const auto death_of = [](const std::string& task) {
+    try {
+      ask(task);
+    } catch (const HelperDied& died) {
+      return died;
+    }
+    throw std::runtime_error(task + " did not die");
+  };
+  const HelperDied aborted = death_of("abort"), spun = death_of("spin");
+  EXPECT_TRUE(aborted.in_time());
+  EXPECT_LT(aborted.seconds(), 0.9);
+  EXPECT_FALSE(spun.in_time());
+  EXPECT_NEAR(spun.seconds(), 1.5, 0.6) << "limits are whole seconds";
+}
+
+TEST_F(Helpers, CtrlCEndsTheOneThatAsksForItAndNoOther) {
+  EXPECT_EQ(ask("masked"), "masked");
+  EXPECT_THROW(ask("interrupted"), Interrupted);
+  EXPECT_EQ(ask("echo"), "echo");
 }
 
 TEST_F(Helpers, WhatIsNoFaultOfTheFileIsNotToldAsOne) {

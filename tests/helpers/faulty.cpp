@@ -28,6 +28,11 @@ std::string answer(Unpacker& request) {
   if (task == "exit") std::_Exit(0);
   if (task == "spin") spin();
   if (task == "eat") eat();
+  if (task == "masked") std::raise(SIGINT);
+  if (task == "interrupted") {
+    die_of_interrupts();
+    std::raise(SIGINT);  // as Ctrl-C does to all that runs in a terminal
+  }
   if (task == "kill") std::raise(SIGKILL);  // as the kernel does when memory is out
   if (task == "refuse") throw InputError({"a.vtu", 3, 4}, "it is wrong", "be right");
   if (task == "throw") throw std::runtime_error("something else");
