@@ -57,7 +57,8 @@ function(hookeye_helper name)
 endfunction()
 
 # hookeye_test_entries(TARGET PREFIX FILE...): ctest's PREFIX.NAME runs the tests of NAME_test.cpp in
-# one process. Those that tests/costs.txt tells begin first, the longest ahead.
+# one process. Those that tests/costs.txt tells begin first, the longest ahead. Those of a folder
+# long/ have the label `long`: ./check leaves them out, ./check --long does not.
 function(hookeye_test_entries target prefix)
   target_link_libraries(${target} PRIVATE test_main)
   foreach(source IN LISTS ARGN)
@@ -73,6 +74,9 @@ function(hookeye_test_entries target prefix)
     endif()
     add_test(NAME ${entry} COMMAND ${target} --file=${file})
     set_tests_properties(${entry} PROPERTIES TIMEOUT 1800)
+    if(source MATCHES "/long/")
+      set_tests_properties(${entry} PROPERTIES LABELS long)
+    endif()
     if(DEFINED cost_of_${entry})
       set_tests_properties(${entry} PROPERTIES COST ${cost_of_${entry}})
     endif()

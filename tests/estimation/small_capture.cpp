@@ -68,4 +68,11 @@ Discovery discover(const SmallScene& small, const DiscoverOptions& options) {
   return std::get<Discovery>(std::move(found));
 }
 
+double value_of(const Fitted& fitted, const std::string& name) {
+  const auto parameters = fitted.form.parameters();
+  for (size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].name == name) return fitted.p[static_cast<Eigen::Index>(i)];
+  throw std::logic_error("no parameter " + name);
+}
+
 }  // namespace hookeye::test

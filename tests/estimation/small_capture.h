@@ -35,6 +35,9 @@ class SmallScene {
 Fitted base_fit(Workspace& workspace);
 Step base_step(Workspace& workspace);
 
+/// Of one of its parameters; throws where it has none of that name.
+double value_of(const Fitted& fitted, const std::string& name);
+
 /// The whole search in it; throws where it fails.
 Discovery discover(const SmallScene& small, const DiscoverOptions& options = {});
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "estimation/fit/trial.h"
-#include "estimation/model/additive_material.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/refit_score.h"
 #include "tests/estimation/small_capture.h"
@@ -18,17 +17,7 @@ namespace {
 using test::discover;
 using test::SmallCapture;
 using test::SmallScene;
-
-const Parameter& parameter(const Fitted& fitted, const std::string& name, double* value) {
-  static std::vector<Parameter> all;
-  all = fitted.form.parameters();
-  for (size_t i = 0; i < all.size(); ++i)
-    if (all[i].name == name) {
-      *value = fitted.p[i];
-      return all[i];
-    }
-  throw std::logic_error("no parameter " + name);
-}
+using test::value_of;
 
 TEST(Fit, ReachesTheTruthFromPixelsAway) {
   const SmallScene small({.told = "0.013"});
@@ -194,11 +183,8 @@ TEST(Discover, NamesTheHiddenWeightAndTheErrorFalls) {
       std::pow(base.evaluation.chi(true), 2) - std::pow(last.evaluation.chi(true), 2);
   EXPECT_TRUE(held_out_allows(base, last, found.floor, 1.01 * rise));
   EXPECT_FALSE(held_out_allows(base, last, found.floor, 0.99 * rise));
-  double g = 0.0;
-  parameter(last, "gravity.z", &g);
-  EXPECT_NEAR(g, -9000.0, 300.0);
-  parameter(last, "gravity.x", &g);
-  EXPECT_NEAR(g, 4000.0, 300.0);
+  EXPECT_NEAR(value_of(last, "gravity.z"), -9000.0, 300.0);
+  EXPECT_NEAR(value_of(last, "gravity.x"), 4000.0, 300.0);
 }
 
 /// Seven deviations of one measured force, and nothing in any photo: few values pay for what they
@@ -217,33 +203,6 @@ TEST(Discover, NamesAForceZeroOfAFewDeviations) {
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }
 
-/// What is missing beside an additive material is named as beside a law of the textbooks.
-TEST(Discover, NamesTheHiddenWeightBesideAnAdditiveMaterial) {
-  const SmallScene small({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, "
-                                    "gravity.z: -9000}}\n",
-                          .told = "0.021"});
-  Workspace workspace(small.scene);
-  const ModelForm base = base_form(small.scene);
-  const auto [form, p] = to_additive(base, base.initial());
-  const Discovery found = std::get<Discovery>(discover(workspace, form, p, {}));
-  EXPECT_THAT(found.missing, testing::ElementsAre("gravity")) << found.sentence;
-  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
-  double g = 0.0;
-  parameter(found.steps.back().fitted, "gravity.z", &g);
-  EXPECT_NEAR(g, -9000.0, 300.0);
-}
-
-/// Stiffening's linear step shows a third of what it can do; the race gives it three.
-TEST(Discover, NamesStiffeningAlthoughAFieldScoresHigher) {
-  const Discovery found =
-      discover(SmallScene({.hidden = "hidden:\n  - {effect: strain_stiffening, values: "
-                                     "{strain_stiffening.c2: 0.02, strain_stiffening.c3: 0.01}}\n",
-                           .told = "0.021"}));
-  ASSERT_GE(found.steps.size(), 2u) << found.sentence;
-  EXPECT_EQ(found.steps[1].added, "strain_stiffening");
-  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
-}
-
 /// Tetrahedra far too coarse to bend as the body does: a dozen effects stand out. The finer mesh
 /// takes them away, and what it leaves is the next finer one's and nobody else's.
 TEST(Discover, AMeshThatLeavesNothingRacesWithNobody) {
@@ -259,21 +218,6 @@ TEST(Discover, AMeshThatLeavesNothingRacesWithNobody) {
   }
   EXPECT_LT(found.steps[1].fitted.high[0] - found.steps[1].fitted.low[0],
             0.5 * (found.steps[0].fitted.high[0] - found.steps[0].fitted.low[0]));
-}
-
-/// A small weight beside a mesh that is too coarse: on the mesh that has that error, whatever
-/// resembles it would be refitted with it.
-TEST(Discover, SettlesTheMeshBeforeASmallEffectIsNamed) {
-  const Discovery found =
-      discover(SmallScene({.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 300, "
-                                     "gravity.z: -700}}\n",
-                           .told = "0.021",
-                           .truth_mesh = "0.5"}));
-  ASSERT_EQ(found.steps.size(), 3u) << found.sentence;
-  EXPECT_EQ(found.steps[1].added, "mesh_resolution");
-  EXPECT_EQ(found.steps[1].rivals.size(), 1u);
-  EXPECT_EQ(found.steps[2].added, "gravity");
-  EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }
 
 TEST(Discover, CancelledSaysSo) {
