@@ -9,7 +9,7 @@ namespace hookeye {
 
 /// Set by SIGINT and SIGTERM; every long loop polls it (EquilibriumOptions, FitOptions ...).
 const std::atomic<bool>& interrupted();
-/// Before any other thread is there: they all inherit that the signals are blocked.
+/// Begins to listen. All threads have the signals blocked, from before main().
 void watch_interrupts();
 
 }  // namespace hookeye

@@ -40,10 +40,18 @@ class Studio {
     }
   }
   ~Studio() {
-    ::kill(process_, SIGINT);
-    ::waitpid(process_, nullptr, 0);
+    if (process_ > 0) interrupt();
   }
   bool ready() const { return port_ > 0; }
+  pid_t process() const { return process_; }
+  /// Status as waitpid() has it.
+  int interrupt() {
+    int status = -1;
+    ::kill(process_, SIGINT);
+    ::waitpid(process_, &status, 0);
+    process_ = -1;
+    return status;
+  }
 
   struct Answer {
     int status = 0;
@@ -119,6 +127,33 @@ TEST_F(Cli, TheStudioSaysWhatIsWrongWithARequest) {
   EXPECT_EQ(studio.post("add", R"({"effect": "gravvity"})").status, 400);
   EXPECT_EQ(studio.post("add", "{").status, 400);
   EXPECT_EQ(json::parse(studio.get("job").body).at("state"), "idle");
+}
+
+/// A thread that a library started when it was loaded ended the program by it.
+TEST_F(Cli, CtrlCEndsTheStudioWhateverThreadsLibrariesStarted) {
+  write_cube("{z: 1}");
+  fs::create_directories(folder_ / "run/steps/00-base");
+  const json timeline = {{"hookeye", 1},
+                         {"capture", (folder_ / "capture.yaml").string()},
+                         {"steps", {{{"name", "base"}, {"added", nullptr}, {"chi_fit", 2.0}}}}};
+  write("run/run.json", timeline.dump());
+  Studio studio(folder_);
+  if (!studio.ready() && hookeye("studio run").err.find("without its page") != std::string::npos)
+    GTEST_SKIP() << "built without the page";
+  ASSERT_TRUE(studio.ready());
+  int threads = 0, open = 0;
+  for (const auto& thread :
+       fs::directory_iterator("/proc/" + std::to_string(studio.process()) + "/task")) {
+    const std::string status = read(thread.path() / "status"), key = "SigBlk:";
+    const auto blocked = std::stoull(status.substr(status.find(key) + key.size()), nullptr, 16);
+    const uint64_t ctrl_c = uint64_t{1} << (SIGINT - 1);
+    threads += 1, open += (blocked & ctrl_c) == 0;
+  }
+  EXPECT_GT(threads, 2);
+  EXPECT_EQ(open, 1) << "the one that waits for it";
+  const int status = studio.interrupt();
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 /// A run whose parts are links to what lies outside it: no route reads or writes through them.
