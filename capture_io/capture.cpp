@@ -8,24 +8,19 @@
 #include <stdexcept>
 
 #include "capture_io/capture_reader.h"
-#include "capture_io/run.h"
+#include "capture_io/yaml_file.h"
 
 namespace hookeye {
 namespace {
 
 namespace fs = std::filesystem;
 
-YamlNode load_yaml(const fs::path& file) {
+YamlNode load_capture(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error))
     throw InputError({file.string()}, "there is no such capture",
                      "name a capture.yaml or the folder that holds one");
-  const YamlLimits limits;
-  const auto size = fs::file_size(file, error);
-  if (!error && size > limits.bytes)
-    throw InputError({file.string()}, fmt::format("{} bytes of yaml are too many", size),
-                     fmt::format("at most {} MiB are read", limits.bytes >> 20));
-  return parse_yaml(read_text(file), file.string(), limits);
+  return load_yaml(file, file.string());
 }
 
 void check_version(const YamlSection& top) {
@@ -130,7 +125,7 @@ const RegionSpec* Capture::region(const std::string& name) const {
 Capture read_capture(const fs::path& path) {
   std::error_code error;
   const fs::path given = fs::is_directory(path, error) ? path / "capture.yaml" : path;
-  const YamlNode root = load_yaml(given);
+  const YamlNode root = load_capture(given);
   const YamlSection top(root, "the capture",
                         {"hookeye", "title", "units", "body", "model", "cameras", "light", "photos",
                          "regions", "examples"});
@@ -147,7 +142,7 @@ Capture read_capture(const fs::path& path) {
       top.need("model", "write `model: {material: {law: neo-hookean, mu: ..., kappa: ...}}`"),
       capture);
   if (const YamlNode* cameras = top.find("cameras"))
-    capture.cameras = read_cameras(*cameras, folder);
+    capture.cameras = read_cameras(section_in_place(*cameras, "cameras", folder), folder);
   if (const YamlNode* light = top.find("light")) capture.light = read_light(*light);
   PhotoDefaults defaults;
   if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);

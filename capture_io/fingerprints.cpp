@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "capture_io/run.h"
-#include "capture_io/yaml_tree.h"
+#include "capture_io/yaml_file.h"
 
 namespace hookeye {
 namespace {
@@ -64,7 +64,13 @@ std::map<std::string, std::string> fingerprints(const fs::path& yaml) {
   if (!fs::is_regular_file(yaml, ignored)) return out;
   out[yaml.filename().string()] = fingerprint(yaml);
   try {
-    add_named(parse_yaml(read_text(yaml), yaml.string()), yaml.parent_path(), &out);
+    const YamlNode root = parse_yaml(read_text(yaml), yaml.string());
+    add_named(root, yaml.parent_path(), &out);
+    const YamlNode* cameras = root.find("cameras");
+    const YamlNode* part = cameras ? file_of_section(*cameras) : nullptr;
+    if (part && out.count(part->text))
+      add_named(load_section(yaml.parent_path() / part->text, part->text, "cameras"),
+                yaml.parent_path(), &out);
   } catch (const InputError&) {
     // told where the capture is read
   }

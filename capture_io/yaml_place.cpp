@@ -1,28 +1,22 @@
 #include "capture_io/yaml_place.h"
 
-#include <algorithm>
-
 #include "capture_io/run.h"
+#include "capture_io/yaml_file.h"
 
 namespace hookeye {
-namespace {
-
-const YamlNode::Entry* entry_of(const YamlNode& node, const std::string& key) {
-  const auto found = std::find_if(node.entries.begin(), node.entries.end(),
-                                  [&](const YamlNode::Entry& entry) { return entry.key == key; });
-  return found == node.entries.end() ? nullptr : &*found;
-}
-
-}  // namespace
-
 YamlPlaces::YamlPlaces(const std::filesystem::path& file, const std::string& told)
-    : root_(parse_yaml(read_text(file), told)) {}
+    : root_(parse_yaml(read_text(file), told)) {
+  const CaptureFolder folder{std::filesystem::path(told).parent_path(),
+                             std::filesystem::canonical(file).parent_path()};
+  for (YamlNode::Entry& entry : root_.entries)
+    if (entry.key == "cameras") entry.value = section_in_place(entry.value, entry.key, folder);
+}
 
 Place YamlPlaces::of(std::initializer_list<std::string> path) const {
   const YamlNode* node = &root_;
   Place place = root_.place;
   for (const std::string& key : path) {
-    const YamlNode::Entry* entry = entry_of(*node, key);
+    const YamlNode::Entry* entry = node->entry(key);
     if (entry == nullptr) break;
     place = entry->place;
     node = &entry->value;
@@ -33,7 +27,7 @@ Place YamlPlaces::of(std::initializer_list<std::string> path) const {
 bool YamlPlaces::has(std::initializer_list<std::string> path) const {
   const YamlNode* node = &root_;
   for (const std::string& key : path) {
-    const YamlNode::Entry* entry = entry_of(*node, key);
+    const YamlNode::Entry* entry = node->entry(key);
     if (entry == nullptr) return false;
     node = &entry->value;
   }

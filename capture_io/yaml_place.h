@@ -13,7 +13,8 @@ namespace hookeye {
 /// The keys of a capture file with their places.
 class YamlPlaces {
  public:
-  /// Reads the file again; `told` is the name to use in places. Throws InputError as parse_yaml().
+  /// Reads the file again, and the one that holds its cameras; `told` is the name to use in places.
+  /// Throws InputError as parse_yaml().
   YamlPlaces(const std::filesystem::path& file, const std::string& told);
   /// Of the value at the end of the path; where a key of it is not there, of the deepest that is.
   /// A key's own place stands for a map that begins on the next line.

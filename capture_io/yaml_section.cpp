@@ -19,22 +19,6 @@ std::string shortened(const std::string& text) {
   return text.size() > 60 ? one_line + "..." : one_line;
 }
 
-/// The whole text as a number, independent of the locale; yaml's .nan and .inf come through so that
-/// they are refused by name.
-std::optional<double> number_of(const std::string& text) {
-  if (text == ".nan" || text == ".NaN" || text == ".NAN") return std::nan("");
-  if (text == ".inf" || text == "+.inf" || text == "-.inf") return INFINITY;
-  const char* begin = text.data();
-  const char* end = begin + text.size();
-  if (begin != end && *begin == '+') ++begin;
-  double value = 0;
-  const auto [stop, error] = std::from_chars(begin, end, value);
-  if (begin == end || stop != end) return {};
-  if (error == std::errc::result_out_of_range) return INFINITY;
-  if (error != std::errc()) return {};
-  return value;
-}
-
 /// pull_1.png and pull_2.png are two of a series, no slip of the pen.
 std::string without_digits(std::string name) {
   std::erase_if(name, [](unsigned char c) { return std::isdigit(c); });
@@ -105,9 +89,7 @@ YamlSection::YamlSection(const YamlNode& node, std::string what, std::vector<std
 const YamlNode::Entry* YamlSection::entry(const std::string& key) const {
   if (std::find(known_.begin(), known_.end(), key) == known_.end())
     throw std::logic_error(fmt::format("{}: key {} is read but not declared", what_, key));
-  for (const YamlNode::Entry& entry : node_.entries)
-    if (entry.key == key) return &entry;
-  return nullptr;
+  return node_.entry(key);
 }
 
 const YamlNode* YamlSection::find(const std::string& key) const {
@@ -137,9 +119,24 @@ std::string YamlSection::one_of(const std::vector<std::string>& keys) const {
   return *chosen;
 }
 
+std::optional<double> number_of(const YamlNode& node) {
+  const std::string& text = node.text;
+  if (node.kind != YamlNode::Kind::scalar) return {};
+  if (text == ".nan" || text == ".NaN" || text == ".NAN") return std::nan("");
+  if (text == ".inf" || text == "+.inf" || text == "-.inf") return INFINITY;
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  if (begin != end && *begin == '+') ++begin;
+  double value = 0;
+  const auto [stop, error] = std::from_chars(begin, end, value);
+  if (begin == end || stop != end) return {};
+  if (error == std::errc::result_out_of_range) return INFINITY;
+  if (error != std::errc()) return {};
+  return value;
+}
+
 double read_number(const YamlNode& node, const std::string& what) {
-  const std::optional<double> value =
-      node.kind == YamlNode::Kind::scalar ? number_of(node.text) : std::nullopt;
+  const std::optional<double> value = number_of(node);
   if (!value) unexpected(node, what, "a number is expected");
   if (!std::isfinite(*value)) unexpected(node, what, "a finite number is expected");
   return *value;

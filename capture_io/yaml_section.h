@@ -47,6 +47,9 @@ std::string suggest(const std::string& word, const std::vector<std::string>& kno
 [[noreturn]] void unexpected(const YamlNode& node, const std::string& what,
                              const std::string& right);
 
+/// The whole text as a number, whatever the locale; none where it is no number. yaml's .nan and
+/// .inf come through so that they are refused by name.
+std::optional<double> number_of(const YamlNode& node);
 /// Readers of one value; `what` names it in messages ("fx of camera front").
 double read_number(const YamlNode& node, const std::string& what);
 double read_positive(const YamlNode& node, const std::string& what);

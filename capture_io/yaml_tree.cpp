@@ -191,6 +191,17 @@ void check_bytes(const std::string& text, const std::string& file) {
 
 }  // namespace
 
+const YamlNode::Entry* YamlNode::entry(const std::string& key) const {
+  const auto found = std::find_if(entries.begin(), entries.end(),
+                                  [&](const Entry& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+const YamlNode* YamlNode::find(const std::string& key) const {
+  const Entry* found = entry(key);
+  return found ? &found->value : nullptr;
+}
+
 YamlNode parse_yaml(const std::string& text, const std::string& file, const YamlLimits& limits) {
   if (text.size() > limits.bytes)
     throw InputError({file}, fmt::format("{} bytes of yaml are too many", text.size()),
@@ -201,12 +212,13 @@ YamlNode parse_yaml(const std::string& text, const std::string& file, const Yaml
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder))
-      throw InputError({file}, "the file is empty", "a capture begins with `hookeye: 1`");
+      throw InputError({file}, "the file is empty", limits.begins);
     YamlNode root = builder.take();
     TreeBuilder rest(file, limits);
     if (parser.HandleNextDocument(rest))
       throw InputError(rest.take().place, "a second yaml document begins here",
-                       "one file holds one capture: remove the line `---` and what follows");
+                       fmt::format("one file holds one {}: remove the line `---` and what follows",
+                                   limits.holds));
     return root;
   } catch (const YAML::Exception& error) {
     syntax_error(error, text, file);

@@ -19,6 +19,9 @@ struct YamlNode {
   std::string text;             ///< Kind::scalar
   std::vector<YamlNode> items;  ///< Kind::sequence
   std::vector<Entry> entries;   ///< Kind::map, in file order, keys unique
+
+  const Entry* entry(const std::string& key) const;    ///< null: not there, or no map
+  const YamlNode* find(const std::string& key) const;  ///< its value
 };
 
 struct YamlNode::Entry {
@@ -32,6 +35,8 @@ struct YamlLimits {
   size_t bytes = size_t{16} << 20;
   size_t alias_nodes = 10000;  ///< nodes that come out of aliases, all together
   int depth = 32;
+  std::string holds = "capture";                              ///< what one file holds
+  std::string begins = "a capture begins with `hookeye: 1`";  ///< what is right for an empty one
 };
 
 /// Parses one yaml document; `file` is the name used in places. Throws InputError: broken syntax,

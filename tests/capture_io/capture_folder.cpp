@@ -125,6 +125,12 @@ void CaptureFixture::replace(const std::string& from, const std::string& to) {
   yaml.replace(at, from.size(), to);
 }
 
+void CaptureFixture::part_cameras() {
+  const size_t begin = yaml.find("cameras:\n"), end = yaml.find("light:\n");
+  write_file("cameras.yaml", yaml.substr(begin, end - begin));
+  yaml.replace(begin, end - begin, "cameras: {from: cameras.yaml}\n");
+}
+
 void CaptureFixture::write() const { write_file("capture.yaml", yaml); }
 
 void CaptureFixture::write_file(const std::string& name, const std::string& content) const {

@@ -23,6 +23,8 @@ class CaptureFixture {
                   int channels = 1) const;
   /// What read_capture() says, with the folder struck out; "" when it accepts the capture.
   std::string complaint() const;
+  /// Moves the cameras into cameras.yaml.
+  void part_cameras();
 
  private:
   TemporaryFolder folder_;
