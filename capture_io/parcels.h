@@ -1,9 +1,8 @@
-// Pictures and cameras as bytes, between the program and its helpers.
+// Pictures as bytes, between the program and its helpers.
 #pragma once
 
 #include <string>
 
-#include "capture_io/camera.h"
 #include "capture_io/wire.h"
 
 namespace hookeye {
@@ -40,27 +39,6 @@ inline StoredImage unpack_stored(Unpacker& from) {
                                  static_cast<size_t>(image.channels))
     throw WireFault();
   return image;
-}
-
-inline void pack(Packer& to, const Camera& camera) {
-  to.put(camera.name).put(camera.width).put(camera.height).put(camera.model->name());
-  to.put(camera.fx).put(camera.fy).put(camera.cx).put(camera.cy).put(camera.skew);
-  to.put(camera.distortion).put(camera.R).put(camera.t);
-}
-
-inline Camera unpack_camera(Unpacker& from) {
-  Camera camera;
-  from.get(camera.name);
-  from.get(camera.width);
-  from.get(camera.height);
-  camera.model = find_camera_model(from.take<std::string>());
-  for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.skew})
-    from.get(*value);
-  from.get(camera.distortion);
-  if (!camera.model || !camera.model->takes(camera.distortion.size())) throw WireFault();
-  from.get(camera.R);
-  from.get(camera.t);
-  return camera;
 }
 
 }  // namespace hookeye

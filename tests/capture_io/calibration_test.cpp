@@ -76,6 +76,27 @@ TEST(CalibrationTest, FisheyeAndSkew) {
   }
 }
 
+/// ROS writes yaml without OpenCV's mark, which its reader refuses.
+TEST(CalibrationTest, PlainYamlIsReadWithItsLines) {
+  const TemporaryFolder folder;
+  const std::string text =
+      "image_width: 640\nimage_height: 480\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+      "  data: [801, 0, 320.5, 0, 802, 241, 0, 0, 1]\ndistortion_model: plumb_bob\n"
+      "distortion_coefficients: {rows: 1, cols: 5, data: [-0.1, 0.2, 0.001, 0.002, -0.3]}\n";
+  write_text(folder / "a.yaml", text);
+  const Camera camera = read_opencv_calibration(folder / "a.yaml");
+  EXPECT_EQ(camera.width, 640);
+  EXPECT_EQ(camera.fy, 802);
+  EXPECT_EQ(camera.distortion, (std::vector<double>{-0.1, 0.2, 0.001, 0.002, -0.3}));
+  write_text(folder / "a.yaml", text + "image_width: 5\n");
+  try {
+    read_opencv_calibration(folder / "a.yaml");
+    ADD_FAILURE() << "two widths are accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().line, 9);
+  }
+}
+
 /// OpenCV's reader calls itself for every level: a stack has an end.
 TEST(CalibrationTest, DeepNestingIsNoCrash) {
   const TemporaryFolder folder;

@@ -1,4 +1,5 @@
 // What a helper answers: believed no more than a file.
+#include "capture_io/file_storage.h"
 #include "capture_io/parcels.h"
 #include "capture_io/wire.h"
 #include "fuzz.h"
@@ -20,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         unpack_stored(from);
         break;
       default:
-        unpack_camera(from);
+        unpack_stored_values(from);
     }
     from.end();
   } catch (const WireFault&) {

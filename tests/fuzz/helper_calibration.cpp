@@ -5,8 +5,5 @@
 #include "fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  return hookeye::fuzz::on_file("a.yml", data, size, [](const auto& file) {
-    bool posed = false;
-    hookeye::read(file, posed);
-  });
+  return hookeye::fuzz::on_file("a.yml", data, size, [](const auto& file) { hookeye::read(file); });
 }
