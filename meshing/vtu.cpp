@@ -1,14 +1,13 @@
-// VTK's format for unstructured grids (vtu), version 1.0. The only file that touches pugixml.
+// VTK's format for unstructured grids (vtu), version 1.0.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <pugixml.hpp>
-#include <sstream>
 
 #include "capture_io/base64.h"
 #include "capture_io/run.h"
+#include "capture_io/xml_file.h"
 #include "meshing/detail.h"
 #include "meshing/tet_mesh.h"
 #include "meshing/vtu_numbers.h"
@@ -47,16 +46,8 @@ std::string class_of(int64_t type) {
 /// A file with one piece, its arrays read when they are asked for.
 class VtuFile {
  public:
-  explicit VtuFile(const fs::path& file) : file_(file), bytes_(read_text(file)) {
-    part_raw();
-    const pugi::xml_parse_result parsed = document_.load_string(bytes_.c_str());
-    if (!parsed) {
-      const auto upto =
-          bytes_.begin() + std::min<std::ptrdiff_t>(parsed.offset, std::ssize(bytes_));
-      throw InputError(
-          {file.string(), 1 + static_cast<int>(std::count(bytes_.begin(), upto, '\n'))},
-          fmt::format("cannot be read: {}", parsed.description()), "a complete vtu file");
-    }
+  explicit VtuFile(const fs::path& file)
+      : file_(file), document_(parted(read_text(file)), file.string(), "a complete vtu file") {
     read_head(document_.child("VTKFile"));
   }
 
@@ -65,9 +56,9 @@ class VtuFile {
     throw InputError({file_.string()}, wrong, right);
   }
 
-  pugi::xml_node piece() const { return piece_; }
+  XmlNode piece() const { return piece_; }
   int64_t count(const char* name) const {
-    const std::string text = piece_.attribute(name).value();
+    const std::string text(piece_.attribute(name));
     int64_t value = -1;
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || stop != text.data() + text.size() || value < 0)
@@ -75,13 +66,13 @@ class VtuFile {
     return value;
   }
 
-  VtuNumbers numbers(const pugi::xml_node& array) const {
-    const std::string type = array.attribute("type").value();
-    const std::string name = array.attribute("Name").value();
+  VtuNumbers numbers(const XmlNode& array) const {
+    const std::string type(array.attribute("type"));
+    const std::string name(array.attribute("Name"));
     if (!detail::is_vtu_type(type)) fault(fmt::format("array '{}' is of type '{}'", name, type));
     try {
-      if (std::string_view(array.attribute("format").value()) == "ascii")
-        return detail::vtu_numbers_of_text(array.text().get(), type);
+      if (array.attribute("format") == "ascii")
+        return detail::vtu_numbers_of_text(array.text(), type);
       return detail::vtu_numbers(detail::vtu_bytes(stored(array), format_), type);
     } catch (const InputError&) {
       throw;
@@ -92,30 +83,30 @@ class VtuFile {
 
   /// A child of <Cells>.
   std::vector<int64_t> cells(const char* name) const {
-    const VtuNumbers all =
-        numbers(piece_.child("Cells").find_child_by_attribute("DataArray", "Name", name));
+    const VtuNumbers all = numbers(piece_.child("Cells").child("DataArray", "Name", name));
     if (!all.whole && all.size() > 0) fault(fmt::format("the {} of its cells are not whole", name));
     return all.integers;
   }
 
  private:
-  /// Bytes as they are stand behind the XML, which a parser cannot pass.
-  void part_raw() {
-    const size_t begin = bytes_.find("<AppendedData");
-    const size_t end = std::min(bytes_.find('>', begin), bytes_.size());
-    if (begin == std::string::npos) return;
-    const std::string_view tag = std::string_view(bytes_).substr(begin, end - begin);
-    if (tag.find("\"raw\"") == std::string_view::npos) return;
-    const size_t mark = bytes_.find('_', end);
+  /// Bytes as they are stand behind the XML, which a parser cannot pass: they go to raw_.
+  std::string parted(std::string bytes) {
+    const size_t begin = bytes.find("<AppendedData");
+    const size_t end = std::min(bytes.find('>', begin), bytes.size());
+    if (begin == std::string::npos) return bytes;
+    const std::string_view tag = std::string_view(bytes).substr(begin, end - begin);
+    if (tag.find("\"raw\"") == std::string_view::npos) return bytes;
+    const size_t mark = bytes.find('_', end);
     if (mark == std::string::npos) fault("ends before its appended data");
-    raw_ = bytes_.substr(mark + 1);
-    bytes_.resize(begin);
-    bytes_ += "</VTKFile>";
+    raw_ = bytes.substr(mark + 1);
+    bytes.resize(begin);
+    bytes += "</VTKFile>";
     has_raw_ = true;
+    return bytes;
   }
 
-  void read_head(const pugi::xml_node& root) {
-    const auto told = [&](const char* name) { return std::string(root.attribute(name).value()); };
+  void read_head(const XmlNode& root) {
+    const auto told = [&](const char* name) { return std::string(root.attribute(name)); };
     if (told("type") != "UnstructuredGrid")
       fault(fmt::format("is a file of type '{}'", told("type")), "an UnstructuredGrid");
     if (told("byte_order") == "BigEndian")
@@ -124,25 +115,25 @@ class VtuFile {
       fault(fmt::format("is compressed by {}", told("compressor")),
             "a file that is written uncompressed or with zlib");
     format_ = {told("header_type") == "UInt64", !told("compressor").empty()};
-    const pugi::xml_node grid = root.child("UnstructuredGrid");
+    const XmlNode grid = root.child("UnstructuredGrid");
     piece_ = grid.child("Piece");
     if (!piece_) fault("holds no piece of a grid");
-    if (piece_.next_sibling("Piece"))
+    if (piece_.next("Piece"))
       fault("holds several pieces, which share no nodes", "a file of one piece");
-    appended_ = root.child("AppendedData").text().get();
+    appended_ = root.child("AppendedData").text();
     appended_.remove_prefix(std::min(appended_.find('_'), appended_.size()));
     appended_.remove_prefix(std::min<size_t>(1, appended_.size()));
-    for (const auto& array : grid.select_nodes(".//DataArray[@offset]"))
-      offsets_.push_back(array.node().attribute("offset").as_ullong());
+    for (const XmlNode& array : grid.all("DataArray"))
+      if (array.has("offset")) offsets_.push_back(offset(array));
     std::ranges::sort(offsets_);
   }
 
-  std::string stored(const pugi::xml_node& array) const {
-    const std::string_view format = array.attribute("format").value();
+  std::string stored(const XmlNode& array) const {
+    const std::string_view format = array.attribute("format");
     if (format == "appended" && has_raw_) return raw_.substr(checked(offset(array), raw_.size()));
     if (format != "appended" && format != "binary")
       fault(fmt::format("an array's format is '{}'", format), "ascii, binary or appended");
-    std::string_view text = array.text().get();
+    std::string_view text = array.text();
     if (format == "appended") {
       const unsigned long long begin = offset(array);
       const auto next = std::ranges::upper_bound(offsets_, begin);
@@ -154,8 +145,12 @@ class VtuFile {
     return std::move(*bytes);
   }
 
-  static unsigned long long offset(const pugi::xml_node& array) {
-    return array.attribute("offset").as_ullong();
+  /// 0 where none is told.
+  static unsigned long long offset(const XmlNode& array) {
+    const std::string_view text = array.attribute("offset");
+    unsigned long long value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
   }
   size_t checked(unsigned long long offset, size_t size) const {
     if (offset > size) fault(fmt::format("an array begins at byte {} of {}", offset, size));
@@ -163,10 +158,10 @@ class VtuFile {
   }
 
   fs::path file_;
-  std::string bytes_, raw_;
+  std::string raw_;
   bool has_raw_ = false;
-  pugi::xml_document document_;
-  pugi::xml_node piece_;
+  XmlFile document_;
+  XmlNode piece_;
   detail::VtuFormat format_;
   std::string_view appended_;  ///< in base64
   std::vector<unsigned long long> offsets_;
@@ -194,7 +189,7 @@ std::vector<int64_t> tetrahedra_of(const VtuFile& vtu, const std::vector<int64_t
 }
 
 Matrix3Xd points_of(const VtuFile& vtu) {
-  const pugi::xml_node array = vtu.piece().child("Points").child("DataArray");
+  const XmlNode array = vtu.piece().child("Points").child("DataArray");
   const VtuNumbers numbers = vtu.numbers(array);
   const auto points = static_cast<uint64_t>(vtu.count("NumberOfPoints"));
   if (numbers.size() % 3 != 0 || numbers.size() / 3 != points)
@@ -203,47 +198,30 @@ Matrix3Xd points_of(const VtuFile& vtu) {
   return Eigen::Map<const Matrix3Xd>(numbers.reals.data(), 3, static_cast<Eigen::Index>(points));
 }
 
-pugi::xml_node add_array(pugi::xml_node to, const char* type, const std::string& name,
-                         Eigen::Index components, const void* values, size_t bytes) {
-  pugi::xml_node array = to.append_child("DataArray");
-  array.append_attribute("type") = type;
-  array.append_attribute("Name") = name.c_str();
-  array.append_attribute("NumberOfComponents") = static_cast<long long>(components);
-  array.append_attribute("format") = "binary";
+/// `more`: further attributes.
+void add_array(std::string& to, const char* type, const std::string& name, Eigen::Index components,
+               const void* values, size_t bytes, const std::string& more = "") {
   const auto head = static_cast<uint64_t>(bytes);
   std::string stored(reinterpret_cast<const char*>(&head), sizeof head);
   stored.append(static_cast<const char*>(values), bytes);
-  array.text() = base64(stored.data(), stored.size()).c_str();
-  return array;
+  to += fmt::format(
+      "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\"{}>{}"
+      "</DataArray>\n",
+      type, xml_escaped(name), components, more, base64(stored.data(), stored.size()));
 }
 
-void add_array(pugi::xml_node to, const std::string& name, const Eigen::MatrixXd& values) {
-  pugi::xml_node array = add_array(to, "Float64", name, values.rows(), values.data(),
-                                   sizeof(double) * static_cast<size_t>(values.size()));
-  if (values.size() == 0) return;
-  // As VTK tells it: of vectors the range of their lengths.
-  const Eigen::RowVectorXd of =
-      values.rows() == 1 ? Eigen::RowVectorXd(values.row(0)) : values.colwise().norm();
-  array.append_attribute("RangeMin") = fmt::format("{}", of.minCoeff()).c_str();
-  array.append_attribute("RangeMax") = fmt::format("{}", of.maxCoeff()).c_str();
-}
-
-/// A tag ends for VTK at the first '>', in quotes too; pugixml leaves it there, as XML does.
-std::string with_escaped_names(const std::string& xml) {
-  std::string out;
-  bool quoted = false;
-  for (const char c : xml) {
-    if (c == '"') quoted = !quoted;
-    if (quoted && c == '>') {
-      out += "&gt;";
-    } else {
-      out += c;
-    }
+void add_array(std::string& to, const std::string& name, const Eigen::MatrixXd& values) {
+  std::string range;
+  if (values.size() > 0) {  // as VTK tells it: of vectors the range of their lengths
+    const Eigen::RowVectorXd of =
+        values.rows() == 1 ? Eigen::RowVectorXd(values.row(0)) : values.colwise().norm();
+    range = fmt::format(" RangeMin=\"{}\" RangeMax=\"{}\"", of.minCoeff(), of.maxCoeff());
   }
-  return out;
+  add_array(to, "Float64", name, values.rows(), values.data(),
+            sizeof(double) * static_cast<size_t>(values.size()), range);
 }
 
-void add_cells(pugi::xml_node to, const Eigen::MatrixXi& elements) {
+void add_cells(std::string& to, const Eigen::MatrixXi& elements) {
   std::vector<int64_t> connectivity, offsets;
   for (Eigen::Index e = 0; e < elements.cols(); ++e) {
     for (Eigen::Index k = 0; k < elements.rows(); ++k)
@@ -295,40 +273,42 @@ detail::RawVolume detail::read_vtu(const fs::path& file) {
 }
 
 void write_vtu(const fs::path& file, const TetMesh& mesh, const std::vector<VtuArray>& arrays) {
-  pugi::xml_document document;
-  pugi::xml_node root = document.append_child("VTKFile");
-  root.append_attribute("type") = "UnstructuredGrid";
-  root.append_attribute("version") = "1.0";
-  root.append_attribute("byte_order") = "LittleEndian";
-  root.append_attribute("header_type") = "UInt64";
-  pugi::xml_node piece = root.append_child("UnstructuredGrid").append_child("Piece");
-  piece.append_attribute("NumberOfPoints") = static_cast<long long>(mesh.X.cols());
-  piece.append_attribute("NumberOfCells") = static_cast<long long>(mesh.elements.cols());
-  pugi::xml_node on_points = piece.append_child("PointData"),
-                 on_cells = piece.append_child("CellData");
+  std::string points, cells, nodes, elements;
   for (const VtuArray& array : arrays)
-    add_array(array.on_points ? on_points : on_cells, array.name, array.values);
-  add_array(piece.append_child("Points"), "Points", mesh.X);
-  add_cells(piece.append_child("Cells"), mesh.elements);
-  std::ostringstream text;
-  document.save(text, "  ");
-  write_text(file, with_escaped_names(text.str()));
+    add_array(array.on_points ? points : cells, array.name, array.values);
+  add_array(nodes, "Points", mesh.X);
+  add_cells(elements, mesh.elements);
+  write_text(file,
+             fmt::format("<?xml version=\"1.0\"?>\n"
+                         "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+                         "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+                         "  <UnstructuredGrid>\n"
+                         "    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n"
+                         "      <PointData>\n{}      </PointData>\n"
+                         "      <CellData>\n{}      </CellData>\n"
+                         "      <Points>\n{}      </Points>\n"
+                         "      <Cells>\n{}      </Cells>\n"
+                         "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n",
+                         mesh.X.cols(), mesh.elements.cols(), points, cells, nodes, elements));
 }
 
 Eigen::MatrixXd read_vtu_array(const fs::path& file, const std::string& name, bool on_points) {
   const VtuFile vtu(file);
-  const pugi::xml_node from = vtu.piece().child(on_points ? "PointData" : "CellData");
-  const pugi::xml_node array = from.find_child_by_attribute("DataArray", "Name", name.c_str());
+  const XmlNode from = vtu.piece().child(on_points ? "PointData" : "CellData");
+  const XmlNode array = from.child("DataArray", "Name", name);
   if (!array) {
     std::string names;
-    for (const pugi::xml_node& one : from.children("DataArray"))
-      names += (names.empty() ? "" : ", ") + std::string(one.attribute("Name").value());
+    for (const XmlNode& one : from.children())
+      if (one.name() == "DataArray")
+        names += (names.empty() ? "" : ", ") + std::string(one.attribute("Name"));
     vtu.fault(fmt::format("has no array '{}'", name),
               names.empty() ? "a file with results" : "one of " + names);
   }
   const VtuNumbers numbers = vtu.numbers(array);
   const int64_t count = vtu.count(on_points ? "NumberOfPoints" : "NumberOfCells");
-  const auto components = static_cast<int64_t>(array.attribute("NumberOfComponents").as_llong(1));
+  int64_t components = 1;
+  const std::string_view told = array.attribute("NumberOfComponents");
+  std::from_chars(told.data(), told.data() + told.size(), components);
   if (numbers.whole || components < 1 || std::ssize(numbers.reals) % components != 0 ||
       std::ssize(numbers.reals) / components != count)
     vtu.fault(
