@@ -5,11 +5,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
+#include "capture_io/camera_text.h"
 #include "simulation/energy_term.h"
 
 namespace hookeye::detail {
@@ -28,16 +27,6 @@ Vector3d rounded(const Vector3d& v) {
 }
 
 std::string list(const Vector3d& v) { return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z()); }
-/// A name as yaml takes it: plain where it is one word of letters that no yaml reader takes for
-/// something else, else as a JSON string.
-std::string quoted(const std::string& text) {
-  const bool plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) || c == '_' || c == '/' || c == '.' || c == '-';
-  });
-  const bool word = text.size() > 3 && std::isalpha(static_cast<unsigned char>(text[0]));
-  const bool taken = text == "true" || text == "True" || text == "null" || text == "false";
-  return plain && word && !taken ? text : nlohmann::json(text).dump();
-}
 
 std::string law_text(const MaterialSpec& material) {
   std::string out = "{law: " + material.law;
@@ -52,17 +41,6 @@ double shear_modulus(const MaterialSpec& material) {
   return make_law(material)->dP_dF(Eigen::Matrix3d::Identity())(3, 3);
 }
 
-std::string camera_text(const Camera& camera) {
-  std::string rows;
-  for (int i = 0; i < 3; ++i) rows += (i ? ", " : "") + list(camera.R.row(i).transpose());
-  return fmt::format(
-      "  {}:\n    size: [{}, {}]\n    projection: {}\n"
-      "    intrinsics: {}\n"
-      "    pose:\n      rotation: [{}]\n      translation: {}\n",
-      camera.name, camera.width, camera.height, camera.model->name(),
-      intrinsics_text(camera, [](double x) { return fmt::format("{}", x); }), rows, list(camera.t));
-}
-
 std::string region_text(const RegionSpec& region, bool own) {
   const auto told = [own](const Vector3d& v) {
     return list(own ? v : Vector3d(rounded(v.x()), rounded(v.y()), rounded(v.z())));
@@ -74,13 +52,13 @@ std::string region_text(const RegionSpec& region, bool own) {
   if (const auto* half = std::get_if<RegionSpec::Halfspace>(&region.shape))
     return fmt::format("halfspace: {{point: {}, normal: {}}}", told(half->point),
                        told(half->normal));
-  return "faces: " + quoted(faces_file(region));
+  return "faces: " + yaml_name(faces_file(region));
 }
 
 std::string regions_text(const Recipe& recipe, const SynthBody& body) {
   std::string out = "regions:\n";
   for (const RegionSpec& region : body.regions)
-    fmt::format_to(std::back_inserter(out), "  {}: {{{}}}\n", quoted(region.name),
+    fmt::format_to(std::back_inserter(out), "  {}: {{{}}}\n", yaml_name(region.name),
                    region_text(region, recipe.shape.own()));
   return out;
 }
@@ -91,7 +69,7 @@ void write_supports(const ExampleRecipe& example, const SynthScale& scale, const
   fmt::format_to(to, "    supports:\n    - {{region: base, fix: [x, y, z]}}\n");
   if (!example.moves()) return;
   const Vector3d move = rounded(scale.length * example.move.value_or(Vector3d::Zero()));
-  fmt::format_to(to, "    - region: {}\n      rigid: {{move: {}", quoted(example.region),
+  fmt::format_to(to, "    - region: {}\n      rigid: {{move: {}", yaml_name(example.region),
                  list(move));
   if (example.rotate_degrees != 0.0)
     fmt::format_to(to, ", rotate: {{axis: {}, degrees: {}, center: {}}}",
@@ -102,7 +80,7 @@ void write_supports(const ExampleRecipe& example, const SynthScale& scale, const
 void write_measured(const ExampleRecipe& example, const Vector3d& centre, const GripForce& measured,
                     double sigma, double moment_sigma, std::string& out) {
   if (!example.moves()) return;
-  const std::string region = quoted(example.region);
+  const std::string region = yaml_name(example.region);
   fmt::format_to(std::back_inserter(out),
                  "    measured:\n    - {{force_on: {}, value: {}, sigma: {}}}\n"
                  "    - {{moment_on: {}, about: {}, value: {}, sigma: {}}}\n",
@@ -120,11 +98,11 @@ std::string examples_text(const Recipe& recipe, const SynthBody& body, const Cap
     const auto patch = body.patches.find(example.region);
     const Vector3d centre =
         patch == body.patches.end() ? Vector3d(Vector3d::Zero()) : patch->second.centre;
-    fmt::format_to(to, "  {}:\n", quoted(example.name));
+    fmt::format_to(to, "  {}:\n", yaml_name(example.name));
     if (example.validate) out += example.test ? "    use: test\n" : "    use: validate\n";
     write_supports(example, scale, centre, out);
     if (example.force)
-      fmt::format_to(to, "    loads:\n    - {{region: {}, force: {}}}\n", quoted(example.region),
+      fmt::format_to(to, "    loads:\n    - {{region: {}, force: {}}}\n", yaml_name(example.region),
                      list(rounded(scale.force * *example.force)));
     if (example.moves())
       write_measured(
@@ -134,7 +112,7 @@ std::string examples_text(const Recipe& recipe, const SynthBody& body, const Cap
     if (!options.photos) continue;
     out += "    photos:\n";
     for (const Camera& camera : cameras) {
-      const std::string file = quoted(photo_name(recipe, example.name, camera.name));
+      const std::string file = yaml_name(photo_name(recipe, example.name, camera.name));
       fmt::format_to(
           to, "      {}: {}\n", camera.name,
           recipe.photos.silhouette ? fmt::format("{{file: {}, kind: silhouette}}", file) : file);
@@ -229,7 +207,7 @@ std::string capture_text(const Recipe& recipe, const SynthBody& body, const Capt
   std::string out;
   auto to = std::back_inserter(out);
   fmt::format_to(to, "hookeye: 1\ntitle: {}\nunits: {{length: {}, force: {}}}\n",
-                 quoted(recipe.title), recipe.units.length, recipe.units.force);
+                 yaml_name(recipe.title), recipe.units.length, recipe.units.force);
   fmt::format_to(to, "body:\n  surface: surface.obj\n  mesh: {{edge: {}, order: {}}}\n",
                  recipe.edge, recipe.order);
   if (recipe.density > 0.0) fmt::format_to(to, "  density: {}\n", recipe.density);

@@ -1,0 +1,194 @@
+// hookeye import: cameras that another program calibrated, as a capture takes them.
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+
+#include "app/commands/commands.h"
+#include "app/validators.h"
+#include "capture_io/run.h"
+#include "capture_io/scope.h"
+#include "importers/importer.h"
+
+namespace hookeye {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+const std::string kMark = "# hookeye import ";
+
+struct ImportCommand {
+  std::vector<std::string> words;  ///< [KIND] SOURCE...
+  std::string folder, size, lens;
+  ImportOptions options;
+};
+
+/// "1280x1024".
+CLI::Validator picture_size() {
+  return CLI::Validator(
+      [](std::string& text) {
+        int sides[2] = {0, 0};
+        const char* at = text.data();
+        const char* const end = at + text.size();
+        for (int i = 0; i < 2; ++i) {
+          const auto [stop, error] = std::from_chars(at, end, sides[i]);
+          const bool ends = i == 0 ? stop != end && *stop == 'x' : stop == end;
+          if (error != std::errc() || !ends || sides[i] < 1 || sides[i] > 100000)
+            return "a size like 1280x1024 is expected, not " + text;
+          at = stop + (i == 0);
+        }
+        return std::string();
+      },
+      "WIDTHxHEIGHT");
+}
+
+/// The sources, and the importer that is named before them or recognises them.
+std::pair<const Importer*, Importer::Sources> chosen_importer(const ImportCommand& options) {
+  Importer::Sources sources(options.words.begin(), options.words.end());
+  std::error_code error;
+  const std::string& first = options.words.front();
+  const Importer* named = find_importer(first);
+  if (!named && sources.size() > 1 && !fs::exists(sources.front(), error)) {
+    std::vector<std::string> kinds;
+    for (const Importer* importer : importers()) kinds.push_back(importer->name());
+    const std::string near = nearest_name(first, kinds);
+    throw InputError({first}, "this is neither a kind of source nor a file",
+                     near.empty() ? fmt::format("one of {}", fmt::join(kinds, ", "))
+                                  : fmt::format("did you mean `{}`?", near));
+  }
+  if (!named) return {&recognise(sources), sources};
+  sources.erase(sources.begin());
+  if (sources.empty())
+    throw InputError({first}, "there is no source behind the kind",
+                     fmt::format("hookeye import {} SOURCE -o FOLDER", first));
+  for (const fs::path& source : sources)
+    if (!fs::exists(source, error))
+      throw InputError({source.string()}, "there is no such file or folder",
+                       "name what the other program wrote");
+  return {named, sources};
+}
+
+/// A file of cameras that somebody wrote by hand stays.
+void refuse_to_overwrite(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error) || read_text(file).starts_with(kMark)) return;
+  throw InputError({file.string()}, "there is another file of this name",
+                   "another folder behind -o, or move the file away");
+}
+
+/// A line of a file, whatever names stand in it.
+std::string comment(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, '?');
+  return text + "\n";
+}
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // no -0
+}
+
+void describe(const Imported& imported, const std::vector<Reprojection>& seen, Json& document) {
+  document["cameras"] = Json::array();
+  for (size_t i = 0; i < imported.cameras.size(); ++i) {
+    const Camera& camera = imported.cameras[i];
+    const Eigen::Vector3d centre = camera.centre(), axis = camera.R.row(2).transpose();
+    Json one = {{"name", camera.name},
+                {"projection", camera.model->name()},
+                {"size", {camera.width, camera.height}},
+                {"fx", camera.fx},
+                {"fy", camera.fy},
+                {"centre", {centre.x(), centre.y(), centre.z()}},
+                {"looks_along", {axis.x(), axis.y(), axis.z()}},
+                {"points", seen[i].points},
+                {"rms_px", seen[i].points ? Json(seen[i].rms_px) : Json(nullptr)}};
+    document["cameras"].push_back(std::move(one));
+  }
+  document["said"] = imported.said;
+}
+
+std::string cameras_table(const Imported& imported, const std::vector<Reprojection>& seen) {
+  const bool points = !imported.seen.empty();
+  std::vector<std::vector<std::string>> rows{
+      {"camera", "projection", "size", "focal px", "stands at", "looks along"}};
+  if (points) rows[0].insert(rows[0].end(), {"points", "rms px"});
+  for (size_t i = 0; i < imported.cameras.size(); ++i) {
+    const Camera& camera = imported.cameras[i];
+    rows.push_back({camera.name, camera.model->name(),
+                    fmt::format("{} x {}", camera.width, camera.height),
+                    fmt::format("{:.1f}", camera.fx), vector_text(camera.centre()),
+                    vector_text(camera.R.row(2).transpose())});
+    if (!points) continue;
+    rows.back().push_back(std::to_string(seen[i].points));
+    rows.back().push_back(seen[i].points ? fmt::format("{:.3f}", seen[i].rms_px) : "-");
+  }
+  return table(rows);
+}
+
+void run_import(const ImportCommand& options, Session& session) {
+  const auto [importer, sources] = chosen_importer(options);
+  const Scope scope("source " + sources.front().string());
+  const fs::path file = fs::path(options.folder) / "cameras.yaml";
+  refuse_to_overwrite(file);
+  const Imported imported = import_cameras(*importer, sources, options.options);
+  const std::vector<Reprojection> seen = reproject(imported);
+  std::string told;
+  for (const fs::path& source : sources) told += " " + source.filename().string();
+  session.document = {{"hookeye", 1},
+                      {"command", "import"},
+                      {"kind", importer->name()},
+                      {"sources", options.words},
+                      {"file", file.string()},
+                      {"world", imported.world}};
+  describe(imported, seen, session.document);
+  std::error_code error;
+  fs::create_directories(options.folder, error);
+  if (error) throw cannot_write(options.folder, error.message());
+  write_text(file, cameras_yaml(imported, comment(kMark + importer->name() + told) +
+                                              comment("# the world is " + imported.world)));
+  session.say("{}: {}\n{}", sources.front().string(), importer->title(),
+              cameras_table(imported, seen));
+  session.say("{}", wrapped("the world is " + imported.world, 2));
+  for (const std::string& said : imported.said) session.say("{}", wrapped(said, 2));
+  session.say("written to {}; a capture takes it by `cameras: {{from: cameras.yaml}}`\n",
+              file.string());
+}
+
+}  // namespace
+
+void add_import(CLI::App& app, CommandBody& chosen) {
+  CLI::App* command =
+      app.add_subcommand("import", "Cameras that another program calibrated, for a capture");
+  const auto options = std::make_shared<ImportCommand>();
+  std::string kinds = "\nKinds of sources:\n";
+  for (const Importer* importer : importers())
+    kinds += fmt::format("  {:<12} {}\n", importer->name(), importer->title());
+  command->footer(kinds);
+  command
+      ->add_option("SOURCE", options->words,
+                   "What the other program wrote; before it, if not recognised, its kind")
+      ->required();
+  command->add_option("-o,--out", options->folder, "Folder for cameras.yaml")->required();
+  command->add_option("--size", options->size, "Size of the photos, where the source lacks it")
+      ->check(picture_size());
+  command
+      ->add_option("--scale", options->options.scale,
+                   "Length units of the capture in one of the source (metres to mm: 1000)")
+      ->check(above_zero());
+  command
+      ->add_option("--lens", options->lens,
+                   "opencv: read lenses of unpublished formula as OpenCV's k1 k2 k3 p1 p2")
+      ->check(CLI::IsMember({"opencv"}));
+  command->callback([&chosen, options] {
+    options->options.lens_as_opencv = options->lens == "opencv";
+    if (!options->size.empty())
+      std::sscanf(options->size.c_str(), "%dx%d", &options->options.width,
+                  &options->options.height);
+    chosen = [options](Session& session) { run_import(*options, session); };
+  });
+}
+
+}  // namespace hookeye
