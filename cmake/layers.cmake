@@ -10,7 +10,7 @@ function(hookeye_flags target)
 endfunction()
 
 # What headers cost (CLI11, nlohmann, Eigen) is paid once for eight sources. Not for kernels: GCC
-# inlines less where a unit grows.
+# inlines less where a unit grows. HOOKEYE_UNITY_KERNELS: there too, where nobody asks for speed.
 function(hookeye_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${HOOKEYE_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   if(HOOKEYE_UNITY)  # GCC takes a source that another includes for a header
@@ -28,7 +28,7 @@ function(hookeye_layer name)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
   target_link_libraries(${name} PUBLIC Eigen3::Eigen fmt::fmt ${L_LINK} PRIVATE ${L_PRIVATE})
   hookeye_flags(${name})
-  if(L_UNITY)
+  if(L_UNITY OR HOOKEYE_UNITY_KERNELS)
     hookeye_unity(${name})
   endif()
   if(HOOKEYE_PCH AND L_PCH_OF AND NOT L_PCH_OF STREQUAL name)
@@ -58,7 +58,8 @@ endfunction()
 
 # hookeye_test_entries(TARGET PREFIX FILE...): ctest's PREFIX.NAME runs the tests of NAME_test.cpp in
 # one process. Those that tests/costs.txt tells begin first, the longest ahead. Those of a folder
-# long/ have the label `long`: ./check leaves them out, ./check --long does not.
+# long/ have the label `long`: ./check leaves them out, ./check --long does not. Those of
+# tests/sanitized.txt have the label `sanitized`.
 function(hookeye_test_entries target prefix)
   target_link_libraries(${target} PRIVATE test_main)
   foreach(source IN LISTS ARGN)
@@ -76,6 +77,9 @@ function(hookeye_test_entries target prefix)
     set_tests_properties(${entry} PROPERTIES TIMEOUT 1800)
     if(source MATCHES "/long/")
       set_tests_properties(${entry} PROPERTIES LABELS long)
+    elseif(entry IN_LIST sanitized)
+      set_tests_properties(${entry} PROPERTIES LABELS sanitized)
+      add_dependencies(sanitized ${target})
     endif()
     if(DEFINED cost_of_${entry})
       set_tests_properties(${entry} PROPERTIES COST ${cost_of_${entry}})
