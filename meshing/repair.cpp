@@ -255,17 +255,29 @@ void refuse_unless_most_is_left(const SurfaceMesh& before, const SurfaceMesh& no
       "the surface of a body, or a larger --tolerance where its triangles do not meet");
 }
 
-/// How far the surfaces leave each other, at their corners.
+/// How far the surfaces leave each other: corners of both, and the middles of the old edges. A hole
+/// that is remeshed with fewer corners keeps those on the old surface, and cuts across between
+/// them. What closes a gap was nowhere before: the middles of the new edges are not asked for.
 double moved(const SurfaceMesh& before, const SurfaceMesh& now) {
+  if (before.X == now.X && before.triangles == now.triangles) return 0.0;
   double farthest = 0.0;
-  const auto measure = [&](const SurfaceMesh& from, const SurfaceMesh& to) {
+  const auto measure = [&](const SurfaceMesh& from, const SurfaceMesh& to, bool middles) {
     const detail::TriangleTree tree(to.X, to.triangles);
+    const auto ask = [&](const Vector3d& x) {
+      farthest = std::max(farthest, tree.nearest(x).distance);
+    };
     std::set<int> used;
     for (const Triangle& t : from.triangles) used.insert(t.begin(), t.end());
-    for (const int v : used) farthest = std::max(farthest, tree.nearest(from.X.col(v)).distance);
+    for (const int v : used) ask(from.X.col(v));
+    if (!middles) return;
+    for (const Triangle& t : from.triangles)
+      for (size_t k = 0; k < 3; ++k) {
+        const int a = t[k], b = t[(k + 1) % 3];
+        if (a < b) ask(0.5 * (from.X.col(a) + from.X.col(b)));  // the neighbour has it as (b, a)
+      }
   };
-  measure(before, now);
-  measure(now, before);
+  measure(before, now, true);
+  measure(now, before, false);
   return farthest;
 }
 

@@ -205,6 +205,16 @@ TEST_F(Repaired, RemeshedEdgesComeOutAsAskedAndSharpOnesStay) {
   EXPECT_THAT(r.said, ElementsAre(HasSubstr("remeshed to an edge of 4: ")));
 }
 
+TEST_F(Repaired, WhatARemeshTookFromAHoleIsTold) {
+  // A bore of radius 4 through a plate: of its 24 corners as many are left as the edge lets.
+  const SurfaceMesh plate = test::bored_plate(20.0, 4.0, 10.0, 3);
+  const double volume = detail::six_volume(plate) / 6.0;
+  const RepairedSurface r = repair(plate, {.edge = 6.0}, kPlace);
+  EXPECT_GT(detail::six_volume(r.surface) / 6.0, 1.005 * volume) << "nothing was cut across";
+  EXPECT_GT(r.moved, 0.3);  // 4 (1 - cos(pi / n)) of n corners
+  EXPECT_LT(r.moved, 4.0);
+}
+
 TEST_F(Repaired, NothingIsNotABody) {
   EXPECT_THAT(refusal([&] { repair({}, {}, kPlace); }), HasSubstr("no triangles"));
   SurfaceMesh flake;

@@ -85,6 +85,34 @@ inline SurfaceMesh extruded(const std::vector<Vector2d>& polygon,
   return s;
 }
 
+/// A square plate of side `side` from z = 0 up, and a bore of 8 n corners through its middle.
+inline SurfaceMesh bored_plate(double side, double radius, double height, int n) {
+  const int m = 8 * n;
+  SurfaceMesh s;
+  s.X.resize(3, 4 * m);
+  for (int i = 0; i < m; ++i) {
+    const double angle = 2.0 * 3.14159265358979 * i / m;
+    const Vector2d way(std::cos(angle), std::sin(angle));
+    const Vector2d bore = radius * way, rim = 0.5 * side / way.cwiseAbs().maxCoeff() * way;
+    s.X.col(i) << bore, 0.0;
+    s.X.col(m + i) << rim, 0.0;
+    s.X.col(2 * m + i) << bore, height;
+    s.X.col(3 * m + i) << rim, height;
+  }
+  const auto square = [&](int a, int b, int c, int d) {
+    s.triangles.push_back({a, b, c});
+    s.triangles.push_back({a, c, d});
+  };
+  for (int i = 0; i < m; ++i) {
+    const int j = (i + 1) % m;
+    square(i, j, m + j, m + i);                          // below
+    square(2 * m + i, 3 * m + i, 3 * m + j, 2 * m + j);  // above
+    square(m + i, m + j, 3 * m + j, 3 * m + i);          // outside
+    square(i, 2 * m + i, 2 * m + j, j);                  // bore
+  }
+  return s;
+}
+
 inline double area_of(const SurfaceMesh& s) {
   double sum = 0;
   for (const auto& t : s.triangles) {
