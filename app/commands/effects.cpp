@@ -107,6 +107,12 @@ std::string names_of(const Effect& effect, const DeclaredForm& form) {
 
 std::string bound(double x) { return std::isfinite(x) ? fmt::format("{:.3g}", x) : "none"; }
 
+/// The null, without what rounding left of a place in the middle.
+std::string null_of(const Parameter& p) {
+  constexpr double kRounding = 1e-12;
+  return bound(std::abs(p.value) < kRounding * p.typical ? 0.0 : p.value);
+}
+
 /// Forms and how they read in a capture's model; those of a diagnosis or of a refit.
 std::string forms_table(const Declaration& declared, bool refit) {
   std::vector<std::vector<std::string>> rows{
@@ -142,7 +148,7 @@ std::string parameters_table(const Declaration& declared) {
       }
       const std::string to =
           last > first ? " .. " + short_name(*declared.effect, form.parameters[last].name) : "";
-      rows.push_back({p.name + to, p.unit.empty() ? "-" : p.unit, bound(p.value), bound(p.low),
+      rows.push_back({p.name + to, p.unit.empty() ? "-" : p.unit, null_of(p), bound(p.low),
                       bound(p.high), bound(p.typical), p.long_name});
     }
   return "\n" + table(rows) + (more ? fmt::format("  and {} more (--json)\n", more) : "");

@@ -52,6 +52,8 @@ TEST_F(Cli, EffectsOfOneNameTellWhatARefitMayGoOnTo) {
   const std::string field = hookeye("effects stiffness_field").out;
   for (const char* told : {"free blob", "stiffness_field.radius", "a1 .. a16"})
     EXPECT_THAT(field, HasSubstr(told));
+  EXPECT_THAT(field, testing::Not(testing::ContainsRegex("e-1[5-9]")))
+      << "rounding stands as a null";
   const Result wrong = hookeye("effects gravty");
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("did you mean 'gravity'"));
