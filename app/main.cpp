@@ -158,6 +158,13 @@ int report_usage(const CLI::App& app, Session& session, const CLI::ParseError& e
                 {{"file", ""}, {"line", 0}, {"column", 0}});
 }
 
+void add_common_options(CLI::App& command, Session& session) {
+  command.add_flag("--json", session.json, "One JSON document on standard output");
+  command.add_option("--threads", session.threads, "Cores to use (default: all)")
+      ->check(counting_number());
+  command.add_flag("-v,--verbose", session.verbose, "More about what is going on");
+}
+
 int run_program(int argc, char** argv) {
   Session session;
   CommandBody chosen;
@@ -171,12 +178,8 @@ int run_program(int argc, char** argv) {
       "\nExit status: 0 done, 1 internal error, 2 bad input, 3 the numbers failed,\n"
       "130 stopped by Ctrl-C (all that is finished is kept).");
   for (const AddCommand add : kCommands) add(app, chosen);
-  for (CLI::App* command : app.get_subcommands({})) {
-    command->add_flag("--json", session.json, "One JSON document on standard output");
-    command->add_option("--threads", session.threads, "Cores to use (default: all)")
-        ->check(counting_number());
-    command->add_flag("-v,--verbose", session.verbose, "More about what is going on");
-  }
+  add_common_options(app, session);  // people write them before the command, too
+  for (CLI::App* command : app.get_subcommands({})) add_common_options(*command, session);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {

@@ -56,6 +56,13 @@ TEST_F(Cli, UsageErrorsAreBadInput) {
   EXPECT_EQ(json::parse(asked.out).at("exit"), 2);
 }
 
+TEST_F(Cli, CommonOptionsMayStandBeforeTheCommand) {
+  const Result before = hookeye("--json --threads 1 effects"), behind = hookeye("effects --json");
+  EXPECT_EQ(before.status, 0) << before.err;
+  EXPECT_EQ(before.out, behind.out);
+  EXPECT_THAT(hookeye("--threads 0 effects").err, HasSubstr("a whole number from 1 is expected"));
+}
+
 TEST_F(Cli, NumbersOutOfRangeAreToldInWords) {
   for (const std::string number : {"0", "-3", "two", "1.5", "99999999999"}) {
     const Result result = hookeye("check . --threads " + number);
