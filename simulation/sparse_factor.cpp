@@ -242,7 +242,7 @@ bool TangentFactor::factorize_indefinite(const SparseMatrix& K) {
 
 namespace {
 /// Right-hand sides per block: enough for BLAS 3, few enough to stay in cache.
-constexpr Eigen::Index kBlock = 32;
+constexpr Eigen::Index kColumnsAtOnce = 32;
 
 void solve_block(const double* b, double* x, Eigen::Index n, Eigen::Index m, cholmod_factor* L,
                  cholmod_dense** X, cholmod_dense** Y, cholmod_dense** E, cholmod_common* c) {
@@ -263,8 +263,8 @@ void TangentFactor::solve(const MatrixXd& B, MatrixXd& X) const {
   if (B.rows() == 0) return;
   const SerialOpenMp serial;
   Impl& w = *impl_;
-  for (Eigen::Index j = 0; j < B.cols(); j += kBlock) {
-    const Eigen::Index m = std::min(kBlock, B.cols() - j);
+  for (Eigen::Index j = 0; j < B.cols(); j += kColumnsAtOnce) {
+    const Eigen::Index m = std::min(kColumnsAtOnce, B.cols() - j);
     solve_block(B.col(j).data(), X.col(j).data(), B.rows(), m, w.factor, &w.X, &w.Y, &w.E,
                 &w.common.c);
   }
