@@ -194,7 +194,7 @@ InputError no_memory(const HelperRequest& request) {
         "the helper {} cannot be loaded: install the libraries that it needs", request.name));
   const int signal = ended && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGINT || signal == SIGTERM) throw Interrupted();
-  if (signal == SIGKILL) throw HelperDied(no_memory(request), true, seconds);  // by the kernel
+  if (signal == SIGKILL) throw HelperDied(no_memory(request), false, seconds);  // by the kernel
   if (!ended || signal == SIGXCPU)
     throw HelperDied(
         {request.place, fmt::format("reading {} takes too long", size_of(request.place.file)),
@@ -260,7 +260,7 @@ std::string detail::ask_helper(const HelperRequest& request) {
       case Answer::input_error:
         rethrow(in);
       case Answer::no_memory:
-        throw no_memory(request);
+        throw HelperDied(no_memory(request), false, 0.0);
       case Answer::failed:
         throw std::runtime_error(in.take<std::string>());
     }

@@ -25,13 +25,14 @@ inline constexpr HelperLimits unlimited{1e15, 1e6};
 /// Thrown where a helper crashed, answered nonsense or went beyond its limits.
 class HelperDied : public InputError {
  public:
-  HelperDied(const InputError& told, bool in_time, double seconds)
-      : InputError(told), in_time_(in_time), seconds_(seconds) {}
-  bool in_time() const { return in_time_; }    ///< false: by its limit of computing
+  HelperDied(const InputError& told, bool within_limits, double seconds)
+      : InputError(told), within_limits_(within_limits), seconds_(seconds) {}
+  /// False: by its limit of computing, or since memory was out. More of the same does no better.
+  bool within_limits() const { return within_limits_; }
   double seconds() const { return seconds_; }  ///< of computing, in its whole life
 
  private:
-  bool in_time_;
+  bool within_limits_;
   double seconds_;
 };
 

@@ -158,7 +158,7 @@ TetGenAnswer tetrahedra(const SurfaceMesh& skin, const TetGenTask& task) {
       return well;
     });
   } catch (const HelperDied& died) {
-    answer.in_time = died.in_time();
+    answer.in_time = died.within_limits();
     answer.seconds = died.seconds();
   }
   if (!well) return answer;

@@ -59,7 +59,7 @@ struct TetGenTask {
 struct TetGenAnswer {
   std::optional<TetMesh> mesh;  ///< none where TetGen gives up
   double seconds = 0.0;         ///< of computing that it took
-  bool in_time = true;          ///< false: it was ended
+  bool in_time = true;          ///< false: it was ended, for its time or its memory
 };
 /// Tetrahedra of order 1 within a closed surface, boundary_parent being its triangles
 /// (ask_tetgen.cpp). Throws Interrupted where Ctrl-C ended TetGen.

@@ -112,10 +112,12 @@ TEST_F(Helpers, WhoAsksMayLearnHowOneDied) {
     throw std::runtime_error(task + " did not die");
   };
   const HelperDied aborted = death_of("abort"), spun = death_of("spin");
-  EXPECT_TRUE(aborted.in_time());
+  EXPECT_TRUE(aborted.within_limits());
   EXPECT_LT(aborted.seconds(), 0.9);
-  EXPECT_FALSE(spun.in_time());
+  EXPECT_FALSE(spun.within_limits());
   EXPECT_NEAR(spun.seconds(), 1.5, 0.6) << "limits are whole seconds";
+  EXPECT_FALSE(death_of("kill").within_limits());
+  EXPECT_FALSE(death_of("eat").within_limits());
 }
 
 TEST_F(Helpers, CtrlCEndsTheOneThatAsksForItAndNoOther) {

@@ -9,19 +9,14 @@
 #include "estimation/effects/catalogue.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/swaps.h"
-#include "tests/estimation/small_capture.h"
+#include "tests/search/hiding.h"
 
 namespace hookeye {
 namespace {
 
+using test::hiding;
+using test::kPressAndTwist;
 using testing::ElementsAre;
-
-/// `hidden` and the loads `more` after a pull and a bend.
-test::SmallCapture hiding(const std::string& hidden, const char* more) {
-  return {.hidden = "hidden:\n  - " + hidden + "\n", .loads = more};
-}
-
-const char* const kPressAndTwist = "  press: {move: [0, 0, -0.06]}\n  twist: {rotate: 20}\n";
 
 /// The base model with a field of stiffness and these effects, each in its variant.
 ModelForm with_field_and(const test::SmallScene& small,

@@ -3,19 +3,15 @@
 
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/discover.h"
-#include "tests/estimation/small_capture.h"
+#include "tests/search/hiding.h"
 
 namespace hookeye {
 namespace {
 
+using test::hiding;
+using test::kPressAndTwist;
 using testing::ElementsAre;
 
-/// `hidden` and the loads `more` after a pull and a bend.
-test::SmallCapture hiding(const std::string& hidden, const char* more) {
-  return {.hidden = "hidden:\n  - " + hidden + "\n", .loads = more};
-}
-
-const char* const kPressAndTwist = "  press: {move: [0, 0, -0.06]}\n  twist: {rotate: 20}\n";
 const char* const kMoreForces =
     "  lift: {force: [0, 0, 0.2]}\n  bend: {force: [-0.01, 0.004, 0.1]}\n  twist: {rotate: 20}\n";
 
