@@ -24,7 +24,9 @@ function(hookeye_layer name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${L_FROM}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/helpers/")
   add_library(${name} STATIC ${sources})
-  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
+  # The Python module is linked from the same objects.
+  set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ON
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(${name} PUBLIC ${CMAKE_SOURCE_DIR})
   target_link_libraries(${name} PUBLIC Eigen3::Eigen fmt::fmt ${L_LINK} PRIVATE ${L_PRIVATE})
   hookeye_flags(${name})
