@@ -151,7 +151,7 @@ void one_view(benchmark::State& s) {
   Rendering r;
   for (auto _ : s) {
     const Matrix3Xd x = b.surface.X.array() + (shift += 1e-3);  // new positions: a refit
-    benchmark::DoNotOptimize(share_of_view(x, options, true, S, &r).r2);
+    benchmark::DoNotOptimize(share_of_view(x, options, true, S, &r).count);
     s.counters["active_px"] = double(r.dI.pixels());
   }
 }

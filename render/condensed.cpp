@@ -26,7 +26,6 @@ struct NodeNormalEquations::Impl {
   VertexSums sums;
   Eigen::Matrix<double, kPhotoFloats, kPhotoFloats> photo;
   Eigen::Matrix<double, kPhotoFloats, 1> b_photo;
-  double r2 = 0;
   size_t count = 0;
 
   int number(int vertex);
@@ -193,13 +192,12 @@ class RunOfPixels {
 }  // namespace
 
 NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
-                                                    const ImageDerivative& dI, const VectorXd& r,
+                                                    const ImageDerivative& dI, const VectorXd& wr,
                                                     const VectorXd& w, const VectorXd& Bt_r,
                                                     CondensedColumns columns, SumsBehind behind) {
   NodeNormalEquations out;
   Impl& m = *out.impl_;
   m.columns = columns;
-  m.r2 = r.squaredNorm();
   m.count = static_cast<size_t>((w.array() != 0).count());
   m.photo.setZero(), m.b_photo.setZero();
   RunOfPixels run(surface, &m);
@@ -208,7 +206,7 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   for (const Part& part : dI.parts) {
     for (size_t i = 0; i < part.pixel.size(); ++i, ++at) {
       run.add(part, i, static_cast<float>(w[at]), static_cast<float>(Bt_r[at]));
-      if (columns.photo) by_blur += double(part.photo[i][kBlur]) * w[at] * r[at];
+      if (columns.photo) by_blur += double(part.photo[i][kBlur]) * wr[at];
     }
     run.flush();  // a run's pixels follow each other in one part
   }
@@ -242,7 +240,7 @@ std::vector<int> moving_columns(const VertexSensitivity& S, const NodeNormalEqua
 CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
   const Impl& m = *impl_;
   const Eigen::Index params = S.position.cols(), n = m.numbers();
-  CondensedPhoto out{MatrixXd::Zero(params, params), VectorXd::Zero(params), m.r2, m.count};
+  CondensedPhoto out{MatrixXd::Zero(params, params), VectorXd::Zero(params), 0.0, m.count};
   const std::vector<int> moving = moving_columns(S, m);
   const auto columns = static_cast<Eigen::Index>(moving.size());
   const Eigen::Index rows = n * static_cast<Eigen::Index>(m.seen.size());

@@ -35,19 +35,20 @@ struct SumsBehind {
 struct CondensedPhoto {
   Eigen::MatrixXd JtJ;  ///< m x m
   Eigen::VectorXd Jtr;  ///< m
-  double r2 = 0;        ///< sum of weighted squared residuals
+  double r2 = 0;        ///< sum of weighted squared residuals: the caller's
   size_t count = 0;     ///< pixels that count
 };
 
-/// The photo's sums by vertices, before parameters are known. Weighted: residual r_i (already over
-/// noise and times sqrt of the robust weight), w_i the factor dr_i/dI_i.
+/// The photo's sums by vertices, before parameters are known: of residuals r_i (over noise and
+/// times the root of the robust weight) that depend on the picture by w_i = dr_i/dI_i.
 class NodeNormalEquations {
  public:
-  /// `r` and `w` per active pixel of `dI` (as for_each_pixel counts them). `Bt_r`: per active
-  /// pixel, B^T(w r): the blurred adjoint (equal to w*r where there is no blur). `second`:
-  /// VertexSensitivity has it. `columns.photo` needs RenderOptions::photo_derivative.
+  /// Per active pixel of `dI` (as for_each_pixel counts them): `wr`, the derivative of the sum of
+  /// r^2/2 by the picture there (w r, where no other pixel's residual depends on it); `w`; and
+  /// `Bt_r`, B^T(wr): blurred (wr where there is no blur). `columns.photo` needs
+  /// RenderOptions::photo_derivative.
   static NodeNormalEquations accumulate(const SurfaceMesh& surface, const ImageDerivative& dI,
-                                        const VectorXd& r, const VectorXd& w, const VectorXd& Bt_r,
+                                        const VectorXd& wr, const VectorXd& w, const VectorXd& Bt_r,
                                         CondensedColumns columns, SumsBehind behind = {});
   CondensedPhoto reduce(const VertexSensitivity& S) const;
   NodeNormalEquations();

@@ -2,10 +2,9 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 #include <optional>
 
-#include "estimation/images/registration.h"
+#include "estimation/evaluation/compared_pixels.h"
 
 namespace hookeye {
 
@@ -38,6 +37,7 @@ struct PhotoComparer::Impl {
   int example;
   Renderer renderer;
   std::vector<std::vector<std::vector<PhotoPlane>>> pyramids;  ///< [photo][plane][level]
+  std::vector<int> patches;  ///< smooth_patches(); empty: not asked for yet
   static constexpr int kLevels = 6;
 
   Impl(std::shared_ptr<const Scene> s, int e)
@@ -52,6 +52,18 @@ struct PhotoComparer::Impl {
         pyramids.push_back(std::move(planes));
       }
     return pyramids[photo][plane][std::min(level, kLevels - 1)];
+  }
+
+  /// The model's picture takes the photo's brightness where the texture brought its light along.
+  std::optional<Brightness> follow(const PhotoPlane& photo, const Texture& texture,
+                                   Rendering* rendering) {
+    const FitLimits& limits = scene->limits->fit;
+    if (texture.source != Texture::Source::photo || limits.brightness_cell == 0.0) return {};
+    const SurfaceMesh& surface = scene->body->surface.mesh;
+    if (patches.empty()) patches = smooth_patches(surface, limits.smooth_patch);
+    Brightness brightness(*rendering, photo.I, photo.valid, patches, limits.brightness_cell);
+    rendering->I = brightness.followed();
+    return brightness;
   }
 };
 
@@ -163,115 +175,6 @@ void add_reference_photo(const Camera& camera, const Matrix3Xd& x_reference,
   }
 }
 
-/// Where the photo shows something that is not the told background although the model has none
-/// there: such pixels count, else a body that left the model's silhouette would cost nothing.
-bool shows_body(const PhotoPlane& photo, size_t i, const PhotoState& state) {
-  return std::abs(photo.I.values[i] - state.behind(i)) > 6.0 * photo.sigma.values[i];
-}
-
-struct Comparison {
-  Image residual;  ///< NaN: does not count
-  double r2 = 0.0, count = 0.0;
-};
-
-/// Sum of Huber's losses; huber 0: of squares.
-double loss(const Image& residual, double huber) {
-  double sum = 0.0;
-  for (const float value : residual.values) {
-    if (std::isnan(value)) continue;
-    const double r = std::abs(value);
-    sum += huber > 0.0 && r > huber ? huber * (2.0 * r - huber) : r * r;
-  }
-  return sum;
-}
-
-/// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
-const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Image* larger) {
-  if (texture.source != Texture::Source::photo) return photo.sigma;
-  *larger = photo.sigma;
-  for (float& s : larger->values) s *= std::sqrt(2.0f);
-  return *larger;
-}
-
-Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
-                          bool silhouette, bool mask, const PhotoState& state) {
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  Comparison out;
-  out.residual = Image{photo.I.width, photo.I.height, 1, {}};
-  out.residual.values.resize(photo.I.pixels());
-  const auto telling = mask ? telling_pixels(rendering.I, photo.I) : std::vector<unsigned char>();
-  size_t count = 0;
-  for (size_t i = 0; i < photo.I.pixels(); ++i) {
-    const float coverage = rendering.coverage.values[i];
-    const bool counts = mask         ? telling[i] != 0
-                        : silhouette ? coverage > 0.0f || shows_body(photo, i, state)
-                                     : coverage > 1.0f - 1e-6f;
-    out.residual.values[i] = kNone;
-    if (!counts || (!photo.valid.empty() && !photo.valid[i])) continue;
-    const float r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
-    out.residual.values[i] = r;
-    out.r2 += double(r) * r;
-    ++count;
-  }
-  out.count = static_cast<double>(count);
-  return out;
-}
-
-/// Square root of Huber's weight by iteratively reweighted squares.
-double root_weight(double residual, double huber) {
-  return huber > 0.0 && std::abs(residual) > huber ? std::sqrt(huber / std::abs(residual)) : 1.0;
-}
-
-/// B^T(w r) of all pixels, 0 where nothing counts that blur reaches.
-Image adjoint(const Image& residuals, const Image& sigma, double blur_variance, double huber) {
-  Image out{sigma.width, sigma.height, 1, std::vector<float>(sigma.pixels(), 0.0f)};
-  for (size_t i = 0; i < out.values.size(); ++i) {
-    const double residual = residuals.values[i];
-    if (std::isnan(residual)) continue;
-    const double weight = root_weight(residual, huber);
-    out.values[i] = static_cast<float>(weight * weight * residual / sigma.values[i]);
-  }
-  return blur_variance > 0.0 ? blur(out, blur_variance) : out;
-}
-
-/// Of pixels that the derivative has no row of.
-SumsBehind sums_behind(const ImageDerivative& dI, const Image& residuals, const Image& sigma,
-                       const Image& Bt_r, double huber) {
-  std::vector<unsigned char> has_row(sigma.pixels(), 0);
-  dI.for_each_pixel([&](size_t, int pixel) { has_row[pixel] = 1; });
-  SumsBehind out;
-  for (size_t i = 0; i < has_row.size(); ++i) {
-    if (has_row[i]) continue;
-    out.Bt_r += Bt_r.values[i];
-    const double residual = residuals.values[i];
-    if (!std::isnan(residual))
-      out.ww += std::pow(root_weight(residual, huber) / sigma.values[i], 2);
-  }
-  return out;
-}
-
-/// Normal equations of the counted pixels.
-NodeNormalEquations condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
-                             const SurfaceMesh& surface, const PhotoState& state, double huber,
-                             CondensedColumns columns) {
-  const ImageDerivative& dI = rendering.dI;
-  const auto count = static_cast<Eigen::Index>(dI.pixels());
-  VectorXd r = VectorXd::Zero(count), w = r, Bt_r = r;
-  const Image all = adjoint(residuals, sigma, state.blur_variance, huber);
-  dI.for_each_pixel([&](size_t k, int pixel) {
-    Bt_r[k] = all.values[pixel];
-    const double residual = residuals.values[pixel];
-    if (std::isnan(residual)) return;
-    const double weight = root_weight(residual, huber);
-    r[k] = weight * residual;
-    w[k] = weight / sigma.values[pixel];
-  });
-  const bool level = columns.photo && !state.backdrop;
-  return NodeNormalEquations::accumulate(
-      surface, dI, r, w, Bt_r, columns,
-      level ? sums_behind(dI, residuals, sigma, all, huber) : SumsBehind{});
-}
-
 }  // namespace
 
 Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const VectorXd* q_reference,
@@ -341,14 +244,15 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       render_options.photo_derivative = columns != nullptr && !columns->dphoto[k].isZero(0.0);
       render_options.gloss_derivative = moves(kSpecular);
       render_options.blur_derivative = moves(kBlur);
-      render_options.centres = options.pictures;
+      render_options.centres = options.pictures || texture.source == Texture::Source::photo;
       // Where there is blur, masked pixels are seen in their neighbours.
       impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
                              render_options, silhouette,
                              state.blur_variance > 0.0 ? nullptr : &photo.valid, &rendering);
       const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
+      const std::optional<Brightness> brightness = impl_->follow(photo, texture, &rendering);
       const Comparison comparison =
-          compare_pixels(rendering, photo, sigma, silhouette, mask_photo, state);
+          compare_pixels(rendering, photo, sigma, {silhouette, mask_photo}, state);
       PhotoEvaluation one;
       one.example = e;
       one.photo = static_cast<int>(k);
@@ -375,8 +279,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
         }
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
         one.sums = condense(rendering, residual, sigma, surface.mesh, state, options.huber,
-                            {S.second.size() > 0, !S.photo.isZero(0.0)})
-                       .reduce(S);
+                            brightness ? &*brightness : nullptr, S);
       }
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);
       if (options.pictures) {

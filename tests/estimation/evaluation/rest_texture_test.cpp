@@ -42,8 +42,10 @@ class Speckle {
 };
 
 /// Photo whose pixel (x, y) shows what the rest photo has at from(x, y), with noise.
-void write_photo(const std::filesystem::path& file, unsigned seed,
-                 const std::function<Eigen::Vector2d(double, double)>& from) {
+void write_photo(
+    const std::filesystem::path& file, unsigned seed,
+    const std::function<Eigen::Vector2d(double, double)>& from,
+    const std::function<double(double, double)>& gain = [](double, double) { return 1.0; }) {
   static const Speckle speckle;
   std::mt19937 engine(seed);
   std::normal_distribution<float> noise(0.0f, kNoise);
@@ -51,7 +53,7 @@ void write_photo(const std::filesystem::path& file, unsigned seed,
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
       const Eigen::Vector2d at = from(x, y);
-      image.at(x, y) = static_cast<float>(speckle.at(at.x(), at.y())) + noise(engine);
+      image.at(x, y) = static_cast<float>(gain(x, y) * speckle.at(at.x(), at.y())) + noise(engine);
     }
   write_image(file, image);
 }
@@ -173,6 +175,58 @@ std::shared_ptr<const Scene> turned_scene(const test::TemporaryFolder& folder,
   return block_scene(
       folder, "{rotate: {axis: [1, 2, 6], degrees: 8, center: [0, 0, 0]}, move: [0.5, -0.4, 1]}",
       keys);
+}
+
+/// A lamp that the body turned in makes its face brighter, more so on one side: the model's picture
+/// follows, and what is left is noise.
+TEST(RestTexture, ShadingThatChangedIsFollowed) {
+  const test::TemporaryFolder folder;
+  write_photo(folder / "rest.tif", 1, [](double x, double y) { return Eigen::Vector2d(x, y); });
+  write_photo(
+      folder / "moved.tif", 2, [](double x, double y) { return Eigen::Vector2d(x - 2.0, y); },
+      [](double x, double) { return 0.8 + 0.002 * x; });
+  const auto scene = block_scene(folder, "{move: [0.5, 0, 0]}");
+  const Fitted fitted = seen(scene);
+  const PhotoEvaluation& photo = fitted.evaluation.find(1)->photos.at(0);
+  EXPECT_LT(photo.chi(), 1.15);
+  EXPECT_LT(photo.flow.rms_px(), 0.02);
+  auto limits = std::make_shared<Limits>();
+  set_limit(*limits, "fit.brightness_cell", 0.0, "test");
+  auto as_it_was = std::make_shared<Scene>(*scene);
+  as_it_was->limits = limits;
+  EXPECT_GT(seen(as_it_was).evaluation.find(1)->photos.at(0).chi(), 5.0);
+}
+
+/// The sums hold what the gains' own changes take away: J^T J of residuals' finite differences.
+TEST(RestTexture, SumsAreThoseOfTheResiduals) {
+  const test::TemporaryFolder folder;
+  const auto scene = turned_scene(folder, ", placement: fit");
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  VectorXd p(6);
+  p << 0.02, -0.03, 0.01, 0.13, -0.21, 0.4;
+  auto look = [&](const VectorXd& at, bool derivatives) {
+    EvaluationOptions options;
+    options.derivatives = derivatives;
+    options.residuals = true;
+    auto result = workspace.evaluate(form, at, options);
+    return std::get<Evaluation>(std::move(result)).examples.at(1).photos.at(0);
+  };
+  const PhotoEvaluation base = look(p, true);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(base.residual.values.size(), 6);
+  const double step[] = {1e-4, 1e-4, 1e-4, 2e-3, 2e-3, 2e-2};
+  for (int j = 0; j < 6; ++j) {
+    const Image plus = look(p + step[j] * VectorXd::Unit(6, j), false).residual;
+    const Image minus = look(p - step[j] * VectorXd::Unit(6, j), false).residual;
+    for (size_t i = 0; i < plus.values.size(); ++i)
+      if (!std::isnan(plus.values[i]) && !std::isnan(minus.values[i]))
+        J(i, j) = (double(plus.values[i]) - minus.values[i]) / (2.0 * step[j]);
+  }
+  const Eigen::MatrixXd JtJ = J.transpose() * J;
+  const VectorXd unit = JtJ.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd off = unit.asDiagonal() * (base.sums.JtJ - JtJ) * unit.asDiagonal();
+  for (int i = 0; i < 5; ++i)  // the last, along the view, moves an orthographic picture little
+    for (int j = 0; j < 5; ++j) EXPECT_LT(std::abs(off(i, j)), 0.02) << i << " " << j;
 }
 
 /// A set-up that stands elsewhere moves the photo that gives the texture as well: the derivative

@@ -1,0 +1,37 @@
+// The pixels of one photo beside the model's: which count, their residuals, and their sums.
+#pragma once
+
+#include "estimation/evaluation/brightness_sums.h"
+#include "estimation/images/registration.h"
+#include "estimation/model/photo_pyramid.h"
+#include "render/condensed.h"
+
+namespace hookeye {
+
+struct Comparison {
+  Image residual;  ///< over noise; NaN: does not count
+  double r2 = 0.0, count = 0.0;
+};
+
+/// Sum of Huber's losses; huber 0: of squares.
+double loss(const Image& residual, double huber);
+
+/// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
+/// `larger` is its memory.
+const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Image* larger);
+
+/// How a photo is compared. `silhouette`: what is behind the body is known, so that its rim counts;
+/// `mask`: the photo is a silhouette.
+struct ComparedAs {
+  bool silhouette = false, mask = false;
+};
+Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,
+                          ComparedAs as, const PhotoState& state);
+
+/// Normal equations of the counted pixels, by the parameters of S. `brightness`: what the picture
+/// followed, null: nothing.
+CondensedPhoto condense(const Rendering& rendering, const Image& residuals, const Image& sigma,
+                        const SurfaceMesh& surface, const PhotoState& state, double huber,
+                        const Brightness* brightness, const VertexSensitivity& S);
+
+}  // namespace hookeye
