@@ -1,9 +1,12 @@
 // A folder as a lab has it: photos, a calibration by OpenCV, an STL, a machine's table.
 #pragma once
 
+#include <fmt/ranges.h>
+
 #include <string>
 #include <vector>
 
+#include "capture_io/capture.h"
 #include "proposal/proposal.h"
 #include "support/temporary_folder.h"
 
