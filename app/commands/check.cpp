@@ -1,5 +1,7 @@
 // hookeye check: reads everything a capture names, says what it was understood to mean, and looks
 // whether the photos show it.
+#include "app/commands/check.h"
+
 #include <CLI/CLI.hpp>
 
 #include "app/commands/check_look.h"
@@ -344,6 +346,10 @@ void run_check(const CheckOptions& options, Session& session) {
 }
 
 }  // namespace
+
+void check_capture(const std::string& capture, const std::string& out, Session& session) {
+  run_check({capture, out}, session);
+}
 
 void add_check(CLI::App& app, CommandBody& chosen) {
   CLI::App* command =

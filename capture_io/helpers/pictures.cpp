@@ -177,6 +177,22 @@ ImageHeader read_header(const fs::path& file) {
   return header;
 }
 
+/// The camera's clock at the exposure; "" where the file does not say. A TIFF's DateTime is no such
+/// thing: whatever converts a photo sets it.
+std::string time_of(const fs::path& file) {
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
+  const OIIO::ImageSpec& spec = input->spec();
+  for (const auto& [date, part] :
+       {std::pair{"Exif:DateTimeOriginal", "Exif:SubsecTimeOriginal"},
+        std::pair{"Exif:DateTimeDigitized", "Exif:SubsecTimeDigitized"}}) {
+    const std::string told = spec.get_string_attribute(date);
+    if (told.empty()) continue;
+    const std::string fraction = spec.get_string_attribute(part);
+    return fraction.empty() ? told : told + "." + fraction;
+  }
+  return "";
+}
+
 OIIO::TypeDesc type_of(StoredAs stored) {
   if (stored == StoredAs::floats) return OIIO::TypeDesc::FLOAT;
   return stored == StoredAs::bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
@@ -212,6 +228,7 @@ std::string answer(Unpacker& request) {
     return stored(file, unpack_stored(request), task == "encode");
   Packer out;
   if (task == "header") return out.put(read_header(file)).take();
+  if (task == "time") return out.put(time_of(file)).take();
   bool srgb = false;
   const Image image = read_stored(file, srgb);
   out.put(srgb).put(image.width).put(image.height).put(image.channels).put(image.values);

@@ -1,0 +1,1 @@
+#include "proposal/proposal.h"

@@ -1,0 +1,1 @@
+#include "estimation/model/model.h"
