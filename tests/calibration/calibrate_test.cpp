@@ -1,6 +1,7 @@
 // Cameras that photographed boards in known poses come back, within what their errors say.
 #include "calibration/calibrate.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
@@ -13,7 +14,6 @@
 #include "calibration/drawn_board.h"
 #include "calibration/output.h"
 #include "calibration/turns.h"
-#include "capture_io/run.h"
 #include "support/temporary_folder.h"
 
 namespace hookeye::test {
@@ -136,12 +136,6 @@ TEST(Calibrate, TwoCamerasOfACharucoBoardComeBackWithinTheirErrors) {
   EXPECT_THAT(found.warnings, testing::IsEmpty());
   const std::string map = corner_map(found, 1);
   EXPECT_THAT(map, HasSubstr("right: 640 x 480 px"));
-  if (const char* keep = std::getenv("HOOKEYE_KEEP")) {
-    for (size_t c = 0; c < 2; ++c)
-      write_text(std::filesystem::path(keep) / fmt::format("corners_{}.svg", c),
-                 corner_map(found, c));
-    std::filesystem::copy(folder.path(), keep, std::filesystem::copy_options::overwrite_existing);
-  }
 
   // The same in the frame of a board.
   CalibrateOptions options;
