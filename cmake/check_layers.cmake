@@ -1,12 +1,13 @@
 # cmake -DROOT=FOLDER -P check_layers.cmake: an include may only go down.
 #   capture_io <- meshing <- simulation, render <- estimation <- app
-#                 meshing <- importers <- proposal <- app
+#                 meshing <- importers <- proposal <- app      capture_io <- calibration <- app
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
-# and a third-party library is touched in one .cpp only, so that it can be replaced there.
+# and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
+# that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
-set(layers capture_io meshing simulation render estimation importers proposal app)
+set(layers capture_io meshing simulation render estimation importers proposal calibration app)
 set(below_capture_io "")
 set(below_meshing capture_io)
 set(below_simulation capture_io meshing)
@@ -14,7 +15,8 @@ set(below_render capture_io meshing)
 set(below_estimation capture_io meshing simulation render)
 set(below_importers capture_io meshing)
 set(below_proposal capture_io meshing importers)
-set(below_app capture_io meshing simulation render estimation importers proposal)
+set(below_calibration capture_io)
+set(below_app capture_io meshing simulation render estimation importers proposal calibration)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
 set(below_model images)
@@ -30,6 +32,7 @@ set(below_output images model evaluation effects fit diagnosis plan search)
 # First part of the header's path, as a regular expression.
 set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL pugixml zlib embree3 ceres httplib
     boost xxhash)
+set(layers_of_ceres estimation calibration)  # one .cpp in each; other libraries: in one of all
 
 set(faults "")
 function(fault text)
@@ -59,18 +62,28 @@ foreach(layer IN LISTS layers)
       endif()
       foreach(library IN LISTS libraries)
         if(path MATCHES "(^|/)${library}[/.]")
-          list(APPEND "touched_${library}" ${source})
+          set(apart "")
+          if(layer IN_LIST "layers_of_${library}")
+            set(apart "_in_${layer}")
+          endif()
+          list(APPEND "touched_${library}${apart}" ${source})
         endif()
       endforeach()
     endforeach()
   endforeach()
 endforeach()
 foreach(library IN LISTS libraries)
-  list(REMOVE_DUPLICATES "touched_${library}")
-  list(LENGTH "touched_${library}" count)
-  if(count GREATER 1 OR "${touched_${library}}" MATCHES "\\.h$")
-    fault("${library} belongs into one .cpp, but stands in: ${touched_${library}}")
-  endif()
+  set(places "${library}")
+  foreach(layer IN LISTS "layers_of_${library}")
+    list(APPEND places "${library}_in_${layer}")
+  endforeach()
+  foreach(place IN LISTS places)
+    list(REMOVE_DUPLICATES "touched_${place}")
+    list(LENGTH "touched_${place}" count)
+    if(count GREATER 1 OR "${touched_${place}}" MATCHES "\\.h(;|$)")
+      fault("${library} belongs into one .cpp, but stands in: ${touched_${place}}")
+    endif()
+  endforeach()
 endforeach()
 if(faults)
   list(JOIN faults "\n  " text)

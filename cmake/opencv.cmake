@@ -8,6 +8,9 @@ string(REPLACE ";" "." OpenCV_VERSION "${OpenCV_VERSION}")
 
 function(hookeye_opencv)
   foreach(part IN LISTS ARGN)
+    if(TARGET OpenCV::${part})
+      continue()
+    endif()
     find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
     add_library(OpenCV::${part} UNKNOWN IMPORTED GLOBAL)
     set_target_properties(OpenCV::${part} PROPERTIES

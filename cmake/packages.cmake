@@ -2,6 +2,12 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 include(opencv)
 hookeye_opencv(core imgproc video)
+# Without these `hookeye calibrate` says how to get them.
+find_library(OPENCV_calib3d_LIBRARY opencv_calib3d)
+find_library(OPENCV_aruco_LIBRARY opencv_aruco)
+if(OPENCV_calib3d_LIBRARY AND OPENCV_aruco_LIBRARY)
+  hookeye_opencv(calib3d aruco features2d)
+endif()
 # Not by its own CMake files: Debian's ask for programs of another package (openimageio-tools, Qt).
 find_package(PkgConfig REQUIRED)
 find_package(Imath REQUIRED)

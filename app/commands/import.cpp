@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"
 #include "app/validators.h"
 #include "capture_io/run.h"
@@ -18,8 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-
-const std::string kMark = "# hookeye import ";
 
 struct ImportCommand {
   std::vector<std::string> words;  ///< [KIND] SOURCE...
@@ -72,25 +71,6 @@ std::pair<const Importer*, Importer::Sources> chosen_importer(const ImportComman
   return {named, sources};
 }
 
-/// A file of cameras that somebody wrote by hand stays.
-void refuse_to_overwrite(const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error) || read_text(file).starts_with(kMark)) return;
-  throw InputError({file.string()}, "there is another file of this name",
-                   "another folder behind -o, or move the file away");
-}
-
-/// A line of a file, whatever names stand in it.
-std::string comment(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32; }, '?');
-  return text + "\n";
-}
-
-std::string vector_text(const Eigen::Vector3d& v) {
-  return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // no -0
-}
-
 void describe(const Imported& imported, const std::vector<Reprojection>& seen, Json& document) {
   document["cameras"] = Json::array();
   for (size_t i = 0; i < imported.cameras.size(); ++i) {
@@ -132,7 +112,7 @@ void run_import(const ImportCommand& options, Session& session) {
   const auto [importer, sources] = chosen_importer(options);
   const Scope scope("source " + sources.front().string());
   const fs::path file = fs::path(options.folder) / "cameras.yaml";
-  refuse_to_overwrite(file);
+  refuse_to_overwrite_cameras(file);
   const Imported imported = import_cameras(*importer, sources, options.options);
   const std::vector<Reprojection> seen = reproject(imported);
   std::string told;
@@ -147,8 +127,9 @@ void run_import(const ImportCommand& options, Session& session) {
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) throw cannot_write(options.folder, error.message());
-  write_text(file, cameras_yaml(imported, comment(kMark + importer->name() + told) +
-                                              comment("# the world is " + imported.world)));
+  write_text(file,
+             cameras_yaml(imported, one_line(kCamerasMark + ("import " + importer->name() + told)) +
+                                        one_line("# the world is " + imported.world)));
   session.say("{}: {}\n{}", sources.front().string(), importer->title(),
               cameras_table(imported, seen));
   session.say("{}", wrapped("the world is " + imported.world, 2));

@@ -1,0 +1,20 @@
+// cameras.yaml as `import` and `calibrate` write it.
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+
+namespace hookeye {
+
+/// First line of a file that the program wrote: by it, the program may write the file anew.
+inline constexpr const char* kCamerasMark = "# hookeye ";
+
+/// A file of cameras that somebody wrote by hand stays. Throws InputError.
+void refuse_to_overwrite_cameras(const std::filesystem::path& file);
+/// `text` as a line of a file, whatever names stand in it.
+std::string one_line(std::string text);
+/// "(12.3, 0, -4.56)".
+std::string vector_text(const Eigen::Vector3d& v);
+
+}  // namespace hookeye

@@ -1,0 +1,395 @@
+// Cameras that photographed boards in known poses come back, within what their errors say.
+#include "calibration/calibrate.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <fstream>
+#include <opencv2/aruco.hpp>
+#include <opencv2/calib3d.hpp>
+
+#include "calibration/detection.h"
+#include "calibration/drawn_board.h"
+#include "calibration/output.h"
+#include "calibration/turns.h"
+#include "support/temporary_folder.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::HasSubstr;
+
+DrawnBoard charuco(int columns, int rows, const std::string& dictionary = "4X4_50") {
+  DrawnBoard drawn;
+  drawn.board.columns = columns, drawn.board.rows = rows;
+  drawn.board.pitch = 20, drawn.board.marker = 15, drawn.board.dictionary = dictionary;
+  const auto number =
+      std::ranges::find(marker_dictionaries(), dictionary) - marker_dictionaries().begin();
+  const auto markers = cv::aruco::getPredefinedDictionary(static_cast<int>(number));
+  const int side = markers->markerSize + 2;
+  for (int id = 0; id < drawn.board.marker_count(); ++id) {
+    cv::Mat picture;
+    markers->drawMarker(id, side, picture);
+    drawn.markers.emplace_back(picture.begin<uchar>(), picture.end<uchar>());
+  }
+  return drawn;
+}
+
+DrawnBoard chessboard(int columns, int rows) {
+  DrawnBoard drawn;
+  drawn.board.kind = Board::Kind::chessboard;
+  drawn.board.columns = columns, drawn.board.rows = rows, drawn.board.pitch = 18;
+  return drawn;
+}
+
+DrawnBoard dots(Board::Kind kind, int columns, int rows, double pitch, double diameter) {
+  DrawnBoard drawn;
+  drawn.board.kind = kind;
+  drawn.board.columns = columns, drawn.board.rows = rows;
+  drawn.board.pitch = pitch, drawn.board.diameter = diameter;
+  return drawn;
+}
+
+/// Photos of all cameras in a folder, NAME_07.png.
+std::vector<CameraPhotos> photograph(const TemporaryFolder& folder, const DrawnBoard& drawn,
+                                     const std::vector<Camera>& cameras,
+                                     const std::vector<BoardPose>& poses, std::mt19937& random) {
+  std::vector<CameraPhotos> photos;
+  for (const Camera& camera : cameras) {
+    const BoardPhotographer photographer(camera);
+    for (size_t i = 0; i < poses.size(); ++i)
+      write_image(folder / fmt::format("{}_{:02}.png", camera.name, i + 1),
+                  photographer.photo(drawn, poses[i], {}, random), {Encoding::Kind::srgb});
+    photos.push_back({camera.name, {(folder / (camera.name + "_*.png")).string()}});
+  }
+  return photos;
+}
+
+/// What was found minus what is true, as BundleCovariance has its numbers.
+Eigen::VectorXd errors_of(const Bundle& bundle, const std::vector<Camera>& truth) {
+  std::vector<double> out;
+  for (size_t c = 0; c < truth.size(); ++c) {
+    const Camera& found = bundle.cameras[c];
+    const auto ours = found.intrinsics(), theirs = truth[c].intrinsics();
+    for (size_t i = 0; i < ours.size(); ++i)
+      if (ours[i].name != "skew") out.push_back(ours[i].value - theirs[i].value);
+    const Eigen::Matrix3d turn = found.R * truth[c].R.transpose();
+    const Eigen::Vector3d w = detail::rotation_vector(turn), v = found.t - turn * truth[c].t;
+    for (const Eigen::Vector3d& part : {w, v}) out.insert(out.end(), part.begin(), part.end());
+  }
+  return Eigen::Map<Eigen::VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+}
+
+/// Of the numbers that are not given by the choice of the world.
+std::vector<int> free_numbers(const BundleCovariance& errors) {
+  std::vector<int> out;
+  for (Eigen::Index i = 0; i < errors.covariance.rows(); ++i)
+    if (errors.covariance(i, i) > 0) out.push_back(static_cast<int>(i));
+  return out;
+}
+
+/// e' C^-1 e over its count; 1 on average.
+double chi_square(const BundleCovariance& errors, const Eigen::VectorXd& e) {
+  const auto free = free_numbers(errors);
+  Eigen::VectorXd part(static_cast<Eigen::Index>(free.size()));
+  Eigen::MatrixXd C(part.size(), part.size());
+  for (size_t i = 0; i < free.size(); ++i) {
+    part[Eigen::Index(i)] = e[free[i]];
+    for (size_t k = 0; k < free.size(); ++k)
+      C(Eigen::Index(i), Eigen::Index(k)) = errors.covariance(free[i], free[k]);
+  }
+  // Of numbers of one size, whatever their units.
+  const Eigen::VectorXd scale = C.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd R = scale.asDiagonal() * C * scale.asDiagonal();
+  const Eigen::VectorXd z = scale.cwiseProduct(part);
+  return z.dot(R.ldlt().solve(z)) / static_cast<double>(z.size());
+}
+
+void expect_near_truth(const BundleCovariance& errors, const Eigen::VectorXd& e, double most) {
+  ASSERT_EQ(errors.parameters.size(), static_cast<size_t>(e.size()));
+  for (const int i : free_numbers(errors)) {
+    const auto& p = errors.parameters[static_cast<size_t>(i)];
+    EXPECT_LT(std::abs(e[i]), most * errors.error(static_cast<size_t>(i)))
+        << p.camera << " " << p.name << " off by " << e[i];
+  }
+}
+
+TEST(Calibrate, TwoCamerasOfACharucoBoardComeBackWithinTheirErrors) {
+  std::mt19937 random(7);
+  const TemporaryFolder folder;
+  const DrawnBoard drawn = charuco(7, 5);
+  const std::vector<Camera> truth{true_camera("left"), second_camera("right", 3)};
+  const auto poses = spread_poses(truth[0], drawn.board, 12, 330, 35, random);
+  const auto photos = photograph(folder, drawn, truth, poses, random);
+  const Calibration found = calibrate(drawn.board, photos, {});
+  const Eigen::VectorXd e = errors_of(found.bundle, truth);
+  expect_near_truth(found.errors, e, 3.0);
+  const double chi2 = chi_square(found.errors, e);
+  RecordProperty("chi_square", std::to_string(chi2));
+  EXPECT_GT(chi2, 0.3);  // 24 numbers: 0.36 .. 1.97 are the 99.8 % limits
+  EXPECT_LT(chi2, 2.5);
+  EXPECT_LT(found.rms_px[0], 0.15);
+  EXPECT_GT(found.corners, 400u);
+  EXPECT_LT(found.dropped, found.corners / 50);
+  EXPECT_THAT(found.warnings, testing::IsEmpty());
+  const std::string map = corner_map(found, 1);
+  EXPECT_THAT(map, HasSubstr("right: 640 x 480 px"));
+
+  // The same in the frame of a board.
+  CalibrateOptions options;
+  options.frame = "left_03.png";
+  const Calibration on_board = calibrate(drawn.board, photos, options);
+  std::vector<Camera> moved = truth;
+  for (Camera& camera : moved) {
+    camera.t += camera.R * poses[2].t;
+    camera.R = camera.R * poses[2].R;
+  }
+  expect_near_truth(on_board.errors, errors_of(on_board.bundle, moved), 3.0);
+  EXPECT_EQ(free_numbers(on_board.errors).size(), 30u);
+  EXPECT_THAT(calibrated_cameras_yaml(on_board, ""), HasSubstr("right:"));
+}
+
+TEST(Calibrate, AChessboardThatLooksAlikeTurnedIsOneBoardForBothCameras) {
+  std::mt19937 random(3);
+  const TemporaryFolder folder;
+  const DrawnBoard drawn = chessboard(8, 6);  // the same turned by half a turn
+  const std::vector<Camera> truth{true_camera("left"), second_camera("right", 175)};
+  const auto poses = spread_poses(truth[0], drawn.board, 9, 340, 30, random);
+  const Calibration found =
+      calibrate(drawn.board, photograph(folder, drawn, truth, poses, random), {});
+  expect_near_truth(found.errors, errors_of(found.bundle, truth), 3.5);
+  EXPECT_LT(found.rms_px[1], 0.15);
+}
+
+TEST(Calibrate, DotsAreSeenWhereTheMiddleOfTheirAreaIs) {
+  std::mt19937 random(5);
+  const std::vector<Camera> truth{true_camera("left")};
+  for (const DrawnBoard& drawn : {dots(Board::Kind::circles, 8, 6, 18, 12),
+                                  dots(Board::Kind::asymmetric_circles, 4, 9, 11, 11)}) {
+    const TemporaryFolder folder;
+    const auto poses = spread_poses(truth[0], drawn.board, 9, 340, 40, random);
+    const auto photos = photograph(folder, drawn, truth, poses, random);
+    const Calibration found = calibrate(drawn.board, photos, {});
+    expect_near_truth(found.errors, errors_of(found.bundle, truth), 3.5);
+    Board unknown = drawn.board;
+    unknown.diameter = 0;
+    const Calibration centres = calibrate(unknown, photos, {});
+    EXPECT_GT(centres.rms_px[0], 1.02 * found.rms_px[0]);
+    EXPECT_THAT(centres.warnings, testing::Contains(HasSubstr("give --diameter")));
+  }
+}
+
+/// Corners as the cameras see them, with white noise, and `wrong` of them anywhere.
+Bundle seen_bundle(const Board& board, const std::vector<Camera>& truth,
+                   const std::vector<BoardPose>& poses, double sigma, int wrong,
+                   std::mt19937& random) {
+  Bundle bundle;
+  bundle.board = board;
+  bundle.cameras = truth;
+  bundle.boards = poses;
+  std::normal_distribution<double> noise(0.0, sigma);
+  for (size_t c = 0; c < truth.size(); ++c)
+    for (size_t b = 0; b < poses.size(); ++b) {
+      BoardView view{c, b, {}, {}, {}, {}};
+      Eigen::Matrix2Xd pixels(2, board.corner_count());
+      for (int id = 0; id < board.corner_count(); ++id) {
+        view.ids.push_back(id);
+        pixels.col(id) =
+            seen_corner(bundle, view, id) + Eigen::Vector2d(noise(random), noise(random));
+      }
+      view.pixels = pixels;
+      view.used.assign(view.ids.size(), 1);
+      bundle.views.push_back(view);
+    }
+  for (int i = 0; i < wrong; ++i) {
+    BoardView& view = bundle.views[random() % bundle.views.size()];
+    view.pixels.col(static_cast<Eigen::Index>(random() % view.ids.size())) +=
+        Eigen::Vector2d(5.0 + 0.1 * i, -7.0);
+  }
+  // Not from the truth.
+  for (Camera& camera : bundle.cameras) camera = camera.zoomed(0.02);
+  for (BoardPose& pose : bundle.boards) pose.t.z() *= 1.02;
+  bundle.cameras.back().t.x() += truth.size() > 1 ? 1.0 : 0.0;
+  return bundle;
+}
+
+TEST(Bundle, ErrorsAreAsLargeAsTheySay) {
+  const Board board = chessboard(8, 6).board;
+  const std::vector<Camera> truth{true_camera("left"), second_camera("right", 3)};
+  double sum = 0.0;
+  constexpr int kSeeds = 12;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const auto poses = spread_poses(truth[0], board, 10, 340, 35, random);
+    Bundle bundle = seen_bundle(board, truth, poses, 0.1, seed % 2 ? 20 : 0, random);
+    ASSERT_TRUE(settle(bundle));
+    const auto errors = covariance(bundle);
+    ASSERT_TRUE(errors);
+    sum += chi_square(*errors, errors_of(bundle, truth));
+    for (const double sigma : bundle.sigma) EXPECT_NEAR(sigma, 0.1, 0.008);
+  }
+  // 12 times 24 numbers: the mean has a standard deviation of 0.083.
+  EXPECT_NEAR(sum / kSeeds, 1.0, 0.3);
+}
+
+TEST(Bundle, WrongCornersAreDroppedAndNoOthers) {
+  std::mt19937 random(1);
+  const Board board = chessboard(8, 6).board;
+  const std::vector<Camera> truth{true_camera("left")};
+  const auto poses = spread_poses(truth[0], board, 10, 340, 35, random);
+  Bundle bundle = seen_bundle(board, truth, poses, 0.1, 15, random);
+  ASSERT_TRUE(settle(bundle));
+  int dropped_well = 0;
+  for (const BoardView& view : bundle.views)
+    for (size_t i = 0; i < view.ids.size(); ++i) {
+      const double off = view.residuals.col(static_cast<Eigen::Index>(i)).norm();
+      EXPECT_FALSE(view.used[i] && off > 0.5) << off;
+      dropped_well += !view.used[i] && off < 1.0;
+    }
+  EXPECT_LE(dropped_well, 1);  // one in three thousand is beyond 4 sigma
+}
+
+TEST(Bundle, OneCameraIsThatOfOpenCv) {
+  std::mt19937 random(4);
+  const Board board = chessboard(8, 6).board;
+  const std::vector<Camera> truth{true_camera("left")};
+  const auto poses = spread_poses(truth[0], board, 10, 340, 35, random);
+  Bundle bundle = seen_bundle(board, truth, poses, 0.1, 0, random);
+  ASSERT_TRUE(settle(bundle));
+  std::vector<std::vector<cv::Point3f>> on_board;
+  std::vector<std::vector<cv::Point2f>> in_photo;
+  for (const BoardView& view : bundle.views) {
+    on_board.emplace_back();
+    in_photo.emplace_back();
+    for (size_t i = 0; i < view.ids.size(); ++i) {
+      if (!view.used[i]) continue;
+      const Eigen::Vector3f x = board.corner(view.ids[i]).cast<float>();
+      const Eigen::Vector2f p = view.pixels.col(Eigen::Index(i)).cast<float>();
+      on_board.back().emplace_back(x.x(), x.y(), x.z());
+      in_photo.back().emplace_back(p.x(), p.y());
+    }
+  }
+  cv::Mat K, lens, deviations, others, views;
+  std::vector<cv::Mat> rotations, shifts;
+  cv::calibrateCamera(on_board, in_photo, {640, 480}, K, lens, rotations, shifts, deviations,
+                      others, views, 0,
+                      {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 200, 1e-14});
+  const auto errors = covariance(bundle);
+  ASSERT_TRUE(errors);
+  const Camera& ours = bundle.cameras[0];
+  const double theirs[] = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
+                           K.at<double>(1, 2), lens.at<double>(0), lens.at<double>(1),
+                           lens.at<double>(2), lens.at<double>(3), lens.at<double>(4)};
+  const double own[] = {ours.fx,
+                        ours.fy,
+                        ours.cx,
+                        ours.cy,
+                        ours.distortion[0],
+                        ours.distortion[1],
+                        ours.distortion[2],
+                        ours.distortion[3],
+                        ours.distortion[4]};
+  for (size_t i = 0; i < 9; ++i) {
+    EXPECT_NEAR(own[i], theirs[i], 0.02 * errors->error(i)) << errors->parameters[i].name;
+    EXPECT_NEAR(errors->error(i), deviations.at<double>(int(i)), 0.03 * errors->error(i))
+        << errors->parameters[i].name;
+  }
+}
+
+/// What calibrate() says where it refuses.
+std::string refused(const Board& board, const std::vector<CameraPhotos>& photos) {
+  try {
+    calibrate(board, photos, {});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "it was taken";
+}
+
+TEST(Calibrate, SaysWhatIsInThePhotosInstead) {
+  std::mt19937 random(9);
+  const TemporaryFolder folder;
+  const DrawnBoard drawn = charuco(7, 5, "5X5_100");
+  const std::vector<Camera> truth{true_camera("a")};
+  const auto poses = spread_poses(truth[0], drawn.board, 3, 330, 20, random);
+  const auto photos = photograph(folder, drawn, truth, poses, random);
+  Board told = drawn.board;
+  told.dictionary = "6X6_50";
+  EXPECT_THAT(refused(told, photos), HasSubstr("--dictionary 5X5_"));
+  told = drawn.board;
+  std::swap(told.columns, told.rows);
+  EXPECT_THAT(refused(told, photos), HasSubstr("--squares 7x5"));
+  told.columns = 4, told.rows = 3;
+  EXPECT_THAT(refused(told, photos), HasSubstr("the board has 0 to 5"));
+  Board other = chessboard(8, 6).board;
+  EXPECT_THAT(refused(other, photos), HasSubstr("no chessboard of 8x6 squares"));
+}
+
+TEST(Calibrate, BothKindsOfEvenCharucoBoardsAreRead) {
+  std::mt19937 random(2);
+  for (const bool white_first : {false, true}) {
+    DrawnBoard drawn = charuco(7, 6);
+    drawn.white_first = white_first;
+    const Camera camera = true_camera("a");
+    const auto pose = spread_poses(camera, drawn.board, 1, 330, 20, random).front();
+    const Image photo = BoardPhotographer(camera).photo(drawn, pose, {}, random);
+    const Detection found = detect(photo, drawn.board, "drawn");
+    EXPECT_EQ(found.ids.size(), 30u) << found.why;
+    double worst = 0.0;
+    for (size_t i = 0; i < found.ids.size(); ++i)
+      worst = std::max(worst, (camera.project(pose.R * drawn.board.corner(found.ids[i]) + pose.t) -
+                               found.pixels.col(Eigen::Index(i)))
+                                  .norm());
+    EXPECT_LT(worst, 0.3);
+  }
+}
+
+TEST(Calibrate, PhotosThatDoNotGoTogetherAreRefused) {
+  std::mt19937 random(9);
+  const TemporaryFolder folder;
+  const DrawnBoard drawn = charuco(7, 5);
+  Camera small = true_camera("a");
+  const auto poses = spread_poses(small, drawn.board, 3, 330, 20, random);
+  auto photos = photograph(folder, drawn, {small}, poses, random);
+  small = small.resized(0.5);
+  small.width = 320, small.height = 240;
+  write_image(folder / "a_04.png", BoardPhotographer(small).photo(drawn, poses[0], {}, random));
+  EXPECT_THAT(refused(drawn.board, photos), HasSubstr("a_04.png: this photo has 320 x 240 px"));
+  std::filesystem::remove(folder / "a_04.png");
+  std::ofstream(folder / "a_04.png") << "no picture";
+  EXPECT_THAT(refused(drawn.board, photos), HasSubstr("a_04.png"));
+  std::filesystem::remove(folder / "a_04.png");
+  std::filesystem::copy(folder / "a_01.png", folder / "b_x.png");
+  std::filesystem::copy(folder / "a_01.png", folder / "b_y.png");
+  EXPECT_THAT(refused(drawn.board, {photos[0], {"b", {(folder / "b_*.png").string()}}}),
+              HasSubstr("`a` has 3 photos and `b` has 2"));
+  EXPECT_THAT(refused(drawn.board, {{"a", {(folder / "none_*.png").string()}}}),
+              HasSubstr("no photo is found there"));
+  Image grey;
+  grey.width = 64, grey.height = 48, grey.channels = 1;
+  grey.values.assign(grey.pixels(), 0.5F);
+  write_image(folder / "grey_1.png", grey);
+  EXPECT_THAT(refused(drawn.board, {{"grey", {(folder / "grey_1.png").string()}}}),
+              HasSubstr("no marker of 4X4_50 seen"));
+}
+
+TEST(Calibrate, FewPosesThatFaceAlikeInTheMiddleAreDoubted) {
+  std::mt19937 random(6);
+  const TemporaryFolder folder;
+  const DrawnBoard drawn = charuco(7, 5);
+  const Camera camera = true_camera("a");
+  auto poses = spread_poses(camera, drawn.board, 4, 700, 8, random);
+  for (BoardPose& pose : poses) pose.t.head<2>() *= 0.3;
+  const auto photos = photograph(folder, drawn, {camera}, poses, random);
+  CalibrateOptions options;
+  options.lens = 0;
+  const Calibration found = calibrate(drawn.board, photos, options);
+  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("4 poses of the board")));
+  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("face alike")));
+  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("of the way to a corner")));
+}
+
+}  // namespace
+}  // namespace hookeye::test
