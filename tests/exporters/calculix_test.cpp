@@ -58,7 +58,8 @@ TEST(CalculiX, LoadsOfAllKinds) {
   // A pressure on a patch that cuts through faces.
   for (auto& example : model.examples)
     example.loading.forces.push_back(follower_pressure(block.region("flank"), 0.002));
-  EXPECT_LT(distance_to_calculix(model, "bend"), kClose);
+  // CalculiX takes a pressure at three points of a face, Hookeye at six.
+  EXPECT_LT(distance_to_calculix(model, "bend"), 5e-4);
 }
 
 TEST(CalculiX, TurnsInSteps) {
