@@ -1,13 +1,14 @@
 # cmake -DROOT=FOLDER -P check_layers.cmake: an include may only go down.
 #   capture_io <- meshing <- simulation, render <- estimation <- app
 #                 meshing <- importers <- proposal <- app      capture_io <- calibration <- app
+#                 estimation/model <- exporters <- app
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
 # and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
 # that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
-set(layers capture_io meshing simulation render estimation importers proposal calibration app)
+set(layers capture_io meshing simulation render estimation importers proposal calibration exporters app)
 set(below_capture_io "")
 set(below_meshing capture_io)
 set(below_simulation capture_io meshing)
@@ -16,7 +17,8 @@ set(below_estimation capture_io meshing simulation render)
 set(below_importers capture_io meshing)
 set(below_proposal capture_io meshing importers)
 set(below_calibration capture_io)
-set(below_app capture_io meshing simulation render estimation importers proposal calibration)
+set(below_exporters capture_io meshing simulation estimation)
+set(below_app capture_io meshing simulation render estimation importers proposal calibration exporters)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
 set(below_model images)
@@ -51,6 +53,8 @@ foreach(layer IN LISTS layers)
         fault("${source} includes ${path}: write the path from the top folder")
       elseif(first IN_LIST layers AND NOT first STREQUAL layer AND NOT first IN_LIST below_${layer})
         fault("${source} includes ${path}: ${layer} stands on (${below_${layer}})")
+      elseif(layer STREQUAL "exporters" AND path MATCHES "^estimation/" AND NOT path MATCHES "^estimation/model/")
+        fault("${source} includes ${path}: of estimation exporters stands on (model)")
       elseif(layer STREQUAL "estimation" AND first STREQUAL layer)
         string(REGEX REPLACE "^estimation/([a-z_]*).*$" "\\1" room "${source}")
         string(REGEX REPLACE "^estimation/([a-z_]*).*$" "\\1" other "${path}")

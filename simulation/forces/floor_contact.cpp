@@ -1,7 +1,7 @@
 // Rigid floor by a smoothed penalty on boundary faces.
 #include <Eigen/Dense>
 
-#include "simulation/loading.h"
+#include "simulation/made_of.h"
 #include "simulation/quadrature.h"
 
 namespace hookeye {
@@ -30,6 +30,8 @@ class FloorContact final : public ForceTerm {
       }
     }
   }
+
+  FloorPlane made_of() const { return {point_, n_, k_, h_}; }
 
   double potential(const TetMesh& mesh, const VectorXd& q, double) const override {
     double sum = 0;
@@ -96,6 +98,11 @@ class FloorContact final : public ForceTerm {
 std::shared_ptr<const ForceTerm> floor_contact(const TetMesh& mesh, const Vector3d& point,
                                                const Vector3d& normal, double k, double smoothing) {
   return std::make_shared<FloorContact>(mesh, point, normal, k, smoothing);
+}
+
+std::optional<FloorPlane> as_floor(const ForceTerm& force) {
+  const auto* own = dynamic_cast<const FloorContact*>(&force);
+  return own ? std::optional(own->made_of()) : std::nullopt;
 }
 
 }  // namespace hookeye

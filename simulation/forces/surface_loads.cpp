@@ -2,7 +2,7 @@
 #include <Eigen/Dense>
 #include <map>
 
-#include "simulation/loading.h"
+#include "simulation/made_of.h"
 #include "simulation/quadrature.h"
 
 namespace hookeye {
@@ -40,6 +40,7 @@ void add_face(const TetMesh& mesh, int face, const MatrixXd& stiffness, Triplets
 class FollowerPressure final : public ForceTerm {
  public:
   FollowerPressure(Faces faces, double pressure) : faces_(std::move(faces)), p_(pressure) {}
+  PressureOn made_of() const { return {faces_, p_}; }
 
   double potential(const TetMesh& mesh, const VectorXd& q, double s) const override {
     return closed(mesh) ? s * p_ * (volume(mesh, q) - volume(mesh, mesh.X.reshaped())) : 0.0;
@@ -128,6 +129,7 @@ class ElasticFoundation final : public ForceTerm {
  public:
   ElasticFoundation(Faces faces, double kn, double kt, VectorXd target)
       : faces_(std::move(faces)), kn_(kn), kt_(kt), target_(std::move(target)) {}
+  FoundationOn made_of() const { return {faces_, kn_, kt_, target_}; }
 
   double potential(const TetMesh& mesh, const VectorXd& q, double) const override {
     double sum = 0;
@@ -194,6 +196,16 @@ std::shared_ptr<const ForceTerm> follower_pressure(const Region& region, double 
 std::shared_ptr<const ForceTerm> elastic_foundation(const Region& region, double k_normal,
                                                     double k_tangent, VectorXd target) {
   return std::make_shared<ElasticFoundation>(region.faces, k_normal, k_tangent, std::move(target));
+}
+
+std::optional<PressureOn> as_pressure(const ForceTerm& force) {
+  const auto* own = dynamic_cast<const FollowerPressure*>(&force);
+  return own ? std::optional(own->made_of()) : std::nullopt;
+}
+
+std::optional<FoundationOn> as_foundation(const ForceTerm& force) {
+  const auto* own = dynamic_cast<const ElasticFoundation*>(&force);
+  return own ? std::optional(own->made_of()) : std::nullopt;
 }
 
 }  // namespace hookeye

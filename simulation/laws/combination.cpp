@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "simulation/laws/invariants.h"
+#include "simulation/made_of.h"
 
 namespace hookeye {
 namespace {
@@ -16,6 +17,7 @@ class Combination final : public EnergyTerm {
  public:
   explicit Combination(std::vector<WeightedTerm> terms) : terms_(std::move(terms)) {}
   std::string name() const override { return "combination"; }
+  const std::vector<WeightedTerm>& terms() const { return terms_; }
   std::vector<Parameter> parameters(const Units&) const override {
     std::vector<Parameter> all;
     for (size_t i = 0; i < terms_.size(); ++i)
@@ -57,6 +59,11 @@ class Combination final : public EnergyTerm {
 
 std::shared_ptr<const EnergyTerm> combination(std::vector<WeightedTerm> terms) {
   return std::make_shared<Combination>(std::move(terms));
+}
+
+const std::vector<WeightedTerm>* terms_of(const EnergyTerm& law) {
+  const auto* own = dynamic_cast<const Combination*>(&law);
+  return own ? &own->terms() : nullptr;
 }
 
 }  // namespace hookeye

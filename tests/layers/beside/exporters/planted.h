@@ -1,0 +1,4 @@
+#pragma once
+
+#include "estimation/fit/fit.h"
+#include "importers/importer.h"
