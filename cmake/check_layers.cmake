@@ -1,19 +1,21 @@
 # cmake -DROOT=FOLDER -P check_layers.cmake: an include may only go down.
-#   capture_io <- meshing <- simulation, render <- estimation <- app
-#                 meshing <- importers <- app
+#   capture_io <- meshing <- simulation, render <- estimation <- runs <- app
+#                 meshing <- importers <- app          runs, importers <- python
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
 # and a third-party library is touched in one .cpp only, so that it can be replaced there.
 cmake_minimum_required(VERSION 3.25)
-set(layers capture_io meshing simulation render estimation importers app)
+set(layers capture_io meshing simulation render estimation importers runs app python)
 set(below_capture_io "")
 set(below_meshing capture_io)
 set(below_simulation capture_io meshing)
 set(below_render capture_io meshing)
 set(below_estimation capture_io meshing simulation render)
 set(below_importers capture_io meshing)
-set(below_app capture_io meshing simulation render estimation importers)
+set(below_runs capture_io meshing simulation render estimation)
+set(below_app capture_io meshing simulation render estimation importers runs)
+set(below_python capture_io meshing simulation render estimation importers runs)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
 set(below_model images)

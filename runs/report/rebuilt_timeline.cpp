@@ -1,11 +1,11 @@
-#include "app/report/rebuilt_timeline.h"
+#include "runs/report/rebuilt_timeline.h"
 
 #include <sstream>
 #include <string>
 
-#include "app/report/inside.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
+#include "runs/report/inside.h"
 
 namespace hookeye {
 

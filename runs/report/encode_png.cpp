@@ -1,4 +1,4 @@
-#include "app/report/encode_png.h"
+#include "runs/report/encode_png.h"
 
 #include <algorithm>
 #include <cmath>

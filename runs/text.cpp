@@ -1,4 +1,4 @@
-#include "app/text.h"
+#include "runs/text.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/report/run_view.h"
+#include "runs/report/run_view.h"
 
 namespace hookeye {
 

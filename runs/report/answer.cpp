@@ -1,4 +1,4 @@
-#include "app/report/answer.h"
+#include "runs/report/answer.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,15 +9,15 @@
 #include <optional>
 #include <vector>
 
-#include "app/commands/tables.h"
-#include "app/report/inside.h"
-#include "app/report/run_limits.h"
-#include "app/text.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
 #include "estimation/diagnosis/diagnosis.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/verdict.h"
+#include "runs/report/inside.h"
+#include "runs/run_limits.h"
+#include "runs/tables.h"
+#include "runs/text.h"
 
 namespace hookeye {
 

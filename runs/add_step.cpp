@@ -1,10 +1,11 @@
-#include "app/commands/add_step.h"
+#include "runs/add_step.h"
 
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "estimation/effects/catalogue.h"
+#include "runs/failed.h"
 
 namespace hookeye {
 namespace {

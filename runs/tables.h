@@ -8,7 +8,7 @@
 
 namespace hookeye {
 
-/// All but the material's, which stand in the answer (app/report/answer.h); effects in words; what
+/// All but the material's, which stand in the answer (runs/report/answer.h); effects in words; what
 /// is not identifiable.
 std::string parameter_table(const Fitted& fitted);
 /// The leading `most` effects, one sentence on those that may be named, and why others were not
@@ -36,5 +36,7 @@ std::string name_of(const Step& step);
 std::string chi_text(double chi);
 /// "1.04", in multiples of the floor, or as it is where none is known; 0: "-".
 std::string times_floor(double chi, double floor);
+/// What is to be said of a fit that stopped before its end; empty: it did not.
+std::string not_converged(bool converged, int iterations);
 
 }  // namespace hookeye

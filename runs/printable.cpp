@@ -1,4 +1,4 @@
-#include "app/printable.h"
+#include "runs/printable.h"
 
 #include <fmt/format.h>
 

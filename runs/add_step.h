@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "app/commands/run_support.h"
+#include "runs/record.h"
 
 namespace hookeye {
 

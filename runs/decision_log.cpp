@@ -1,4 +1,4 @@
-#include "app/report/decision_log.h"
+#include "runs/decision_log.h"
 
 #include <ctime>
 #include <fstream>

@@ -1,10 +1,11 @@
-#include "app/commands/kept_work.h"
+#include "runs/kept_work.h"
 
 #include <spdlog/spdlog.h>
 
-#include "app/interrupt.h"
 #include "capture_io/fingerprints.h"
+#include "capture_io/own_file.h"
 #include "estimation/fit/archive.h"
+#include "runs/versions.h"
 
 namespace hookeye {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 /// Another program, or another capture, comes to other answers.
 std::string made_for(const Run& run) {
   return nlohmann::json{{"hookeye", versions()},
-                        {"program", fingerprint_of(read_text("/proc/self/exe"))},
+                        {"program", fingerprint_of(read_text(own_file()))},
                         {"options", run.timeline().value("options", nlohmann::json::object())},
                         {"capture", run.timeline().value("fingerprints", nlohmann::json())}}
       .dump();
@@ -20,7 +21,8 @@ std::string made_for(const Run& run) {
 
 }  // namespace
 
-KeptWork::KeptWork(const Run& run, Bench& bench) : run_(run), bench_(bench) {
+KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel)
+    : run_(run), bench_(bench), cancel_(cancel) {
   auto archive = std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), made_for(run)));
   from_before_ = !archive->empty();
   archive->on_event = [](const Question& question, Archive::Event event) {
@@ -34,7 +36,7 @@ KeptWork::~KeptWork() {
   for (const auto& [kind, tally] : bench_.workspace.archive()->tallies())
     spdlog::debug("{}: {} anew, {} known", kind, tally.kept, tally.found);
   bench_.workspace.keep_in(nullptr);
-  if (!run_.steps().empty() || interrupted()) return;
+  if (!run_.steps().empty() || (cancel_ && *cancel_)) return;
   std::error_code ignored;
   std::filesystem::remove(run_.archive(), ignored);
 }

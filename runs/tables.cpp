@@ -1,4 +1,4 @@
-#include "app/commands/tables.h"
+#include "runs/tables.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/text.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/output/step_json.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/verdict.h"
+#include "runs/text.h"
 
 namespace hookeye {
 namespace {
@@ -325,6 +325,14 @@ std::string choice_table(const json& before, const json& step, double floor, con
              added, limits.diagnosis.tie)) +
          choice_rows(before, step, floor, limits) +
          wrapped(sureness(step, floor, limits) + resemblance(before, added), 2);
+}
+
+std::string not_converged(bool converged, int iterations) {
+  if (converged) return {};
+  return fmt::format(
+      "the fit has not converged: the misfit still fell when it stopped after {} iterations, "
+      "so that its values may move further",
+      iterations);
 }
 
 }  // namespace hookeye

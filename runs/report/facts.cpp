@@ -1,4 +1,4 @@
-#include "app/report/facts.h"
+#include "runs/report/facts.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "app/report/page.h"
+#include "runs/report/page.h"
 
 #include <set>
 #include <stdexcept>
@@ -8,7 +8,7 @@
 #include "capture_io/json_file.h"
 
 #ifdef HOOKEYE_HAS_PAGE
-// Symbols that `ld -r -b binary` makes of page.html (app/CMakeLists.txt).
+// Symbols that `ld -r -b binary` makes of page.html (runs/CMakeLists.txt).
 extern "C" const char _binary_page_html_start[];  // NOLINT
 extern "C" const char _binary_page_html_end[];    // NOLINT
 #endif

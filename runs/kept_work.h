@@ -1,7 +1,9 @@
 // Work that outlives its process: what fits, trials and diagnoses of a run have come to.
 #pragma once
 
-#include "app/commands/run_support.h"
+#include <atomic>
+
+#include "runs/bench.h"
 
 namespace hookeye {
 
@@ -10,7 +12,8 @@ namespace hookeye {
 /// The run is open for writing, and outlives it.
 class KeptWork {
  public:
-  KeptWork(const Run& run, Bench& bench);
+  /// `cancel`: set where the user stopped the work; may be null.
+  KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel);
   KeptWork(const KeptWork&) = delete;
   KeptWork& operator=(const KeptWork&) = delete;
   /// Of a run without a step nothing stays, unless the user stopped it.
@@ -21,6 +24,7 @@ class KeptWork {
  private:
   const Run& run_;
   Bench& bench_;
+  const std::atomic<bool>* cancel_;
   bool from_before_;
 };
 

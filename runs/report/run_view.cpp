@@ -1,4 +1,4 @@
-#include "app/report/run_view.h"
+#include "runs/report/run_view.h"
 
 #include <fmt/format.h>
 
@@ -6,14 +6,14 @@
 #include <charconv>
 #include <cmath>
 
-#include "app/report/answer.h"
-#include "app/report/decision_log.h"
-#include "app/report/encode_png.h"
-#include "app/report/facts.h"
-#include "app/report/inside.h"
-#include "app/report/rebuilt_timeline.h"
 #include "capture_io/json_file.h"
 #include "capture_io/run.h"
+#include "runs/decision_log.h"
+#include "runs/report/answer.h"
+#include "runs/report/encode_png.h"
+#include "runs/report/facts.h"
+#include "runs/report/inside.h"
+#include "runs/report/rebuilt_timeline.h"
 
 namespace hookeye {
 

@@ -1,4 +1,4 @@
-#include "app/report/inside.h"
+#include "runs/report/inside.h"
 
 #include <algorithm>
 
