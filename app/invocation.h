@@ -1,7 +1,6 @@
-// The exact command and the versions that make a step, for run.json and the page.
+// The exact command that makes a step, for run.json and the page.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 namespace hookeye {
@@ -11,8 +10,5 @@ void remember_invocation(int argc, char** argv);
 /// The command line as it may be given to a shell again.
 std::string invocation();
 std::string shell_word(const std::string& word);
-
-/// {"hookeye": "0.1.0", "compiler": ..., "Ceres": ...}
-nlohmann::json versions();
 
 }  // namespace hookeye

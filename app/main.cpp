@@ -12,12 +12,13 @@
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
 #include "app/invocation.h"
-#include "app/printable.h"
 #include "app/progress.h"
 #include "app/validators.h"
 #include "capture_io/input_error.h"
 #include "capture_io/scope.h"
 #include "estimation/evaluation/evaluation.h"
+#include "runs/failed.h"
+#include "runs/printable.h"
 
 namespace hookeye {
 namespace {
@@ -103,6 +104,7 @@ int run(const CommandBody& body, Session& session) {
   } catch (const InputError& error) {
     return report_input(session, error);
   } catch (const Failed& failed) {
+    if (interrupted()) return report(session, kInterrupted, "interrupted", "stopped");
     return report_failure(session, failed.failure);
   } catch (const Interrupted&) {
     return report(session, kInterrupted, "interrupted", "stopped");

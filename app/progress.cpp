@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "app/printable.h"
+#include "runs/printable.h"
 
 namespace hookeye {
 namespace {

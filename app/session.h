@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/printable.h"
-#include "app/text.h"
-#include "capture_io/numerical_failure.h"
+#include "runs/printable.h"
+#include "runs/text.h"
 
 namespace CLI {
 class App;
@@ -36,13 +35,6 @@ struct Session {
   }
   void warn(const std::string& sentence);
 };
-
-/// A numerical failure on its way to the shell: exit status 3.
-struct Failed {
-  NumericalFailure failure;
-};
-/// Throws Interrupted when the user stopped the work, else Failed.
-[[noreturn]] void fail(NumericalFailure failure);
 
 using CommandBody = std::function<void(Session&)>;
 /// Adds a subcommand whose callback sets `chosen`.

@@ -21,6 +21,7 @@
 
 #include "capture_io/interrupted.h"
 #include "capture_io/message.h"
+#include "capture_io/own_file.h"
 #include "capture_io/wire.h"
 
 namespace hookeye {
@@ -225,11 +226,12 @@ HelperLimits limits_for(const fs::path& file) {
 fs::path helper_folder() {
   if (const char* told = std::getenv("HOOKEYE_LIBEXEC")) return told;
   std::error_code failed;
-  fs::path folder = fs::read_symlink("/proc/self/exe", failed).parent_path();
-  for (int up = 0; up < 3; ++up) {
-    folder = folder.parent_path();
+  fs::path folder = own_file().parent_path();
+  constexpr int kUp = 5;  // PREFIX/lib/python3/dist-packages/hookeye/_hookeye.so
+  for (int up = 0; up < kUp; ++up) {
     const fs::path found = folder / "libexec" / "hookeye";
     if (fs::is_directory(found, failed)) return found;
+    folder = folder.parent_path();
   }
   throw std::runtime_error(
       "there is no folder libexec/hookeye beside the program: install Hookeye as a whole, or name "

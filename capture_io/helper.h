@@ -69,8 +69,8 @@ auto ask_helper(const HelperRequest& request, const Unpack& unpack) {
   }
 }
 
-/// The folder of the helpers: $HOOKEYE_LIBEXEC, else libexec/hookeye beside the folder of the
-/// running program, or beside one of the two above it.
+/// The folder of the helpers: $HOOKEYE_LIBEXEC, else libexec/hookeye beside the running program (or
+/// Python's module), or beside one of the folders that it lies in.
 std::filesystem::path helper_folder();
 
 }  // namespace hookeye

@@ -85,10 +85,10 @@ void add_calibration(const fs::path& source, Inventory& out) {
   for (const Importer* importer : importers()) {
     if (!importer->recognises({source})) continue;
     // A folder that holds another's model is recognised as well.
-    for (const Calibration& known : out.calibrations)
+    for (const CalibrationFile& known : out.calibrations)
       if (known.importer == importer && source.parent_path() == known.sources.front()) return;
     const bool together = importer->name() == "opencv" || importer->name() == "ros";
-    for (Calibration& known : out.calibrations)
+    for (CalibrationFile& known : out.calibrations)
       if (together && known.importer == importer &&
           known.sources.front().parent_path() == source.parent_path()) {
         known.sources.push_back(source);
@@ -131,7 +131,7 @@ void say_left(const std::vector<fs::path>& left, const std::string& why, Invento
 
 }  // namespace
 
-std::string Calibration::name(const fs::path& folder) const {
+std::string CalibrationFile::name(const fs::path& folder) const {
   std::vector<std::string> names;
   for (const fs::path& source : sources)
     names.push_back(source.lexically_relative(folder).string());

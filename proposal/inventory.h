@@ -19,7 +19,7 @@ struct PhotoSeries {
 };
 
 /// Files that an importer takes together.
-struct Calibration {
+struct CalibrationFile {
   const Importer* importer = nullptr;  ///< null: a cameras.yaml of `hookeye import`
   Importer::Sources sources;
   /// "intrinsics.yml,extrinsics.yml", as seen from a folder.
@@ -29,7 +29,7 @@ struct Calibration {
 struct Inventory {
   std::filesystem::path folder;  ///< absolute
   std::vector<PhotoSeries> series;
-  std::vector<Calibration> calibrations;
+  std::vector<CalibrationFile> calibrations;
   std::vector<std::filesystem::path> surfaces, volumes;
   std::vector<TextTable> tables;                ///< of test machines
   std::vector<std::filesystem::path> textures;  ///< pictures called albedo or texture

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const Calibration& chosen_calibration(const Inventory& inventory, Questions& questions) {
+const CalibrationFile& chosen_calibration(const Inventory& inventory, Questions& questions) {
   if (inventory.calibrations.empty()) {
     std::string kinds;
     for (const Importer* importer : importers())
@@ -29,7 +29,7 @@ const Calibration& chosen_calibration(const Inventory& inventory, Questions& que
                                  kinds));
   }
   std::vector<std::string> names;
-  for (const Calibration& one : inventory.calibrations) names.push_back(one.name(inventory.folder));
+  for (const CalibrationFile& one : inventory.calibrations) names.push_back(one.name(inventory.folder));
   const std::string answer = questions.ask({.name = "calibration",
                                             .text = "which calibration holds",
                                             .standard = names.front(),
@@ -43,7 +43,7 @@ ImageHeader header_of(const PhotoSeries& series) {
   return read_image_header(series.photos.begin()->second);
 }
 
-Imported read_calibration(const Calibration& calibration, const PhotoSeries& series) {
+Imported read_calibration(const CalibrationFile& calibration, const PhotoSeries& series) {
   if (!calibration.importer) {
     const std::string file = calibration.sources.front().string();
     Imported out;
@@ -214,7 +214,7 @@ void check_photo_sizes(const ProposedCameras& proposed) {
 
 ProposedCameras propose_cameras(const Inventory& inventory, const BodyFacts& body,
                                 Questions& questions) {
-  const Calibration& calibration = chosen_calibration(inventory, questions);
+  const CalibrationFile& calibration = chosen_calibration(inventory, questions);
   ProposedCameras out;
   out.source = (calibration.importer ? calibration.importer->name() : "hookeye import") + ": " +
                calibration.name(inventory.folder);

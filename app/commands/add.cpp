@@ -6,16 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/commands/add_step.h"
 #include "app/commands/commands.h"
-#include "app/commands/kept_work.h"
+#include "app/commands/run_support.h"
 #include "app/interrupt.h"
-#include "app/report/run_limits.h"
-#include "app/text.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/effect.h"
 #include "estimation/output/step_json.h"
 #include "estimation/search/refit_score.h"
+#include "runs/add_step.h"
+#include "runs/kept_work.h"
+#include "runs/run_limits.h"
+#include "runs/text.h"
 
 namespace hookeye {
 namespace {
@@ -59,7 +60,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   Run run = open_run(arguments.run, true);
   check_stands(run, arguments.request);
   Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
-  const KeptWork kept(run, bench);
+  const KeptWork kept(run, bench, &interrupted());
   Step current = newest_step(run, bench);
   AddOptions options;
   options.fit = fit_options();
@@ -73,7 +74,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   options.doing = [](const std::string& work) { spdlog::info("{}", work); };
   options.note = [&session](const std::string& sentence) { session.say("{}", wrapped(sentence)); };
   Step step = next_step(bench, current, arguments.request, options);
-  const auto folder = record(run, step);
+  const auto folder = record(run, step, invocation());
   const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
   spdlog::info("diagnosing the new step");
   diagnose_newest(run, bench, step, options.diagnosis);

@@ -2,11 +2,12 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
-#include "app/commands/kept_work.h"
 #include "app/commands/run_support.h"
-#include "app/report/run_limits.h"
+#include "app/interrupt.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/output/step_json.h"
+#include "runs/kept_work.h"
+#include "runs/run_limits.h"
 
 namespace hookeye {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 void run_diagnose(const std::string& folder, Session& session) {
   Run run = open_run(folder, true);
   Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
-  const KeptWork kept(run, bench);
+  const KeptWork kept(run, bench, &interrupted());
   Step step = newest_step(run, bench);
   diagnose_newest(run, bench, step, diagnosis_options());
   session.document = to_json(step.diagnosis);

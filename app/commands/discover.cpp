@@ -1,20 +1,13 @@
 // hookeye discover: fit, diagnose, add, until what is left is noise.
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
-#include <utility>
 
-#include "app/commands/add_step.h"
 #include "app/commands/commands.h"
-#include "app/commands/kept_work.h"
 #include "app/commands/limit_options.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
-#include "app/report/decision_log.h"
-#include "estimation/output/step_json.h"
-#include "estimation/search/tested.h"
+#include "runs/add_step.h"
+#include "runs/kept_work.h"
+#include "runs/search.h"
 
 namespace hookeye {
 namespace {
@@ -24,175 +17,19 @@ struct DiscoverArguments {
   std::vector<std::string> without, set;
 };
 
-/// The run has a step that the search, taken up, does not come to: made by another hand, or by
-/// another way of rounding.
-struct OtherStep {};
-
-/// The step of the timeline is this one, but for rounding.
-bool same_step(const nlohmann::json& told, const Step& step) {
-  const nlohmann::json now = timeline_entry(step);
-  for (const char* key : {"name", "added", "dropped", "effects"})
-    if (told.value(key, nlohmann::json()) != now.at(key)) return false;
-  const nlohmann::json &were = told.at("parameters"), &are = now.at("parameters");
-  return std::equal(were.begin(), were.end(), are.begin(), are.end(), [](auto& was, auto& is) {
-    const double value = number_in(was, "value"), other = number_in(is, "value");
-    const double interval = number_in(was, "high") - number_in(was, "low");
-    const double rounding = 1e-6 * (std::abs(value) + std::abs(other));
-    return was.at("name") == is.at("name") &&
-           std::abs(value - other) <= std::max(rounding, 0.01 * interval);
-  });
-}
-
-/// Steps as the search comes to them: what the run has already stays as it is.
-class Recorder {
- public:
-  /// `from`: the step that the search goes on from, which has no diagnosis yet; -1: none.
-  Recorder(Run& run, Bench& bench, DecisionLog& log, int from)
-      : run_(run),
-        bench_(bench),
-        log_(log),
-        from_(from),
-        next_(static_cast<size_t>(std::max(from, 0))) {}
-
-  void operator()(const Step& step) {
-    const size_t index = next_++;
-    if (index >= run_.steps().size()) {
-      record(run_, whole(step), invocation(), true);
-    } else if (!same_step(run_.timeline().at("steps").at(index), step)) {
-      throw OtherStep{};
-    } else if (from_ >= 0 && index + 1 == run_.steps().size() && index == size_t(from_)) {
-      record_diagnosis(run_, whole(step));
-    }
-    log_.follow(run_.steps().at(index));
-  }
-
- private:
-  Step whole(const Step& step) { return with_displaced(bench_, step, &interrupted()); }
-
-  Run& run_;
-  Bench& bench_;
-  DecisionLog& log_;
-  int from_;
-  size_t next_;
-};
-
-DiscoverEvents events(Run& run, Bench& bench, DecisionLog& log, int from) {
-  auto recorder = std::make_shared<Recorder>(run, bench, log, from);
-  DiscoverEvents events;
-  events.step = [recorder](const Step& step) {
-    (*recorder)(step);
-    spdlog::info("{}: chi {} fitted, {} held out (floor {:.3f})", name_of(step),
-                 chi_text(step.fitted.evaluation.chi(false)),
-                 chi_text(step.fitted.evaluation.chi(true)), step.diagnosis.floor.chi);
-    bool announced = false;
-    for (const auto& effect : step.diagnosis.effects) {
-      if (!nameable(effect, step.diagnosis)) continue;
-      if (!std::exchange(announced, true))
-        spdlog::info("  what stands out, guessed from one linear step (refits decide):");
-      spdlog::info("  {}: evidence {:.1f}, {}", effect.effect, effect.evidence, effect.why);
-    }
-  };
-  events.tried = [](const Racer& racer) {
-    spdlog::info("trial of {}: {} fitted, {} held out, {}", racer.effect,
-                 times_floor(racer.trial.chi_fit, racer.trial.floor),
-                 times_floor(racer.trial.chi_validate, racer.trial.floor),
-                 racer.trial.floor > 0.0 ? "times the floor of half-size photos"
-                                         : "chi of half-size photos");
-  };
-  events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
-  events.refitted = [](const std::string& effect,
-                       const std::variant<Fitted, NumericalFailure>& result) {
-    if (const auto* fitted = std::get_if<Fitted>(&result))
-      spdlog::info("  {}: chi {} fitted, {} held out", effect,
-                   chi_text(fitted->evaluation.chi(false)), chi_text(fitted->evaluation.chi(true)));
-    else if (const auto& failure = std::get<NumericalFailure>(result);
-             failure.reason != "cancelled")
-      spdlog::info("  {}: given up, {}{}", effect, failure.reason,
-                   failure.example.empty() ? "" : fmt::format(" in '{}'", failure.example));
-  };
-  return events;
-}
-
-/// The step that the search of this run goes on from, -1 where it makes the base itself: where it
-/// was taken up before, if what it came to is known still. With all that was asked in between it
-/// then takes the same way.
-int begin(Run& run, const DiscoverOptions& options, bool known) {
-  const int last = static_cast<int>(run.steps().size()) - 1;
-  const nlohmann::json asked = {{"without", options.diagnosis.without}};
-  const nlohmann::json told = run.timeline().value("search", nlohmann::json::object());
-  if (known && told.contains("from") && told.value("asked", nlohmann::json()) == asked &&
-      told.at("from") <= last)
-    return told.at("from");
-  run.update([&](auto& timeline) { timeline["search"] = {{"from", last}, {"asked", asked}}; });
-  return last;
-}
-
-Discovery search_from(int from, Run& run, Bench& bench, DiscoverOptions options) {
-  for (int i = 0; i <= from; ++i) {
-    const nlohmann::json& step = run.timeline().at("steps").at(static_cast<size_t>(i));
-    if (auto tied = tied_in(step, *bench.scene->limits); tied.size() > 1)
-      options.tie = std::move(tied);
-    options.past.push_back(contested_in(step));
-  }
-  DecisionLog log(run);
-  options.fit.decided = [&log](const Decision& decision) { log(decision); };
-  const DiscoverEvents on = events(run, bench, log, from);
-  const ModelForm form = base_form(bench.scene);
-  return value_or_fail(from < 0 ? discover(bench.workspace, form, form.initial(), options, on)
-                                : discover_from(bench.workspace,
-                                                step_of(run, bench, static_cast<size_t>(from)),
-                                                options, on));
-}
-
-/// `known`: something of it was worked out before.
-Discovery search(Run& run, Bench& bench, const DiscoverOptions& options, bool known) {
-  try {
-    return search_from(begin(run, options, known), run, bench, options);
-  } catch (const OtherStep&) {
-    spdlog::info("the search goes on from the newest step");
-    return search_from(begin(run, options, false), run, bench, options);
-  }
-}
-
-/// What is left of examples that nothing has seen, once the verdict is written: nothing that comes
-/// of it changes or loses that.
-void tell_tested(Run& run, const Bench& bench, const Fitted& last, Session& session) {
-  const auto result = test(last, bench.capture, fit_options());
-  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
-    if (cancelled(*failure)) fail(*failure);
-    session.warn(fmt::format("example '{}' of use: test could not be predicted: {}",
-                             failure->example, failure->reason));
-  } else if (const auto& tested = std::get<std::optional<Tested>>(result)) {
-    run.update([&](nlohmann::json& timeline) { timeline["tested"] = to_json(*tested); });
-  }
-}
-
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
-  Bench bench = open_capture(arguments.capture, session, limits_for(arguments.run, arguments.set));
+  Bench bench = open_capture(arguments.capture, session,
+                             limits_for(arguments.run, told_limits(arguments.set)));
   Run run = create_run(arguments.run, bench.scene->capture.file);
   keep_limits(run, *bench.scene->limits);
-  const KeptWork kept(run, bench);
-  DiscoverOptions options = discover_options();
-  options.diagnosis.without = arguments.without;
-  const Discovery found = search(run, bench, options, kept.from_before());
-  // What held-out photos alone show there are the values.
-  std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
-  for (const std::string& told : {high_floor(found.floor), copied_floor(found.floor)})
-    if (!told.empty()) hint += (hint.empty() ? "" : ". ") + told;
-  run.update([&](nlohmann::json& timeline) {
-    timeline.erase("tested");
-    timeline["verdict"] = to_string(found.verdict);
-    timeline["sentence"] = found.sentence;
-    timeline["missing"] = found.missing;
-    timeline["tie"] = found.tie;
-    timeline["untold"] = found.untold;
-    timeline["hint"] = hint;
-    timeline.erase("fitted_to_all");
-    if (found.all) timeline["fitted_to_all"] = to_json(*found.all);
-    tell_floor(timeline, found.floor);
-  });
-  tell_tested(run, bench, found.steps.back().fitted, session);
+  const KeptWork kept(run, bench, &interrupted());
+  SearchRequest wanted;
+  wanted.options = discover_options();
+  wanted.options.diagnosis.without = arguments.without;
+  wanted.command = invocation();
+  wanted.warn = warn_to(session);
+  const Discovery found = discover_into(run, bench, wanted, kept.from_before());
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
   say_answer(run, session);
@@ -210,7 +47,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
     session.say("{}", wrapped(note));
   session.say("\n{}",
               wrapped(fmt::format("in detail, {}: {}", to_string(found.verdict), found.sentence)));
-  if (!hint.empty()) session.say("{}", wrapped(hint));
+  if (const std::string hint = run.timeline().at("hint"); !hint.empty())
+    session.say("{}", wrapped(hint));
   if (found.verdict == Verdict::unexplained)
     tell_free_form(run, bench, found.steps.back(), session);
   say_pictures(run.steps().back(), session);

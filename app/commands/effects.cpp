@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/commands/add_step.h"
 #include "app/commands/commands.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/declaration.h"
+#include "runs/add_step.h"
 
 namespace hookeye {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/commands/add_step.h"
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
-#include "app/report/decision_log.h"
+#include "runs/add_step.h"
+#include "runs/decision_log.h"
 
 namespace hookeye {
 namespace {

@@ -1,18 +1,14 @@
 // hookeye fit: the base model, step 0 of a run.
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
-#include "app/commands/kept_work.h"
 #include "app/commands/limit_options.h"
 #include "app/commands/run_support.h"
-#include "app/commands/tables.h"
+#include "app/interrupt.h"
 #include "capture_io/json_file.h"
 #include "estimation/effects/catalogue.h"
-#include "estimation/model/additive_material.h"
-#include "estimation/output/step_json.h"
-#include "estimation/search/progressive.h"
+#include "runs/fit_base.h"
+#include "runs/kept_work.h"
 
 namespace hookeye {
 namespace {
@@ -27,23 +23,6 @@ struct FitArguments {
     return options;
   }
 };
-
-/// The textbook law first, where it can move; then the same energy told additively, refined.
-Fitted fit_additive(Bench& bench, const ModelForm& form, const VectorXd& p,
-                    const FitOptions& fit_options) {
-  const bool own = has_additive(form);
-  std::vector<AdditiveStart> starts = {own ? AdditiveStart(form, p) : to_additive(form, p)};
-  if (!own && form.size() > 0) {
-    const Fitted base = value_or_fail(fit(bench.workspace, form, p, fit_options));
-    for (int i = 0; i < base.p.size(); ++i)
-      spdlog::info("the law by itself: {} {:.5g} {}", form.parameters()[i].name, base.p[i],
-                   form.parameters()[i].unit);
-    starts.insert(starts.begin(), to_additive(form, base.p));
-  }
-  ProgressiveOptions options;
-  options.fit = fit_options;
-  return value_or_fail(fit_progressive(bench.workspace, starts, options));
-}
 
 void say_refinements(const Fitted& fitted, const Session& session) {
   std::vector<std::vector<std::string>> rows = {
@@ -67,10 +46,11 @@ void warn_of_lost_ellipticity(const std::filesystem::path& step, Session& sessio
 }
 
 void run_fit(const FitArguments& arguments, Session& session) {
-  Bench bench = open_capture(arguments.capture, session, limits_for(arguments.run, arguments.set));
+  Bench bench = open_capture(arguments.capture, session,
+                             limits_for(arguments.run, told_limits(arguments.set)));
   Run run = create_run(arguments.run, bench.scene->capture.file);
   keep_limits(run, *bench.scene->limits);
-  const KeptWork kept(run, bench);
+  const KeptWork kept(run, bench, &interrupted());
   if (!run.steps().empty()) {
     if (!arguments.model.empty() || !arguments.material.empty())
       throw InputError({arguments.run},
@@ -80,24 +60,21 @@ void run_fit(const FitArguments& arguments, Session& session) {
     session.document = run.timeline();
     return;
   }
-  ModelForm form = base_form(bench.scene);
-  VectorXd start = form.initial();
+  BaseFit wanted;
+  wanted.form = base_form(bench.scene);
+  wanted.start = wanted.form.initial();
   if (!arguments.model.empty())
-    std::tie(form, start) = read_model(arguments.model, bench.scene, catalogue());
-  Step step;
-  step.name = "base";
-  const bool additive = arguments.material == "additive" || has_additive(form);
+    std::tie(wanted.form, wanted.start) = read_model(arguments.model, bench.scene, catalogue());
+  wanted.additive = arguments.material == "additive";
+  wanted.command = invocation();
   const FitOptions options = arguments.options();
-  step.fitted = additive ? fit_additive(bench, form, start, options)
-                         : value_or_fail(fit(bench.workspace, form, start, options));
-  const auto folder = record(run, step);
-  const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
-  run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
+  const Step step = fit_base(run, bench, wanted, options);
+  const auto folder = run.steps().back();
   session.document = run.timeline();
   warn_of_lost_ellipticity(folder, session);
   say_answer(run, session);
   session.say("{}", parameter_table(step.fitted));
-  if (additive) say_refinements(step.fitted, session);
+  if (!step.fitted.refinements.empty()) say_refinements(step.fitted, session);
   session.say("written to {}\n", folder.string());
   const std::string unfinished = not_converged(step.fitted.converged, step.fitted.iterations);
   if (!unfinished.empty())

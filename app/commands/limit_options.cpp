@@ -4,15 +4,15 @@
 
 #include <charconv>
 
-#include "app/report/run_limits.h"
-#include "app/text.h"
 #include "capture_io/input_error.h"
+#include "runs/run_limits.h"
+#include "runs/text.h"
 
 namespace hookeye {
 
 namespace {
 
-void set_told(Limits& limits, const std::string& told) {
+ToldLimit told_limit(const std::string& told) {
   const std::string right = "--set NAME=VALUE; `hookeye discover --options` lists them";
   const size_t at = told.find('=');
   if (at == std::string::npos)
@@ -22,7 +22,7 @@ void set_told(Limits& limits, const std::string& told) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
     throw InputError({"--set"}, fmt::format("`{}` is no number", text), right);
-  set_limit(limits, told.substr(0, at), value, "--set");
+  return {told.substr(0, at), value, "--set"};
 }
 
 }  // namespace
@@ -51,26 +51,10 @@ void add_limit_options(CLI::App& command, std::vector<std::string>& told) {
       ->trigger_on_parse();
 }
 
-Limits limits_for(const std::filesystem::path& run, const std::vector<std::string>& told) {
-  Limits kept;
-  bool steps = false;
-  if (std::filesystem::exists(run / "run.json")) {
-    const Run there = Run::open(run, false);
-    kept = limits_of(there.timeline());
-    steps = !there.steps().empty();
-  }
-  Limits limits = kept;
-  for (const std::string& one : told) set_told(limits, one);
-  if (steps && changed(limits) != changed(kept))
-    throw InputError({run.string()}, "the steps of this run were made by other options",
-                     "leave --set out, or name a new folder");
-  return limits;
-}
-
-void keep_limits(Run& run, const Limits& limits) {
-  const auto told = changed(limits);
-  if (told.empty()) return;
-  run.update([&](nlohmann::json& timeline) { timeline["options"] = told; });
+std::vector<ToldLimit> told_limits(const std::vector<std::string>& told) {
+  std::vector<ToldLimit> out;
+  for (const std::string& one : told) out.push_back(told_limit(one));
+  return out;
 }
 
 }  // namespace hookeye

@@ -2,17 +2,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "app/commands/add_step.h"
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
-#include "app/report/run_limits.h"
 #include "app/validators.h"
 #include "capture_io/json_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/plan/plan_json.h"
+#include "runs/add_step.h"
+#include "runs/run_limits.h"
 
 namespace hookeye {
 namespace {

@@ -1,13 +1,12 @@
 // hookeye render: what the cameras would see of every example.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "app/commands/solve.h"
 #include "app/interrupt.h"
 #include "capture_io/scope.h"
-#include "estimation/evaluation/photo_evaluation.h"
+#include "runs/look.h"
 
 namespace hookeye {
 namespace {
@@ -17,41 +16,6 @@ struct RenderCommand {
 };
 
 using Json = nlohmann::ordered_json;
-
-/// Every camera looks at every example, also where the capture has no photo of it. Where the photos
-/// of one example give the texture, only cameras that took one of it can.
-void look_with_all_cameras(Capture& capture) {
-  for (auto& example : capture.examples)
-    for (const auto& camera : capture.cameras) {
-      const bool has = std::any_of(example.photos.begin(), example.photos.end(),
-                                   [&](const PhotoSpec& p) { return p.camera == camera.name; });
-      if (has) continue;
-      PhotoSpec photo;
-      photo.camera = camera.name;
-      photo.place = example.place;
-      example.photos.push_back(photo);
-    }
-}
-
-/// The picture with as many channels as the texture has for this photo.
-Image picture(PhotoComparer& comparer, const Model& model, int e, int k, const VectorXd& q,
-              const VectorXd* q_reference) {
-  const Scene& scene = *model.scene;
-  RenderOptions options = render_options(scene);
-  options.derivatives = false;
-  const bool rgb = scene.capture.examples[e].photos[k].rgb && scene.albedo.size() > 1;
-  const int channels = rgb ? static_cast<int>(scene.albedo.size()) : 1;
-  Image all;
-  for (int c = 0; c < channels; ++c) {
-    const Image plane = comparer.render(model, q, q_reference, k, c, options).I;
-    if (c == 0) {
-      all = {plane.width, plane.height, channels, {}};
-      all.values.resize(plane.pixels() * channels);
-    }
-    for (size_t i = 0; i < plane.pixels(); ++i) all.values[i * channels + c] = plane.values[i];
-  }
-  return all;
-}
 
 void run_render(const RenderCommand& options, Session& session) {
   Capture capture = read_capture(options.capture);
@@ -87,8 +51,9 @@ void run_render(const RenderCommand& options, Session& session) {
       const Encoding encoding{options.format == "png" ? Encoding::Kind::srgb
                                                       : Encoding::Kind::linear};
       write_image(file,
-                  picture(comparer, model, static_cast<int>(e), static_cast<int>(k), q[e],
-                          reference >= 0 ? &q[reference] : nullptr),
+                  look(comparer, model, static_cast<int>(e), static_cast<int>(k), q[e],
+                       reference >= 0 ? &q[reference] : nullptr)
+                      .picture,
                   encoding);
       document["photos"].push_back(
           {{"example", example.name}, {"camera", camera}, {"file", file.string()}});

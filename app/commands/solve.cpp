@@ -7,6 +7,7 @@
 #include "app/session.h"
 #include "capture_io/scope.h"
 #include "estimation/effects/catalogue.h"
+#include "runs/failed.h"
 
 namespace hookeye {
 

@@ -6,6 +6,7 @@
 #include "app/commands/commands.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
+#include "runs/failed.h"
 
 namespace hookeye {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <iterator>
 
-#include "app/commands/kept_work.h"
 #include "app/interrupt.h"
-#include "app/report/run_limits.h"
+#include "runs/kept_work.h"
+#include "runs/run_limits.h"
 
 namespace hookeye {
 
@@ -118,7 +118,7 @@ AddOptions RefitJob::options() {
 void RefitJob::refit(const AddRequest& request) {
   Run run = open_run(run_, true);
   if (!bench_) bench_.emplace(open_capture(run.capture(), session_, limits_of(run.timeline())));
-  const KeptWork kept(run, *bench_);
+  const KeptWork kept(run, *bench_, &interrupted());
   AddOptions wanted = options();
   stage("evaluating the newest step");
   FitOptions quiet = wanted.fit;

@@ -10,7 +10,8 @@
 #include <string>
 #include <thread>
 
-#include "app/commands/add_step.h"
+#include "app/commands/run_support.h"
+#include "runs/add_step.h"
 
 namespace hookeye {
 

@@ -13,10 +13,10 @@
 #include <thread>
 
 #include "app/interrupt.h"
-#include "app/report/inside.h"
-#include "app/report/page.h"
 #include "app/server/refit_job.h"
 #include "capture_io/run.h"
+#include "runs/report/inside.h"
+#include "runs/report/page.h"
 
 // Last: it includes resolv.h, whose macro _res breaks Eigen's headers.
 #include <httplib.h>

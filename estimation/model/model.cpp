@@ -5,6 +5,7 @@
 
 #include "estimation/model/additive_material.h"
 #include "estimation/model/effect.h"
+#include "estimation/model/held.h"
 
 namespace hookeye {
 
@@ -74,6 +75,9 @@ namespace {
 std::shared_ptr<const Ingredient> same_ingredient(const ModelForm& base, const ModelForm& so_far,
                                                   const VectorXd& p, const Ingredient& wanted,
                                                   const Catalogue& effects) {
+  if (const auto held = held_in(wanted.variant()))
+    for (const auto& ingredient : base.ingredients)
+      if (ingredient->name() == wanted.name()) return hold(ingredient, *held);
   if (wanted.name() == "material" && !wanted.variant().empty())
     return additive_material_from(wanted.variant(), base.scene->capture.units);
   for (const auto& ingredient : base.ingredients)

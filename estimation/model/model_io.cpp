@@ -11,6 +11,7 @@
 #include "capture_io/yaml_tree.h"
 #include "estimation/model/additive_material.h"
 #include "estimation/model/effect.h"
+#include "estimation/model/held.h"
 #include "estimation/model/model.h"
 
 namespace hookeye {
@@ -95,12 +96,28 @@ std::shared_ptr<const Ingredient> with_written_bounds(
   return out;
 }
 
+/// The base ingredient with the numbers that its variant holds. Null: it holds none.
+std::shared_ptr<const Ingredient> held_ingredient(const YamlNode& variant, const std::string& name,
+                                                  const ModelForm& base) {
+  const auto told = held_in(read_string(variant, "variant"));
+  if (!told) return nullptr;
+  try {
+    for (const auto& ingredient : base.ingredients)
+      if (ingredient->name() == name) return hold(ingredient, *told);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(variant.place, error.what(), "take it from a model.yaml of the same capture");
+  }
+  return nullptr;
+}
+
 std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, const ModelForm& base,
                                                   const Model& model, const Catalogue& effects) {
   const YamlNode& named = section.need("name", "name: material, or an effect's name");
   const std::string name = read_string(named, "name");
   std::vector<std::string> known;
   const YamlNode* structure = section.find("variant");
+  if (structure)
+    if (auto held = held_ingredient(*structure, name, base)) return held;
   if (name == "material" && structure) {
     try {
       auto material =

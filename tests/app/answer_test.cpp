@@ -1,5 +1,5 @@
 // The answer first: what a run has found in plain words, from its own files.
-#include "app/report/answer.h"
+#include "runs/report/answer.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 # Installs into a folder of its own and runs what is there, away from the build.
-# -DBUILD=FOLDER -DTO=FOLDER
+# -DBUILD=FOLDER -DTO=FOLDER [-DPYTHON=PROGRAM]
 file(REMOVE_RECURSE ${TO})
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${BUILD} --prefix ${TO} RESULT_VARIABLE status
   OUTPUT_QUIET)
@@ -42,4 +42,15 @@ foreach(file out/deformed/pull.vtu run/steps/00-base/metrics.json)
     message(FATAL_ERROR "the installed hookeye has not written ${file}")
   endif()
 endforeach()
+# The module finds the helper programs from where it lies.
+set(packages ${TO}/lib/python3/dist-packages)
+file(GLOB module ${packages}/hookeye/_hookeye*.so)
+if(module)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${packages} ${PYTHON} -c
+    "import hookeye as he; he.fit(he.Capture('.'), out='python-run')"
+    WORKING_DIRECTORY ${TO} RESULT_VARIABLE status ERROR_VARIABLE said)
+  if(NOT status EQUAL 0 OR NOT EXISTS ${TO}/python-run/steps/00-base/metrics.json)
+    message(FATAL_ERROR "the installed module does not fit: ${said}")
+  endif()
+endif()
 file(REMOVE_RECURSE ${TO})

@@ -1,5 +1,5 @@
 // Text from files that a terminal would obey is shown instead, in every output.
-#include "app/printable.h"
+#include "runs/printable.h"
 
 #include <gmock/gmock.h>
 

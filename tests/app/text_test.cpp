@@ -1,12 +1,12 @@
 // What is said on a terminal of 100 columns.
-#include "app/text.h"
+#include "runs/text.h"
 
 #include <gmock/gmock.h>
 
 #include "app/cli.h"
-#include "app/commands/tables.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/output/step_json.h"
+#include "runs/tables.h"
 
 namespace hookeye::test {
 namespace {

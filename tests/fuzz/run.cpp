@@ -1,8 +1,8 @@
 // run.json: as a run that commands go on from, and as what `report` shows.
 #include "capture_io/run.h"
 
-#include "app/report/run_view.h"
 #include "fuzz.h"
+#include "runs/report/run_view.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace hookeye;

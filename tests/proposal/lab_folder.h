@@ -15,7 +15,7 @@ namespace hookeye::test {
 /// A bar of 10 x 10 x 30 mm on z = 0 that two cameras see; it is pulled along z.
 class LabFolder {
  public:
-  /// Calibration and bar; photos and table are added.
+  /// CalibrationFile and bar; photos and table are added.
   LabFolder();
   const std::filesystem::path& path() const { return folder_.path(); }
   void write(const std::string& name, const std::string& text) const;

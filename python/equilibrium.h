@@ -1,0 +1,34 @@
+// hookeye.Equilibrium and what a model shows: equilibria, pictures, normal equations.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "python/model.h"
+#include "python/work.h"
+#include "runs/look.h"
+
+namespace hookeye {
+
+/// One load case solved, with all that reads it.
+struct SolvedExample {
+  Model model;
+  int example = 0;
+  Equilibrium state;
+  const TetMesh& mesh() const { return model.scene->body->mesh; }
+};
+
+/// For the thread of the work. Throw InputError, Failed or Interrupted.
+std::shared_ptr<SolvedExample> simulate(const ModelState& model, const std::string& example,
+                                        const Work& work);
+Sighting render(const ModelState& model, const std::string& example, const std::string& camera,
+                const Work& work);
+Evaluation evaluate(Workspace& workspace, const ModelState& model, bool derivatives, bool held_out,
+                    const Work& work);
+
+void bind_equilibrium(pybind11::module_& m);
+
+}  // namespace hookeye

@@ -1,0 +1,28 @@
+"""Hookeye: the elastic model of a soft object from photos under known loads.
+
+The same engine as the program `hookeye`; docs/python.md tells the whole interface.
+"""
+
+import logging as _logging
+
+from . import importers
+from ._hookeye import Camera, __version__
+from .capture import Capture
+from .catalogue import effects, options
+from .equilibrium import Equilibrium
+from .errors import Cancelled, InputError, NumericalError
+from .model import Evaluation, Model, Parameter, Picture
+from .progress import ProgressBar
+from .run import Diagnosis, Field, Progress, Run, Step, batch, discover, fit
+from .tables import Table
+from .threads import set_threads
+
+# A library leaves it to the program that uses it what is logged where.
+_logging.getLogger("hookeye").addHandler(_logging.NullHandler())
+
+__all__ = [
+    "Camera", "Cancelled", "Capture", "Diagnosis", "Equilibrium", "Evaluation", "Field",
+    "InputError", "Model", "NumericalError", "Parameter", "Picture", "Progress", "ProgressBar", "Run", "Step",
+    "Table", "__version__", "batch", "discover", "effects", "fit", "importers", "options",
+    "set_threads",
+]

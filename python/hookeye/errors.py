@@ -1,0 +1,32 @@
+"""What goes wrong, and where."""
+
+from __future__ import annotations
+
+
+class InputError(ValueError):
+    """Bad input: a file with line and column (0: the whole file), or an argument (file "")."""
+
+    def __init__(self, message: str, file: str = "", line: int = 0, column: int = 0,
+                 wrong: str = "", right: str = "") -> None:
+        super().__init__(message)
+        self.file, self.line, self.column = file, line, column
+        self.wrong, self.right = wrong or message, right
+
+    def __reduce__(self):
+        return (type(self), (str(self), self.file, self.line, self.column, self.wrong, self.right))
+
+
+class NumericalError(ArithmeticError):
+    """The numbers failed: no equilibrium, no convergence."""
+
+    def __init__(self, message: str, example: str = "", load_fraction: float = 1.0,
+                 reason: str = "") -> None:
+        super().__init__(message)
+        self.example, self.load_fraction, self.reason = example, load_fraction, reason or message
+
+    def __reduce__(self):
+        return (type(self), (str(self), self.example, self.load_fraction, self.reason))
+
+
+class Cancelled(Exception):
+    """`cancel` was set. (Ctrl-C is KeyboardInterrupt.)"""

@@ -1,0 +1,118 @@
+#include "runs/add_step.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "estimation/effects/catalogue.h"
+#include "runs/failed.h"
+
+namespace hookeye {
+namespace {
+
+[[noreturn]] void unknown_effect(const std::string& wanted) {
+  std::vector<std::string> known;
+  for (const Effect* effect : catalogue()) known.push_back(effect->name());
+  const std::string near = nearest_name(wanted, known);
+  throw InputError({wanted}, "there is no such effect",
+                   near.empty() ? fmt::format("one of: {}", fmt::join(known, ", "))
+                                : fmt::format("did you mean '{}'?", near));
+}
+
+[[noreturn]] void there_already(const std::string& wanted) {
+  throw InputError(
+      {wanted}, "the newest step has this effect already",
+      "add another one, or take this one back: `hookeye add RUN " + wanted + " --take-back`");
+}
+
+[[noreturn]] void not_there(const std::string& wanted, const std::vector<std::string>& effects) {
+  throw InputError(
+      {wanted}, "the newest step does not have this effect",
+      effects.empty() ? "it has none, so nothing can be taken back"
+                      : fmt::format("it has {}: take back one of these", fmt::join(effects, ", ")));
+}
+
+Step with_effect(Bench& bench, const Step& current, const std::string& name,
+                 const AddOptions& options) {
+  const bool tested =
+      std::any_of(current.diagnosis.effects.begin(), current.diagnosis.effects.end(),
+                  [&](const EffectScore& score) { return score.effect == name; });
+  if (!tested && options.doing) options.doing("diagnosing the newest step");
+  const Diagnosis diagnosis =
+      tested ? current.diagnosis
+             : value_or_fail(diagnose(bench.workspace, current.fitted, options.diagnosis));
+  for (const auto& score : diagnosis.effects) {
+    if (score.effect != name) continue;
+    if (!score.best)
+      throw InputError({name}, "this effect cannot be added: " + score.why_not,
+                       "add another one; `hookeye diagnose RUN` ranks them");
+    if (options.note) {
+      if (!score.testable) options.note(name + ": " + score.why_not);
+      options.note(
+          fmt::format("predicted: removes {:.0f} % of the misfit", 100.0 * score.explains));
+    }
+    if (options.doing) options.doing("refitting");
+    Step step;
+    step.name = step.added = name;
+    step.fitted = value_or_fail(add_effect(bench.workspace, current.fitted, score, options.fit));
+    return step;
+  }
+  unknown_effect(name);
+}
+
+Step without_effect(Bench& bench, const Step& current, const std::string& name,
+                    const AddOptions& wanted) {
+  ModelForm form = current.fitted.form;
+  std::vector<double> p;
+  int offset = 0;
+  form.ingredients.clear();
+  const auto& all = current.fitted.form.ingredients;
+  // the newest, where it stands more than once
+  const auto newest =
+      std::find_if(all.rbegin(), all.rend(), [&](const auto& one) { return one->name() == name; });
+  if (newest == all.rend()) not_there(name, effects_in(current.fitted.form));
+  const Effect* effect = find_effect(name);
+  const bool mesh = effect && effect->remeshes((*newest)->variant());
+  for (const auto& ingredient : all) {
+    const int n = static_cast<int>(ingredient->parameters().size());
+    if (ingredient != *newest) {
+      form.ingredients.push_back(ingredient);
+      for (int i = 0; i < n; ++i) p.push_back(current.fitted.p[offset + i]);
+    }
+    offset += n;
+  }
+  if (wanted.doing) wanted.doing("refitting");
+  Step step;
+  step.name = "without-" + name;
+  FitOptions options = wanted.fit;
+  options.coarse_to_fine = false;
+  VectorXd start = Eigen::Map<const VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
+  if (mesh) std::tie(form, start) = transfer(form.realise(start), bench.scene, catalogue());
+  step.fitted = value_or_fail(fit(bench.workspace, form, start, options));
+  return step;
+}
+
+}  // namespace
+
+void check_effect(const std::string& name) {
+  if (!find_effect(name)) unknown_effect(name);
+}
+
+void check_stands(const Run& run, const AddRequest& request) {
+  const nlohmann::json& steps = run.timeline().at("steps");
+  // Runs of earlier versions do not tell: then the model does, once it is read.
+  if (steps.empty() || !steps.back().contains("effects")) return;
+  const auto effects = steps.back().at("effects").get<std::vector<std::string>>();
+  const bool there = std::find(effects.begin(), effects.end(), request.effect) != effects.end();
+  if (request.take_back && !there) not_there(request.effect, effects);
+  const Effect* effect = find_effect(request.effect);
+  if (!request.take_back && there && !(effect && effect->several())) there_already(request.effect);
+}
+
+Step next_step(Bench& bench, const Step& current, const AddRequest& request,
+               const AddOptions& options) {
+  return request.take_back ? without_effect(bench, current, request.effect, options)
+                           : with_effect(bench, current, request.effect, options);
+}
+
+}  // namespace hookeye

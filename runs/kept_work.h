@@ -1,0 +1,31 @@
+// Work that outlives its process: what fits, trials and diagnoses of a run have come to.
+#pragma once
+
+#include <atomic>
+
+#include "runs/bench.h"
+
+namespace hookeye {
+
+/// While it lives, what the bench works out is kept in RUN/archive as it comes, and what is there
+/// is not worked out again: a command that was stopped, whatever stopped it, takes up where it was.
+/// The run is open for writing, and outlives it.
+class KeptWork {
+ public:
+  /// `cancel`: set where the user stopped the work; may be null.
+  KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel);
+  KeptWork(const KeptWork&) = delete;
+  KeptWork& operator=(const KeptWork&) = delete;
+  /// Of a run without a step nothing stays, unless the user stopped it.
+  ~KeptWork();
+
+  bool from_before() const { return from_before_; }  ///< something was there
+
+ private:
+  const Run& run_;
+  Bench& bench_;
+  const std::atomic<bool>* cancel_;
+  bool from_before_;
+};
+
+}  // namespace hookeye

@@ -1,0 +1,22 @@
+// A search in a run: fit, diagnose, add, until what is left is noise; taken up where it stopped.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "runs/bench.h"
+
+namespace hookeye {
+
+struct SearchRequest {
+  DiscoverOptions options;
+  std::string command;                    ///< by whose order, for run.json
+  Warn warn;                              ///< may be empty
+  std::function<void(const Step&)> step;  ///< told every step that stands in the run; may be empty
+};
+
+/// Writes steps and verdict. `known`: something of it was worked out before (KeptWork). Throws
+/// Interrupted or Failed; what is finished stays.
+Discovery discover_into(Run& run, Bench& bench, const SearchRequest& wanted, bool known);
+
+}  // namespace hookeye

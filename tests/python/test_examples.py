@@ -1,0 +1,52 @@
+"""The scripts of python/examples run as they stand there."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+from conftest import SOURCES
+
+
+def run(script, *words, cwd):
+    done = subprocess.run([sys.executable, SOURCES / "python/examples" / script, *map(str, words)],
+                          cwd=cwd, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_fit_and_plot(folder, tmp_path):
+    pytest.importorskip("matplotlib")
+    said = run("fit_and_plot.py", folder / "capture", tmp_path / "fit.png", cwd=tmp_path)
+    assert "neo-hookean" in said and "motion 0/20" in said
+    assert (tmp_path / "fit.png").stat().st_size > 20_000
+
+
+def test_own_optimiser(folder, tmp_path, fitted):
+    pytest.importorskip("scipy")
+    said = run("own_optimiser.py", folder / "capture", cwd=tmp_path).splitlines()
+    chi = float(said[-1].split()[1])
+    mine = dict(line.split()[:2] for line in said[:-1])
+    # Hookeye's own fit is robust: it may leave a little more of the squares.
+    assert chi <= fitted.steps[0].chi * 1.001
+    for name, value, low, high in zip(*(fitted.parameters[k] for k in
+                                        ("name", "value", "low", "high"))):
+        assert abs(float(mine[name]) - value) < 2 * (high - low), name
+
+
+def test_diagnose(folder, tmp_path):
+    pytest.importorskip("pandas")
+    said = run("diagnose.py", folder / "capture", "run", cwd=tmp_path)
+    assert "cannot be told apart: gravity" in said and "named: yes" in said
+
+
+def test_the_page_s_lines_run(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    os.symlink(folder / "capture", tmp_path / "block")
+    blocks = re.findall(r"```python\n(.*?)```", (SOURCES / "docs/python.md").read_text(), re.S)
+    assert len(blocks) == 2
+    names = {}
+    for block in blocks:
+        exec(block, names)
+    assert names["model"]["kappa"].fixed and (tmp_path / "run/run.json").exists()
