@@ -201,15 +201,25 @@ std::string met_forces(const json& metrics) {
       std::sqrt(sum / count), count);
 }
 
+/// What the residual is of: photos; where there is none, fields, else sensors.
+const char* what_is_seen(const json& metrics) {
+  const auto any = [&](const char* key) {
+    return !metrics.is_object() || !metrics.value(key, json::array({1})).empty();
+  };
+  return any("photos") ? "photos" : any("fields") ? "fields" : "values";
+}
+
 std::string misfit_sentence(const json& step, const json& metrics, double floor,
                             const std::string& source) {
   const double held_out = number_in(step, "chi_validate"), px = number_in(step, "rms_px_fit");
-  std::string out =
-      fmt::format("normalised residual {:.3f} on fitted photos", number_in(step, "chi_fit"));
+  std::string out = fmt::format("normalised residual {:.3f} on fitted {}",
+                                number_in(step, "chi_fit"), what_is_seen(metrics));
   if (held_out > 0.0) out += fmt::format(", {:.3f} on held-out ones", held_out);
   out += fmt::format("; noise floor {:.3f}{}", floor,
                      source == "rest photos"     ? " (reference images)"
                      : source == "loaded photos" ? " (what no model could take from the photos)"
+                     : source == "rest fields"   ? " (fields at rest)"
+                     : source == "loaded fields" ? " (what is rough in the fields)"
                      : source.empty()            ? ""
                                                  : " (" + source + ")");
   if (px > 0.0) out += fmt::format("; surface off by {:.2g} px", px);
