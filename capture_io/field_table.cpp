@@ -221,6 +221,24 @@ bool is_marked(const Columns& columns, const std::vector<std::string_view>& cell
   return cell == "False" || cell == "false" || number_in(cell, comma).value_or(1.0) == 0.0;
 }
 
+/// By role, 0 where the file has none; not finite where a cell tells no number.
+std::array<double, 6> row_of(const std::vector<std::string_view>& cells, const Columns& columns,
+                             bool comma, const Place& place) {
+  std::array<double, 6> out{};
+  for (size_t role = 0; role < out.size(); ++role) {
+    if (columns.of_role[role] < 0) continue;
+    const auto cell = cells[static_cast<size_t>(columns.of_role[role])];
+    const auto value = number_in(cell, comma);
+    if (!value)
+      throw InputError(place,
+                       fmt::format("`{}` in column {} is no number", cell.substr(0, 40),
+                                   columns.of_role[role] + 1),
+                       "a number, or nan where the point has none");
+    out[role] = *value;
+  }
+  return out;
+}
+
 /// Skips what stands before the head; faults where there is none.
 void to_head(Lines& lines, const std::string& told, std::vector<std::string_view>& cells,
              char& separator) {
@@ -269,20 +287,9 @@ FieldTable read_field_table(const std::filesystem::path& file, const std::string
           {told, lines.number},
           fmt::format("the row has {} cells, the head {}", cells.size(), columns.count),
           "one cell for every column");
-    std::array<double, 6> row{};
-    bool whole = true;
-    for (size_t role = 0; role < row.size(); ++role) {
-      if (columns.of_role[role] < 0) continue;
-      const auto cell = cells[static_cast<size_t>(columns.of_role[role])];
-      const auto value = number_in(cell, comma);
-      if (!value)
-        throw InputError({told, lines.number},
-                         fmt::format("`{}` in column {} is no number", cell.substr(0, 40),
-                                     columns.of_role[role] + 1),
-                         "a number, or nan where the point has none");
-      row[role] = *value;
-      whole &= std::isfinite(*value);
-    }
+    const std::array<double, 6> row = row_of(cells, columns, comma, {told, lines.number});
+    const bool whole =
+        std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); });
     if (!whole || is_marked(columns, cells, comma)) {
       ++out.dropped;
       continue;

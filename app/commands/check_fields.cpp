@@ -48,9 +48,8 @@ Json describe_fields(const Scene& scene) {
 
 void say_fields(const Scene& scene, const Json& fields, const Session& session) {
   if (fields.empty()) return;
-  std::vector<std::vector<std::string>> rows{{"example", "field", "points", "dropped", "of",
-                                              "apart", "alike within", "numbers", "sigma", "rough",
-                                              "largest", "off body"}};
+  std::vector<std::vector<std::string>> rows{{"example", "field", "points", "dropped", "alike",
+                                              "numbers", "sigma", "rough", "largest", "gap"}};
   const auto short_number = [](const Json& value) {
     return value.is_null() ? "-" : fmt::format("{:.3g}", value.get<double>());
   };
@@ -58,7 +57,6 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
     rows.push_back(
         {one["example"], std::filesystem::path(one["file"].get<std::string>()).filename().string(),
          std::to_string(one["points"].get<long>()), std::to_string(one["dropped"].get<long>()),
-         one["components"] == 2 ? "x, y" : "x, y, z", short_number(one["spacing"]),
          short_number(one["correlation"]), fmt::format("{:.0f}", one["numbers"].get<double>()),
          short_number(one["sigma"]), short_number(one["rough"]), short_number(one["largest"]),
          short_number(one["gap"])});
