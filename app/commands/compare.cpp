@@ -85,9 +85,8 @@ std::string measured_rows(const json& measured) {
 
 std::string field_rows(const json& fields, double floor) {
   if (fields.empty()) return "";
-  std::vector<std::vector<std::string>> rows = {{"example", "field", "use", "points", "chi",
-                                                 "|: floor", "over floor", "rms", "largest",
-                                                 "unit"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"example", "field", "use", "points", "chi", "|: floor", "over floor", "rms", "unit"}};
   std::vector<double> all;
   for (const auto& one : fields) all.push_back(one.at("chi"));
   for (const auto& one : fields) {
@@ -97,8 +96,7 @@ std::string field_rows(const json& fields, double floor) {
                     one.at("use"), fmt::format("{:.0f}", one.at("points").get<double>()),
                     fmt::format("{:.2f}", chi), marked_bar(chi, floor, scale_of(all, floor)),
                     fmt::format("{:.2f}", chi / floor),
-                    fmt::format("{:.3g}", one.at("rms").get<double>()),
-                    fmt::format("{:.3g}", one.at("largest").get<double>()), one.at("unit")});
+                    fmt::format("{:.3g}", one.at("rms").get<double>()), one.at("unit")});
   }
   return table(rows);
 }
@@ -111,9 +109,8 @@ json metrics_of(const std::filesystem::path& step) {
   const json measured = {{"example", "text"},   {"kind", "text"},       {"region", "text"},
                          {"measured", numbers}, {"predicted", numbers}, {"over_sigma", numbers},
                          {"?unit", "text"}};
-  const json field = {{"example", "text"}, {"file", "text"},    {"use", "text"},
-                      {"chi", "number"},   {"rms", "number"},   {"largest", "number"},
-                      {"unit", "text"},    {"points", "number"}};
+  const json field = {{"example", "text"}, {"file", "text"}, {"use", "text"},     {"chi", "number"},
+                      {"rms", "number"},   {"unit", "text"}, {"points", "number"}};
   const auto file = step / "metrics.json";
   json found = read_json(file);
   expect_shape(found,

@@ -38,23 +38,30 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
 
 NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example) {
   const TetMesh& mesh = scene.body->mesh;
-  NodalField out{Eigen::MatrixXd::Zero(3, mesh.nodes()), Eigen::MatrixXd::Zero(1, mesh.nodes())};
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(1, mesh.nodes());
+  NodalField out{Eigen::MatrixXd::Zero(3, mesh.nodes()), none, none};
   for (const auto& one : example.measured) {
     const MeasuredSpec& told = scene.capture.examples[example.example].measured[one.index];
     if (!told.field) continue;
     const FieldPoints points = field_points(mesh, *told.field);
     const VectorXd apart = one.predicted - told.value;
     const int components = told.field->components;
-    for (Eigen::Index k = 0; k < points.N.rows(); ++k)
+    for (Eigen::Index k = 0; k < points.N.rows(); ++k) {
+      const VectorXd here = apart.segment(components * k, components);
       for (decltype(points.N)::InnerIterator it(points.N, k); it; ++it) {
         const double share = std::abs(it.value());
-        out.residual.col(it.col()) += share * told.field->axes.leftCols(components) *
-                                      apart.segment(components * k, components);
+        out.residual.col(it.col()) += share * told.field->axes.leftCols(components) * here;
+        out.rms(0, it.col()) +=
+            share * here.squaredNorm() / (components * std::pow(told.field->sigma, 2));
         out.share(0, it.col()) += share;
       }
+    }
   }
   for (Eigen::Index n = 0; n < mesh.nodes(); ++n)
-    if (out.share(0, n) > 0.0) out.residual.col(n) /= out.share(0, n);
+    if (out.share(0, n) > 0.0) {
+      out.residual.col(n) /= out.share(0, n);
+      out.rms(0, n) = std::sqrt(out.rms(0, n) / out.share(0, n));
+    }
   return out;
 }
 

@@ -14,6 +14,7 @@ nlohmann::json fields_json(const Scene& scene, const Fitted& fitted);
 /// weighted with its share in them. A component that is not measured is zero.
 struct NodalField {
   Eigen::MatrixXd residual;  ///< 3 x n, predicted less measured [length]
+  Eigen::MatrixXd rms;       ///< 1 x n, of a component, over told noise
   Eigen::MatrixXd share;     ///< 1 x n, the points' weights; 0: no point is near
 };
 NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example);

@@ -300,7 +300,9 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
   const Eigen::MatrixXd reaction =
       Eigen::Map<const Matrix3Xd>(example.equilibrium->R.data(), 3, mesh.nodes());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
-  const NodalResidual residual = nodal_residual(scene, model, example);
+  NodalResidual residual = nodal_residual(scene, model, example);
+  const NodalField field = nodal_field(scene, example);
+  if (example.photos.empty()) residual = {field.rms.transpose(), field.share.transpose()};
   std::vector<VtuArray> arrays = {{"displacement", u, true},
                                   {"reaction", reaction, true},
                                   {"residual", residual.rms.transpose(), true},
@@ -309,7 +311,7 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
                                   {"cauchy_stress", state.cauchy_stress, false},
                                   {"von_mises", state.von_mises.transpose(), false},
                                   {"J", state.J.transpose(), false}};
-  if (const NodalField field = nodal_field(scene, example); field.share.sum() > 0.0) {
+  if (field.share.sum() > 0.0) {
     arrays.push_back({"field_residual", field.residual, true});
     arrays.push_back({"field_points", field.share, true});
   }
