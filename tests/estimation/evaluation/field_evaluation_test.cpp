@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "estimation/effects/catalogue.h"
+#include "estimation/effects_scene.h"
+#include "estimation/evaluation/normal_equations.h"
 #include "estimation/field_block.h"
 
 namespace hookeye::test {
@@ -73,6 +75,31 @@ TEST(FieldEvaluation, APlacementTurnsWhatIsPredicted) {
   const VectorXd value = predicted(first_field(*scene), {*scene, model, 0, state, none}).value;
   for (Eigen::Index k = 0; k < value.size() / 3; ++k)
     EXPECT_NEAR((value.segment<3>(3 * k) - turn * move).norm(), 0.0, 1e-12);
+}
+
+/// Beside photos chi stays theirs; the sums of a fit hold both, whatever sensors weigh.
+TEST(FieldEvaluation, BesidePhotosAFieldAddsItsOwnSums) {
+  const auto told = FieldBlock{}.scene();
+  auto scene = std::make_shared<Scene>(*block_scene());
+  const auto at = static_cast<size_t>(scene->example_index("pull"));
+  scene->capture.examples[at].measured = {
+      told->capture.examples[static_cast<size_t>(told->example_index("pull"))].measured.front()};
+  const ModelForm form = base_form(scene), plain = base_form(block_scene());
+  Workspace workspace(scene), without(block_scene());
+  Evaluation both = std::get<Evaluation>(workspace.evaluate(form, form.initial(), {}));
+  const Evaluation photos = std::get<Evaluation>(without.evaluate(plain, form.initial(), {}));
+  EXPECT_EQ(both.seen(), Evaluation::Seen::photos);
+  EXPECT_EQ(both.chi(false), photos.chi(false));
+  EXPECT_EQ(both.measured_chi(false), photos.measured_chi(false));
+  EXPECT_GT(both.field_chi(false), 0.0);
+  EXPECT_EQ(photos.field_chi(false), 0.0);
+  const MeasuredEvaluation& field = both.find(static_cast<int>(at))->measured.front();
+  EXPECT_DOUBLE_EQ(field.size(), field.numbers);
+  const auto added = [&] {
+    return (normal_equations(both).JtJ - normal_equations(photos).JtJ).eval();
+  };
+  const Eigen::MatrixXd own = field.J.transpose() * field.J;
+  EXPECT_NEAR((added() - own).norm(), 0.0, 1e-6 * normal_equations(both).JtJ.norm());
 }
 
 /// A file without the third component, in a frame of its own, tells the other two.
