@@ -19,6 +19,7 @@
 namespace hookeye {
 
 using Eigen::Vector3d;
+using Eigen::VectorXd;
 
 /// Names only; numbers in the capture are never converted.
 struct Units {
@@ -140,6 +141,35 @@ struct PhotoSpec {
   Place place;
 };
 
+/// Displacements of points of the surface, as programs for digital image correlation write them.
+struct FieldSpec {
+  std::filesystem::path file;
+  std::string told;        ///< the file's name for messages
+  Eigen::Matrix3Xd X;      ///< the points on the body as it was given [length]
+  std::vector<int> lines;  ///< of the file, by point
+  /// Columns: what the components are along, in the capture's frame. Of two the last is not
+  /// measured.
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  int components = 3;
+  double sigma = 0.0;        ///< told standard deviation of a component [length]
+  double spacing = 0.0;      ///< middle distance from point to next point [length]
+  double correlation = 0.0;  ///< side of the patch whose points err alike [length]; 0: none do
+  bool correlation_told = false;
+  bool unit_told = false;  ///< by the capture or by the file; else it is taken for the capture's
+  double tolerance = 0.0;  ///< how far a point may lie off the surface [length]; 0: not told
+  int dropped = 0;         ///< rows without numbers, or that the file itself marks as bad
+  VectorXd alike;          ///< by point: how many points err as it does, itself included
+  /// Pieces of the surface some patches wide, by point: noise that hangs together farther than is
+  /// told shows in their sums.
+  std::vector<int> piece;
+  int pieces = 1;
+  /// Independent numbers in it: those that err alike count as one.
+  double numbers() const { return components * alike.cwiseInverse().sum(); }
+  /// Of residuals over MeasuredSpec::sigma, point by point: variance of their sum over a piece,
+  /// over what numbers() says of it; at least 1.
+  double inflation(const VectorXd& r) const;
+};
+
 struct MeasuredSpec {
   enum class Kind {
 #define MEASURED(kind, on, key, size, unit, words) kind,
@@ -150,8 +180,9 @@ struct MeasuredSpec {
   Vector3d point = Vector3d::Zero();  ///< where it is measured at one: rest position
   Vector3d direction =
       Vector3d::Zero();   ///< moment: about this point; travel, rotation: unit vector
-  Eigen::VectorXd value;  ///< told numbers; angles in degrees
-  Eigen::VectorXd sigma;  ///< their standard deviations
+  Eigen::VectorXd value;  ///< told numbers; angles in degrees; of a field point by point
+  Eigen::VectorXd sigma;  ///< their standard deviations; of a field times the root of `alike`
+  std::shared_ptr<const FieldSpec> field;  ///< of Kind::field
   /// Lower triangle L of their covariance L L^T; empty: they are independent.
   Eigen::MatrixXd covariance_root;
   Place place;
@@ -162,10 +193,10 @@ struct MeasuredSpec {
 
 /// What a kind of measurement is.
 struct MeasuredKind {
-  const char* name;  ///< key of the capture: "force_on"
-  const char* on;    ///< "region", "point"
-  const char* key;   ///< further key; "none"
-  int size;
+  const char* name;   ///< key of the capture: "force_on"
+  const char* on;     ///< "region", "point", "file"
+  const char* key;    ///< further key; "none"
+  int size;           ///< numbers; 0: as many as the file has
   const char* unit;   ///< "force", "moment", "length", "angle"
   const char* words;  ///< "force on"
 };

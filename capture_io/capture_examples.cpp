@@ -13,8 +13,11 @@ namespace {
 /// Reads the sections of one example with the names it may refer to.
 class ExampleReader {
  public:
-  ExampleReader(const std::string& name, const Capture& capture)
-      : of_(fmt::format(" of example `{}`", name)), regions_(names_of(capture.regions)) {}
+  ExampleReader(const std::string& name, const Capture& capture, const CaptureFolder& folder)
+      : of_(fmt::format(" of example `{}`", name)),
+        regions_(names_of(capture.regions)),
+        capture_(capture),
+        folder_(folder) {}
 
   SupportSpec support(const YamlNode& node);
   LoadSpec load(const YamlNode& node) const;
@@ -28,6 +31,8 @@ class ExampleReader {
 
   std::string of_;
   std::vector<std::string> regions_;
+  const Capture& capture_;
+  const CaptureFolder& folder_;
   std::set<std::pair<std::string, int>> held_;  ///< region and component already prescribed
 };
 
@@ -196,6 +201,7 @@ void read_told(const YamlSection& section, const MeasuredKind& kind, MeasuredSpe
 }
 
 MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
+  if (node.find("field")) return read_field(node, of_, capture_, folder_);
   std::vector<std::string> kinds, keys = {"value", "sigma", "covariance"};
   for (const MeasuredKind& kind : measured_kinds()) {
     kinds.push_back(kind.name);
@@ -232,7 +238,7 @@ ExampleSpec read_example(const YamlNode::Entry& entry, const Capture& capture,
   ExampleSpec example;
   example.name = entry.key;
   example.place = entry.place;
-  ExampleReader reader(entry.key, capture);
+  ExampleReader reader(entry.key, capture, folder);
   if (const YamlNode* use = section.find("use")) {
     const std::string chosen = read_choice(*use, "use of " + what, {"fit", "validate", "test"});
     example.validate = chosen != "fit", example.test = chosen == "test";

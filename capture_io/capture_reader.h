@@ -32,6 +32,9 @@ PhotoDefaults read_photo_defaults(const YamlNode& node, const CaptureFolder& fol
 std::vector<PhotoSpec> read_photos(const YamlNode& node, const std::string& example,
                                    const Capture& capture, const PhotoDefaults& defaults,
                                    const CaptureFolder& folder);
+/// An entry `{field: FILE, ...}` of `measured`; `of`: " of example `pull`". Reads the file.
+MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Capture& capture,
+                        const CaptureFolder& folder);
 std::vector<ExampleSpec> read_examples(const YamlNode& node, const Capture& capture,
                                        const PhotoDefaults& defaults, const CaptureFolder& folder);
 

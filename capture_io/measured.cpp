@@ -1,5 +1,7 @@
 // Kinds of measurements: measured_kinds.def.
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "capture_io/capture.h"
 #include "capture_io/capture_reader.h"
@@ -33,6 +35,14 @@ std::string unit_of(const MeasuredSpec& measured, const Units& units) {
          : unit == "moment" ? units.force + " " + units.length
          : unit == "angle"  ? "degrees"
                             : units.length;
+}
+
+double FieldSpec::inflation(const VectorXd& r) const {
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(components, pieces);
+  for (Eigen::Index k = 0; k < alike.size(); ++k)
+    sums.col(piece[static_cast<size_t>(k)]) +=
+        r.segment(components * k, components) / std::sqrt(alike[k]);
+  return std::max(1.0, sums.squaredNorm() / numbers());
 }
 
 Eigen::MatrixXd MeasuredSpec::whitened(Eigen::MatrixXd difference) const {

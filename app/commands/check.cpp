@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commands/check_fields.h"
 #include "app/commands/check_look.h"
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
@@ -65,6 +66,9 @@ std::string load_text(const LoadSpec& load, const Units& units) {
 }
 
 std::string measured_text(const MeasuredSpec& measured) {
+  if (measured.field)
+    return fmt::format("field of {} points{}", measured.field->X.cols(),
+                       measured.field->components == 2 ? " (in plane)" : "");
   return fmt::format("{} {}", kind_of(measured).words,
                      measured.region.empty() ? vector_text(measured.point) : measured.region);
 }
@@ -182,8 +186,8 @@ void warn_of_gaps(const Capture& capture, const Json& examples, Session& session
   }
   if (!force_known && !capture.fit.empty())
     session.warn(
-        "no force is known (no load, no measured force, no weight): the photos fix only ratios of "
-        "stiffness, not its size");
+        "no force is known (no load, no measured force, no weight): photos and fields fix only "
+        "ratios of stiffness, not its size");
   bool held_out = false;
   for (size_t i = 0; i < examples.size(); ++i) {
     const auto& example = examples[i];
@@ -341,6 +345,9 @@ void run_check(const CheckOptions& options, Session& session) {
     d["examples"].push_back(describe_example(*scene, model, e));
   say_capture(session, d, *scene);
   say_examples(session, d["examples"]);
+  d["fields"] = describe_fields(*scene);
+  say_fields(*scene, d["fields"], session);
+  warn_of_fields(*scene, session);
   look(*scene, options, session);
   warn_of_gaps(capture, d["examples"], session);
 }

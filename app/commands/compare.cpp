@@ -58,34 +58,59 @@ std::string photo_rows(const json& photos, double floor) {
   return table(rows);
 }
 
-/// Three lines each: three vectors side by side would not fit.
+size_t components_of(const json& one) {
+  return std::min({one.at("measured").size(), one.at("predicted").size(),
+                   one.at("over_sigma").size(), size_t{3}});
+}
+
+/// A line for each component: three vectors side by side would not fit.
 std::string measured_rows(const json& measured) {
   if (measured.empty()) return "";
   std::vector<std::vector<std::string>> rows = {
       {"example", "measured", "region", "", "value", "model", "unit", "over sigma"}};
   for (const auto& one : measured)
-    for (size_t i = 0; i < 3; ++i) {
+    for (size_t i = 0; i < components_of(one); ++i) {
       const auto component = [&](const char* key) {
         return fmt::format("{:.4g}", one.at(key).at(i).get<double>());
       };
       const auto once = [&](const char* key) {
         return i == 0 ? one.at(key).get<std::string>() : std::string();
       };
-      rows.push_back({once("example"), once("kind"), once("region"), std::string(1, "xyz"[i]),
-                      component("measured"), component("predicted"), one.value("unit", ""),
-                      component("over_sigma")});
+      rows.push_back({once("example"), once("kind"), once("region"),
+                      components_of(one) > 1 ? std::string(1, "xyz"[i]) : "", component("measured"),
+                      component("predicted"), one.value("unit", ""), component("over_sigma")});
     }
   return table(rows);
 }
 
+std::string field_rows(const json& fields, double floor) {
+  if (fields.empty()) return "";
+  std::vector<std::vector<std::string>> rows = {
+      {"example", "field", "use", "points", "chi", "|: floor", "over floor", "rms", "unit"}};
+  std::vector<double> all;
+  for (const auto& one : fields) all.push_back(one.at("chi"));
+  for (const auto& one : fields) {
+    const double chi = one.at("chi");
+    rows.push_back({one.at("example"),
+                    std::filesystem::path(one.at("file").get<std::string>()).filename().string(),
+                    one.at("use"), fmt::format("{:.0f}", one.at("points").get<double>()),
+                    fmt::format("{:.2f}", chi), marked_bar(chi, floor, scale_of(all, floor)),
+                    fmt::format("{:.2f}", chi / floor),
+                    fmt::format("{:.3g}", one.at("rms").get<double>()), one.at("unit")});
+  }
+  return table(rows);
+}
+
 json metrics_of(const std::filesystem::path& step) {
-  const json chi = {{"*", "number"}}, three = json::array({"number", "number", "number"});
+  const json chi = {{"*", "number"}}, numbers = json::array({"number"});
   const json photo = {{"example", "text"},   {"camera", "text"},   {"use", "text"},
                       {"chi", "number"},     {"?plane", "number"}, {"rms_px", "number"},
                       {"only_noise", "flag"}};
-  const json measured = {{"example", "text"}, {"kind", "text"},     {"region", "text"},
-                         {"measured", three}, {"predicted", three}, {"over_sigma", three},
+  const json measured = {{"example", "text"},   {"kind", "text"},       {"region", "text"},
+                         {"measured", numbers}, {"predicted", numbers}, {"over_sigma", numbers},
                          {"?unit", "text"}};
+  const json field = {{"example", "text"}, {"file", "text"}, {"use", "text"},     {"chi", "number"},
+                      {"rms", "number"},   {"unit", "text"}, {"points", "number"}};
   const auto file = step / "metrics.json";
   json found = read_json(file);
   expect_shape(found,
@@ -97,6 +122,7 @@ json metrics_of(const std::filesystem::path& step) {
                 {"chi_by_camera", chi},
                 {"?chi_by_region", chi},
                 {"measured", json::array({measured})},
+                {"?fields", json::array({field})},
                 {"?converged", "flag"},
                 {"?iterations", "number"},
                 {"undetermined", json::array({"text"})}},
@@ -117,7 +143,7 @@ void run_compare(const std::string& folder, Session& session) {
                                         step.filename().string(), chi_text(metrics["chi_fit"]),
                                         chi_text(metrics["chi_validate"]), floor,
                                         metrics["floor"]["source"].get<std::string>())));
-  const bool photos = !metrics["photos"].empty();  // else forces and positions alone
+  const bool photos = !metrics["photos"].empty();  // else fields, or forces and positions alone
   if (photos) {
     session.say("{}\n", photo_rows(metrics["photos"], floor));
     session.say("{}\n", chi_rows(metrics["chi_by_example"], "by example", floor));
@@ -126,6 +152,8 @@ void run_compare(const std::string& folder, Session& session) {
   }
   if (metrics.contains("chi_by_region") && !metrics["chi_by_region"].empty())
     session.say("{}\n", chi_rows(metrics["chi_by_region"], "by region", floor));
+  // Beside photos the floor is theirs: fields are over their told noise.
+  session.say("{}", field_rows(metrics.value("fields", json::array()), photos ? 1.0 : floor));
   session.say("{}", measured_rows(metrics["measured"]));
   if (const auto said =
           not_converged(metrics.value("converged", true), metrics.value("iterations", 0));

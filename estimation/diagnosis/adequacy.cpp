@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "capture_io/distributions.h"
+#include "estimation/fit/field_floor.h"
 #include "estimation/fit/smooth_motion.h"
 
 namespace hookeye {
@@ -56,6 +57,47 @@ std::vector<Moved> all_moved(const Scene& scene, const Evaluation& evaluation, c
   return out;
 }
 
+/// Of one field; `chance` that the noise alone takes it beyond most_px.
+MotionLeft moved_in_field(const MeasuredSpec& spec, const MeasuredEvaluation& field,
+                          const Floor& floor, bool floor_is_own, const VectorXd& mesh_step,
+                          double chance) {
+  const FieldSpec& told = *spec.field;
+  const SmoothField smooth = smooth_field(told, whole_residual(spec, field), floor.limits->floor);
+  const double numbers = told.numbers();
+  const double variance = smooth.rest.squaredNorm() / std::max(1.0, numbers - smooth.numbers);
+  const double noise2 = std::max(variance * told.inflation(smooth.rest / std::sqrt(variance)),
+                                 floor_is_own ? floor.cell_variance * floor.cell_inflation : 1.0);
+  double bias2 = 0.0;
+  if (mesh_step.size() > 0 && field.J.cols() == mesh_step.size())
+    bias2 = (field.J * mesh_step).squaredNorm();
+  // |r|^2 that one length of displacement all over would bring.
+  const double information = numbers / (told.components * told.sigma * told.sigma);
+  const double noise = std::sqrt(noise2 * chi2_quantile(1.0 - chance, smooth.numbers));
+  return {field.example,
+          field.index,
+          false,
+          std::sqrt(smooth.explained / information),
+          (noise + std::sqrt(bias2)) / std::sqrt(information),
+          true};
+}
+
+std::vector<MotionLeft> moved_in_fields(const Scene& scene, const Evaluation& evaluation,
+                                        const Floor& floor, const VectorXd& mesh_step) {
+  double count = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& field : example.measured) count += field.is_field();
+  std::vector<MotionLeft> out;
+  for (const auto& example : evaluation.examples)
+    for (const auto& field : example.measured) {
+      if (!field.is_field()) continue;
+      out.push_back(moved_in_field(scene.capture.examples[example.example].measured[field.index],
+                                   field, floor, evaluation.seen() == Evaluation::Seen::fields,
+                                   mesh_step, scene.limits->floor.chance / count));
+      out.back().held_out = example.held_out;
+    }
+  return out;
+}
+
 }  // namespace
 
 std::vector<MotionLeft> motions_left(const Scene& scene, const Evaluation& evaluation,
@@ -73,6 +115,8 @@ std::vector<MotionLeft> motions_left(const Scene& scene, const Evaluation& evalu
     else if (motion.times() > out.back().times())
       out.back() = motion;
   }
+  for (const MotionLeft& one : moved_in_fields(scene, evaluation, floor, mesh_step))
+    out.push_back(one);
   return out;
 }
 
@@ -85,6 +129,11 @@ const MotionLeft* most_moved(const std::vector<MotionLeft>& motions) {
 
 std::string in_words(const MotionLeft& motion, const Scene& scene) {
   const ExampleSpec& example = scene.capture.examples[motion.example];
+  if (motion.field)
+    return fmt::format(
+        "the field of '{}' still shows the body moved smoothly, by {:.2g} {} where noise and mesh "
+        "leave {:.2g} at most",
+        example.name, motion.px, scene.capture.units.length, motion.most_px);
   return fmt::format(
       "the {} of camera '{}' in '{}' still shows the body moved smoothly, by {:.2g} px where "
       "noise, renderer and mesh leave {:.2g} at most",

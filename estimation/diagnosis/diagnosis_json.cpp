@@ -98,12 +98,14 @@ namespace {
 
 json to_json(const std::vector<MotionLeft>& motions) {
   json out = json::array();
-  for (const MotionLeft& motion : motions)
+  for (const MotionLeft& motion : motions) {
     out.push_back({{"example", motion.example},
                    {"photo", motion.photo},
                    {"held_out", motion.held_out},
                    {"px", motion.px},
                    {"most_px", motion.most_px}});
+    if (motion.field) out.back()["field"] = true;
+  }
   return out;
 }
 
@@ -186,9 +188,13 @@ namespace {
 std::vector<MotionLeft> motions_from_json(const json& list, const Scene& scene) {
   std::vector<MotionLeft> out;
   for (const json& one : list) {
-    out.push_back(
-        {one.at("example"), one.at("photo"), one.at("held_out"), one.at("px"), one.at("most_px")});
-    (void)scene.capture.examples.at(out.back().example).photos.at(out.back().photo);
+    out.push_back({one.at("example"), one.at("photo"), one.at("held_out"), one.at("px"),
+                   one.at("most_px"), one.value("field", false)});
+    const ExampleSpec& example = scene.capture.examples.at(out.back().example);
+    if (out.back().field)
+      (void)example.measured.at(out.back().photo);
+    else
+      (void)example.photos.at(out.back().photo);
   }
   return out;
 }

@@ -6,6 +6,36 @@
 
 namespace hookeye {
 
+namespace {
+
+/// Fields count as photos do, each number of theirs as a cell. Where no example has a photo, what
+/// is seen are fields.
+void add_fields(const Evaluation& evaluation, const Floor& floor, DiagnosisSums& out) {
+  const bool seen = evaluation.seen() == Evaluation::Seen::fields;
+  for (const auto& example : evaluation.examples)
+    for (const auto& field : example.measured) {
+      if (!field.is_field()) continue;
+      const Eigen::MatrixXd JtJ = field.J.transpose() * field.J;
+      const VectorXd Jtr = field.J.transpose() * field.r;
+      const double r2 = field.r.squaredNorm();
+      if (seen) {
+        (example.held_out ? out.held_r2 : out.photo_r2) += r2;
+        (example.held_out ? out.held_count : out.photo_count) += field.size();
+        NormalEquations& sums = example.held_out ? out.seen_held_out : out.seen;
+        sums.JtJ += JtJ, sums.Jtr += Jtr;
+      }
+      if (example.held_out) continue;
+      out.effective.H += JtJ;
+      out.effective.s += Jtr;
+      out.effective.r2 += r2;
+      out.effective.count += field.size();
+      out.noise += field.inflation * JtJ;
+      out.null_noise += floor.cell_inflation * JtJ;
+    }
+}
+
+}  // namespace
+
 DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
   DiagnosisSums out;
   const int m = evaluation.columns;
@@ -41,6 +71,7 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
     }
   }
   out.whiteness_p = std::min(1.0, photos * out.whiteness_p);
+  add_fields(evaluation, floor, out);
   const double photo_noise =
       std::max(out.effective.floor2, out.effective.r2 / std::max(out.effective.count, 1.0));
   out.measured.H = out.effective.H / photo_noise;
@@ -48,6 +79,7 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
   for (const auto& example : evaluation.examples) {
     if (example.held_out) continue;
     for (const auto& measured : example.measured) {
+      if (measured.is_field()) continue;
       const Eigen::MatrixXd JtJ = measured.J.transpose() * measured.J;
       const double r2 = measured.r.squaredNorm();
       const auto add = [&](EffectiveSums& sums, double deviation2) {
@@ -66,7 +98,7 @@ DiagnosisSums diagnosis_sums(const Evaluation& evaluation, const Floor& floor) {
     }
   }
   out.fitted = normal_equations(evaluation, false);
-  if (out.photo_count + out.held_count > 0.0) return out;
+  if (out.photo_count + out.held_count > 0.0) return out;  // else sensors are all there is
   out.seen = out.fitted, out.seen_held_out = normal_equations(evaluation, true);
   for (const auto& example : evaluation.examples)
     for (const auto& measured : example.measured) {
@@ -80,7 +112,7 @@ double measured_r2(const Evaluation& evaluation, const VectorXd* step) {
   double sum = 0.0;
   for (const auto& example : evaluation.examples)
     for (const auto& measured : example.measured)
-      if (!example.held_out)
+      if (!example.held_out && !measured.is_field())
         sum += (step ? VectorXd(measured.r + measured.J * *step) : measured.r).squaredNorm();
   return sum;
 }

@@ -14,12 +14,12 @@ struct DiagnosisSums {
   /// For what changes sensors alone: the residuals are those of forces, moments and positions, in
   /// their told noise; photos, in the noise that their misfit shows, only hold the model in place.
   EffectiveSums measured;
-  double measured_count = 0.0;  ///< measured values of fitted examples
+  double measured_count = 0.0;  ///< sensors' values of fitted examples
   Eigen::MatrixXd noise;        ///< covariance of effective.s, correlated as this residual is
   Eigen::MatrixXd null_noise;   ///< the same when only the floor is left
   NormalEquations fitted;       ///< plain sums over pixels and measured values
   /// Plain sums over pixels alone: what an effect explains is said of photos. Where no example has
-  /// one, over measured values.
+  /// one, over fields; where none has one, over sensors' values.
   NormalEquations seen, seen_held_out;
   double pixel_floor2 = 1.0;
   double photo_r2 = 0.0, photo_count = 0.0, held_r2 = 0.0, held_count = 0.0;

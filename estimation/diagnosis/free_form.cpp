@@ -128,7 +128,10 @@ std::vector<Field> all_fields(const Model& model) {
     out.push_back({basis, -1, ingredient_of(basis, -1)});
     for (size_t e = 0; e < model.examples.size(); ++e) {
       const ExampleSpec& example = model.scene->capture.examples[e];
-      if (!example.validate && !example.photos.empty())
+      const bool seen = !example.photos.empty() ||
+                        std::any_of(example.measured.begin(), example.measured.end(),
+                                    [](const MeasuredSpec& one) { return one.field != nullptr; });
+      if (!example.validate && seen)
         out.push_back({basis, static_cast<int>(e), ingredient_of(basis, static_cast<int>(e))});
     }
   }

@@ -33,7 +33,7 @@ double change_of_measured(const Evaluation& evaluation, Eigen::Index at, double 
   double sum = 0.0, count = 0.0;
   for (const auto& example : evaluation.examples)
     for (const auto& measured : example.measured) {
-      if (example.held_out) continue;
+      if (example.held_out || measured.is_field()) continue;
       sum +=
           (measured.J.leftCols(shift.size()) * shift + amount * measured.J.col(at)).squaredNorm();
       count += measured.size();

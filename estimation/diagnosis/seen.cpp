@@ -14,6 +14,26 @@ double change(const Eigen::MatrixXd& H, const VectorXd& s, const VectorXd& step)
   return 2.0 * step.dot(s) + step.dot(H * step);
 }
 
+namespace {
+
+std::string where_seen_in_fields(const Scene& scene, const Evaluation& evaluation,
+                                 const VectorXd& step) {
+  std::string out;
+  double most = 0.0;
+  for (const auto& example : evaluation.examples)
+    for (const auto& field : example.measured) {
+      if (example.held_out || !field.is_field()) continue;
+      const double fall = field.r.squaredNorm() - (field.r + field.J * step).squaredNorm();
+      if (fall <= most) continue;
+      most = fall;
+      out = fmt::format("; seen most in the field of '{}'",
+                        scene.capture.examples[example.example].name);
+    }
+  return out;
+}
+
+}  // namespace
+
 std::string where_seen(const Scene& scene, const Evaluation& evaluation, const VectorXd& step) {
   std::map<std::string, double> by_camera, by_example;
   double total = 0.0;
@@ -26,7 +46,8 @@ std::string where_seen(const Scene& scene, const Evaluation& evaluation, const V
       by_example[spec.name] += fall;
       total += fall;
     }
-  if (by_camera.empty() || total <= 0.0) return "";
+  if (by_camera.empty()) return where_seen_in_fields(scene, evaluation, step);
+  if (total <= 0.0) return "";
   std::vector<std::string> cameras;
   for (const auto& [name, fall] : by_camera)
     if (fall > 0.05 * total) cameras.push_back("'" + name + "'");

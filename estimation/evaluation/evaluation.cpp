@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "estimation/evaluation/columns.h"
+#include "estimation/evaluation/field_evaluation.h"
 #include "estimation/evaluation/photo_evaluation.h"
 #include "estimation/evaluation/sensor.h"
 
@@ -35,29 +36,43 @@ double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out,
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
-bool without_photos(const std::vector<ExampleEvaluation>& examples) {
-  return std::all_of(examples.begin(), examples.end(),
-                     [](const auto& example) { return example.photos.empty(); });
-}
-
-}  // namespace
-
-double Evaluation::measured_chi(bool held_out) const {
+/// Root mean square of what is measured: of fields, or of all else.
+double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out, bool fields) {
   double sum = 0.0, count = 0.0;
   for (const auto& example : examples)
     if (example.held_out == held_out)
       for (const auto& measured : example.measured)
-        sum += measured.r.squaredNorm(), count += measured.size();
+        if (measured.is_field() == fields)
+          sum += measured.r.squaredNorm(), count += measured.size();
   return count > 0.0 ? std::sqrt(sum / count) : 0.0;
 }
 
+}  // namespace
+
+Evaluation::Seen Evaluation::seen() const {
+  Seen out = Seen::sensors;
+  for (const auto& example : examples) {
+    if (!example.photos.empty()) return Seen::photos;
+    for (const auto& measured : example.measured)
+      if (measured.is_field()) out = Seen::fields;
+  }
+  return out;
+}
+
+double Evaluation::measured_chi(bool held_out) const {
+  return root_mean(examples, held_out, false);
+}
+
+double Evaluation::field_chi(bool held_out) const { return root_mean(examples, held_out, true); }
+
 double Evaluation::chi(bool held_out) const {
-  if (without_photos(examples)) return measured_chi(held_out);
-  return root_mean(examples, held_out, &PhotoEvaluation::r2);
+  const Seen what = seen();
+  if (what == Seen::photos) return root_mean(examples, held_out, &PhotoEvaluation::r2);
+  return root_mean(examples, held_out, what == Seen::fields);
 }
 
 double Evaluation::linear_chi(bool held_out) const {
-  if (without_photos(examples)) return measured_chi(held_out);
+  if (seen() != Seen::photos) return chi(held_out);
   return root_mean(examples, held_out, &PhotoEvaluation::linear_r2);
 }
 
@@ -139,12 +154,14 @@ struct Workspace::Impl {
   std::vector<VectorXd> last;  ///< by example: q of the last evaluation in which all had one
   Linear linear;               ///< of the last evaluation with derivatives, without candidates
   std::vector<PhotoComparer> comparers;  ///< one per example
+  std::vector<FieldComparer> fields;     ///< one per example
 
   explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
     for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
       solvers.emplace_back(scene->mesh());
       last.emplace_back();
       comparers.emplace_back(scene, static_cast<int>(e));
+      fields.emplace_back();
     }
   }
 
@@ -224,11 +241,16 @@ namespace {
 /// Predictions of what was measured with their derivatives.
 std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model& model, int e,
                                                  const ExampleEvaluation& example,
-                                                 const ExampleColumns* columns) {
+                                                 const ExampleColumns* columns,
+                                                 FieldComparer& fields) {
   std::vector<MeasuredEvaluation> all;
   const auto& specs = scene.capture.examples[e].measured;
   const Sensed seen{scene, model, e, *example.equilibrium, example.S, columns};
   for (size_t i = 0; i < specs.size(); ++i) {
+    if (specs[i].field) {
+      all.push_back(fields.compare(static_cast<int>(i), seen));
+      continue;
+    }
     SensorPrediction there = predicted(specs[i], seen);
     MeasuredEvaluation one;
     one.example = e;
@@ -325,7 +347,7 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     solved[e].held_out = capture.examples[e].validate;
     const ExampleColumns* d = columns ? &derivative[e] : nullptr;
     solved[e].photos = impl_->comparers[e].compare(model, solved[e], reference_state, d, options);
-    solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d);
+    solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d, impl_->fields[e]);
     if (e != reference_state.example) {  // at which others look
       derivative[e] = {};
       drop_tangent(solved[e]);

@@ -68,7 +68,14 @@ struct MeasuredEvaluation {
   int example = 0, index = 0;
   VectorXd predicted, r;  ///< r: predicted less value, in standard deviations
   Eigen::MatrixXd J;      ///< dr/dp
-  double size() const { return static_cast<double>(r.size()); }
+  /// Of a field, else 0: how many independent numbers it is. Where derivatives were asked for, its
+  /// r and J have a row for each column and one more, with all products of the whole ones.
+  double numbers = 0.0;
+  /// Of a field: variance of the sum of r over a piece of surface, over what `numbers` says of it.
+  /// Noise that was told too small, or that hangs together farther, and misfit make it more than 1.
+  double inflation = 1.0;
+  bool is_field() const { return numbers > 0.0; }
+  double size() const { return is_field() ? numbers : static_cast<double>(r.size()); }
 };
 
 struct ExampleEvaluation {
@@ -83,15 +90,20 @@ struct ExampleEvaluation {
 struct Evaluation {
   std::vector<ExampleEvaluation> examples;
   int columns = 0;
-  /// Of the squares of measured values beside those of pixels, over the noise of each. What a
+  /// Of the squares of what sensors tell beside those of pixels and of fields, over the noise of
+  /// each. What a
   /// renderer gets wrong is correlated from pixel to pixel: a million of them would bend a force by
   /// any number of its deviations to fit that. (floor.h)
   double measured_weight = 1.0;
   const ExampleEvaluation* find(int example) const;
-  /// Root mean square of photo residuals over noise; where no example has a photo, measured_chi().
+  /// What chi() is of: photos; where no example has one, fields; where none has one, sensors.
+  enum class Seen { photos, fields, sensors };
+  Seen seen() const;
+  /// Root mean square of residuals over noise, of what is seen.
   double chi(bool held_out) const;
   /// Of forces, moments and positions over their told noise; 0: none is measured.
   double measured_chi(bool held_out) const;
+  double field_chi(bool held_out) const;   ///< of fields over theirs; 0: none is measured
   double linear_chi(bool held_out) const;  ///< the same from linear_r2 (needs pictures)
   double rms_px(bool held_out) const;      ///< of the residual displacement (needs pictures)
   double motion_px() const;  ///< the same, cruder, of all photos here (needs registered)

@@ -23,9 +23,10 @@ NormalEquations normal_equations(const Evaluation& evaluation, bool held_out) {
       sums.r2 += photo.sums.r2;
     }
     for (const auto& measured : example.measured) {
-      sums.JtJ += evaluation.measured_weight * measured.J.transpose() * measured.J;
-      sums.Jtr += evaluation.measured_weight * measured.J.transpose() * measured.r;
-      sums.r2 += evaluation.measured_weight * measured.r.squaredNorm();
+      const double weight = measured.is_field() ? 1.0 : evaluation.measured_weight;
+      sums.JtJ += weight * measured.J.transpose() * measured.J;
+      sums.Jtr += weight * measured.J.transpose() * measured.r;
+      sums.r2 += weight * measured.r.squaredNorm();
     }
   }
   return sums;
@@ -164,12 +165,12 @@ std::vector<std::string> name_directions(const std::vector<Parameter>& parameter
   return out;
 }
 
-/// One photo's (all its channels), or one measurement's, share of the normal equations at the
-/// fitted values.
+/// One photo's (all its channels), one field's, or one sensor's, share of the normal equations at
+/// the fitted values.
 struct Cluster {
   Eigen::MatrixXd H;
-  VectorXd s;  ///< J^T r; their sum vanishes
-  bool photo = false;
+  VectorXd s;          ///< J^T r; their sum vanishes
+  bool photo = false;  ///< or a field
 };
 
 /// By how much the scatter of the clusters exceeds what a covariance makes of it, as a factor on
@@ -266,6 +267,10 @@ ParameterCovariance parameter_covariance(const Evaluation& evaluation,
     }
     for (const auto& measured : example.measured) {
       const Eigen::MatrixXd J = measured.J.leftCols(n);
+      if (measured.is_field()) {
+        add(J.transpose() * J, J.transpose() * measured.r, measured.inflation, true, false);
+        continue;
+      }
       const double w = evaluation.measured_weight;
       add(w * J.transpose() * J, w * J.transpose() * measured.r,
           w * std::max(1.0, measured.r.squaredNorm() / measured.size()), false, false);

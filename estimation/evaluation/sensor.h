@@ -18,7 +18,7 @@ struct Sensed {
 };
 
 struct SensorPrediction {
-  VectorXd value;     ///< as many as MeasuredKind::size, in the capture's units; angles in degrees
+  VectorXd value;     ///< as many as MeasuredSpec::value, in the capture's units; angles in degrees
   Eigen::MatrixXd J;  ///< its derivative by the columns; empty: none was asked for
 };
 

@@ -104,8 +104,10 @@ std::vector<Stage> stages(const Scene& scene, bool coarse_to_fine) {
   for (const auto& camera : scene.capture.cameras)
     smallest = std::min({smallest, camera.width, camera.height});
   std::vector<Stage> all;
+  const bool seen = std::any_of(scene.capture.examples.begin(), scene.capture.examples.end(),
+                                [](const auto& example) { return !example.photos.empty(); });
   for (int level : {5, 3})
-    if (coarse_to_fine && (smallest >> level) >= 12) all.push_back({level, false});
+    if (coarse_to_fine && seen && (smallest >> level) >= 12) all.push_back({level, false});
   all.push_back({0, true});
   // Contours lead silhouettes home; the areas, which bound what a stray contour may do, decide.
   bool images = false;

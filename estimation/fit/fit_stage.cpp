@@ -156,10 +156,15 @@ class Reporter final : public ceres::IterationCallback {
   double least_ = std::numeric_limits<double>::quiet_NaN();
 };
 
-double photo_count(const Evaluation& evaluation) {
+/// Pixels; of fields alone their numbers.
+double count_of_seen(const Evaluation& evaluation) {
+  const bool fields = evaluation.seen() == Evaluation::Seen::fields;
   double count = 0.0;
-  for (const auto& example : evaluation.examples)
+  for (const auto& example : evaluation.examples) {
     for (const auto& photo : example.photos) count += photo.count;
+    for (const auto& measured : example.measured)
+      if (fields && measured.is_field()) count += measured.size();
+  }
   return count;
 }
 
@@ -195,7 +200,7 @@ std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm&
   const Evaluation& pictures = std::get<Evaluation>(seen);
   const auto weight = weight_of_measured(workspace, form, p, options, pictures, level);
   if (auto* failure = std::get_if<NumericalFailure>(&weight)) return *failure;
-  return Look{misfit_scale(pictures), photo_count(pictures), pictures.motion_px(),
+  return Look{misfit_scale(pictures), count_of_seen(pictures), pictures.motion_px(),
               std::get<double>(weight)};
 }
 

@@ -53,7 +53,7 @@ struct Stage {
 /// What a stage has to know of the pictures before it starts.
 struct Look {
   double misfit = 1.0;  ///< misfit_scale
-  double count = 0.0;   ///< pixels
+  double count = 0.0;   ///< pixels; without any photo, numbers of fields
   double motion_px = 0.0;
   double measured_weight = 1.0;  ///< Evaluation::measured_weight
 };

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "capture_io/distributions.h"
+#include "estimation/fit/field_floor.h"
 #include "estimation/fit/smooth_motion.h"
 #include "meshing/extent.h"
 
@@ -210,6 +211,7 @@ bool of_rest_photos(const Scene& scene, const Evaluation& evaluation, Floor& flo
 }  // namespace
 
 Floor measure_floor(const Scene& scene, const Evaluation& evaluation) {
+  if (evaluation.seen() == Evaluation::Seen::fields) return field_floor(scene, evaluation);
   Floor floor;
   floor.limits = scene.limits;
   floor.per_px2 = fall_per_px2(evaluation);

@@ -25,6 +25,7 @@ struct Floor {
   /// Fall of chi^2 that one pixel of motion of the whole surface brings, mean over directions and
   /// the fitted photos: how sharp and how free of noise they are.
   double per_px2 = 0.0;
+  /// "rest fields", "loaded fields" or "told noise" where no example has a photo; else
   /// "rest photos"; "loaded photos" where there are none of those: what no model could take from
   /// the fitted photos, or "noise model": what was told, where there are too few pixels of either.
   std::string source = "noise model";

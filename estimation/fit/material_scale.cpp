@@ -26,7 +26,8 @@ bool measures_force(const ExampleSpec& example) {
   return std::any_of(example.measured.begin(), example.measured.end(), is_reaction);
 }
 
-/// Share of what is known of the common scale of all moduli that measured forces tell, not photos.
+/// Share of what is known of the common scale of all moduli that measured forces tell, not photos
+/// or fields.
 double share_of_measured(const Evaluation& evaluation, const VectorXd& scale) {
   const Eigen::Index n = scale.size();
   double photos = 0.0, measured = 0.0;
@@ -35,7 +36,8 @@ double share_of_measured(const Evaluation& evaluation, const VectorXd& scale) {
     for (const auto& photo : example.photos)
       photos += scale.dot(photo.sums.JtJ.topLeftCorner(n, n) * scale);
     for (const auto& one : example.measured)
-      measured += evaluation.measured_weight * (one.J.leftCols(n) * scale).squaredNorm();
+      (one.is_field() ? photos : measured) += (one.is_field() ? 1.0 : evaluation.measured_weight) *
+                                              (one.J.leftCols(n) * scale).squaredNorm();
   }
   return photos + measured > 0.0 ? measured / (photos + measured) : 0.0;
 }

@@ -60,7 +60,7 @@ std::variant<TrialScale, NumericalFailure> scale_anew(Workspace& workspace, cons
   const Floor floor = measure_floor(workspace.scene(), pictures);
   return TrialScale{options.huber_times(*form.scene) * misfit_scale(pictures),
                     pictures.linear_chi(false), held_out,
-                    floor.source == "rest photos" ? floor.chi : 0.0, measured_weight(floor)};
+                    floor.source.starts_with("rest") ? floor.chi : 0.0, measured_weight(floor)};
 }
 
 std::variant<Trial, NumericalFailure> step_anew(Workspace& workspace, const ModelForm& form,

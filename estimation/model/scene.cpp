@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "estimation/model/field_points.h"
 #include "estimation/model/model.h"
 #include "estimation/model/photo_pyramid.h"
 
@@ -96,6 +97,7 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos
   scene->photos.resize(capture.examples.size());
   if (capture.body.texture == BodySpec::Texture::image)
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
+  for (const ExampleSpec& example : capture.examples) check_fields(*scene, example);
   if (!with_photos) return scene;
   for (size_t e = 0; e < capture.examples.size(); ++e)
     scene->photos[e] = photos_of(capture.examples[e], capture);
@@ -112,6 +114,7 @@ std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole
   for (const ExampleSpec& example : whole.examples) {
     if (!example.test) continue;
     out->capture.examples.push_back(example);
+    check_fields(*out, example);
     out->photos.push_back(photos_of(example, whole));
   }
   return out;

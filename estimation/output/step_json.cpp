@@ -16,6 +16,7 @@
 #include "estimation/model/fitted_fields.h"
 #include "estimation/model/parameters_json.h"
 #include "estimation/output/compare_picture.h"
+#include "estimation/output/field_output.h"
 #include "estimation/output/material_card.h"
 #include "estimation/output/page_data.h"
 #include "estimation/output/removed.h"
@@ -124,6 +125,7 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
     for (const auto& one : example.measured) {
       const auto& spec = scene.capture.examples[example.example];
       const auto& told = spec.measured[one.index];
+      if (told.field) continue;
       const auto list = [](const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
       const bool one_sigma = (told.sigma.array() == told.sigma[0]).all();
       all.push_back({{"example", spec.name},
@@ -174,6 +176,13 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
         sum->first += photo.r2, sum->second += photo.count;
       add_by_region(photo, regions, by_region);
     }
+  if (fitted.evaluation.seen() == Evaluation::Seen::fields)
+    for (const auto& example : fitted.evaluation.examples)
+      for (const auto& field : example.measured) {
+        if (!field.is_field()) continue;
+        auto& sum = by_example[scene.capture.examples[example.example].name];
+        sum.first += field.r.squaredNorm(), sum.second += field.size();
+      }
   const MeshQuality mesh = quality(scene.body->mesh);
   json out = {{"chi_fit", fitted.evaluation.chi(false)},
               {"chi_validate", fitted.evaluation.chi(true)},
@@ -185,6 +194,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
               {"chi_by_camera", chi_table(by_camera)},
               {"chi_by_region", chi_table(by_region)},
               {"measured", measured_json(scene, fitted)},
+              {"fields", fields_json(scene, fitted)},
               {"measured_weight", fitted.evaluation.measured_weight},
               {"undetermined", fitted.undetermined},
               {"converged", fitted.converged},
@@ -290,7 +300,9 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
   const Eigen::MatrixXd reaction =
       Eigen::Map<const Matrix3Xd>(example.equilibrium->R.data(), 3, mesh.nodes());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
-  const NodalResidual residual = nodal_residual(scene, model, example);
+  NodalResidual residual = nodal_residual(scene, model, example);
+  const NodalField field = nodal_field(scene, example);
+  if (example.photos.empty()) residual = {field.rms.transpose(), field.share.transpose()};
   std::vector<VtuArray> arrays = {{"displacement", u, true},
                                   {"reaction", reaction, true},
                                   {"residual", residual.rms.transpose(), true},
@@ -299,6 +311,10 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
                                   {"cauchy_stress", state.cauchy_stress, false},
                                   {"von_mises", state.von_mises.transpose(), false},
                                   {"J", state.J.transpose(), false}};
+  if (field.share.sum() > 0.0) {
+    arrays.push_back({"field_residual", field.residual, true});
+    arrays.push_back({"field_points", field.share, true});
+  }
   for (const auto& [name, values] : fitted_fields(form, model))
     arrays.push_back({name, values.transpose(), false});
   const VectorXd beyond = addends_beyond(scene, model, q);

@@ -29,19 +29,27 @@ Eigen::MatrixXd covariance_of(const Fitted& fitted) {
          dx_dp.asDiagonal();
 }
 
-/// J^T J/N of the held-out photos, or of the fitted ones, by all values that are fitted to the
-/// latter, in the same units. Those of held-out examples alone follow: H_ss - H_so H_oo^+ H_os.
+/// J^T J/N of the held-out photos (or fields), or of the fitted ones, by all values that are fitted
+/// to the latter, in the same units. Those of held-out examples alone follow: H_ss - H_so H_oo^+
+/// H_os.
 Eigen::MatrixXd shown_by_photos(const Fitted& fitted, bool held_out) {
   const auto parameters = fitted.form.parameters();
   const Eigen::Index n = fitted.p.size();
   Eigen::MatrixXd H = Eigen::MatrixXd::Zero(n, n);
   double count = 0.0;
-  for (const auto& example : fitted.evaluation.examples)
+  const bool fields = fitted.evaluation.seen() == Evaluation::Seen::fields;
+  for (const auto& example : fitted.evaluation.examples) {
+    if (example.held_out != held_out) continue;
     for (const auto& photo : example.photos) {
-      if (example.held_out != held_out) continue;
       H += photo.sums.JtJ.topLeftCorner(n, n);
       count += photo.count;
     }
+    for (const auto& measured : example.measured) {
+      if (!fields || !measured.is_field()) continue;
+      H += measured.J.leftCols(n).transpose() * measured.J.leftCols(n);
+      count += measured.size();
+    }
+  }
   if (n == 0 || count == 0.0) return H;
   const VectorXd dp_dx = Scaling{parameters}.dp_dx(fitted.p);
   H = dp_dx.asDiagonal() * H * dp_dx.asDiagonal() / count;

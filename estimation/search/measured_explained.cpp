@@ -27,7 +27,7 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::s
     double sum = 0.0, count = 0.0;
     for (const auto& example : fitted.evaluation.examples)
       for (const auto& measured : example.measured) {
-        if (example.held_out != held_out) continue;
+        if (example.held_out != held_out || measured.is_field()) continue;
         sum += measured.r.squaredNorm(), count += measured.size();
         if (measured.r.norm() <= worst) continue;
         worst = measured.r.norm();
@@ -47,7 +47,12 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis, std::s
 }
 
 bool photos_explained(const Fitted& fitted, const Diagnosis& diagnosis) {
-  return explains_photos(fitted, diagnosis.floor) && !most_moved(diagnosis.motions);
+  const Floor& floor = diagnosis.floor;
+  // Beside photos, whose floor is another, fields answer for themselves.
+  const double most = floor.limits->floor.at *
+                      (fitted.evaluation.seen() == Evaluation::Seen::photos ? 1.0 : floor.chi);
+  return explains_photos(fitted, floor) && !most_moved(diagnosis.motions) &&
+         fitted.evaluation.field_chi(false) <= most && fitted.evaluation.field_chi(true) <= most;
 }
 
 bool explained(const Fitted& fitted, const Diagnosis& diagnosis) {

@@ -16,7 +16,7 @@ bool measured_explained(const Fitted& fitted, const Diagnosis& diagnosis,
 /// The photos are at the floor (explains_photos), none of them shows the body moved
 /// (Diagnosis::motions), and the sensors are explained.
 bool explained(const Fitted& fitted, const Diagnosis& diagnosis);
-/// The photos alone.
+/// The photos alone, and the fields.
 bool photos_explained(const Fitted& fitted, const Diagnosis& diagnosis);
 
 }  // namespace hookeye

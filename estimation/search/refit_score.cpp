@@ -42,12 +42,27 @@ EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool
   return out;
 }
 
+/// The same of fields, each number as a cell.
+EffectiveMisfit field_misfit(const Fitted& fitted, bool held_out) {
+  EffectiveMisfit out;
+  for (const auto& example : fitted.evaluation.examples)
+    for (const auto& measured : example.measured)
+      if (example.held_out == held_out && measured.is_field())
+        out = out + EffectiveMisfit{measured.r.squaredNorm(), measured.size()};
+  return out;
+}
+
+/// Of photos and fields together.
+EffectiveMisfit seen_misfit(const Fitted& fitted, const Fitted& reference, bool held_out) {
+  return photo_misfit(fitted, reference, held_out) + field_misfit(fitted, held_out);
+}
+
 /// The same of forces, moments and positions.
 EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
   EffectiveMisfit out;
   for (const auto& example : fitted.evaluation.examples)
     for (const auto& measured : example.measured)
-      if (!held_out_alone || example.held_out)
+      if ((!held_out_alone || example.held_out) && !measured.is_field())
         out = out + EffectiveMisfit{measured.r.squaredNorm(), measured.size()};
   return out;
 }
@@ -68,8 +83,8 @@ double misfit(const Fitted& fitted) {
 double measured_noise2(const Fitted& fitted) { return measured_misfit(fitted, false).noise(1.0); }
 
 double refit_score(const Fitted& fitted, const Yardstick& yardstick) {
-  const EffectiveMisfit photos = photo_misfit(fitted, *yardstick.reference, false),
-                        held_out = photo_misfit(fitted, *yardstick.reference, true);
+  const EffectiveMisfit photos = seen_misfit(fitted, *yardstick.reference, false),
+                        held_out = seen_misfit(fitted, *yardstick.reference, true);
   const EffectiveMisfit measured = measured_misfit(fitted, false);
   const int of_sensors = parameters_of_sensors(fitted.form);
   const auto price = [](int parameters, double count) {
@@ -88,8 +103,8 @@ bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& flo
                         after = measured_misfit(with, true);
   double loss = 0.5 * (after.r2 - before.r2) / std::min(before.noise(1.0), after.noise(1.0));
   if (r2(with) > r2(without) + least)
-    loss += photo_misfit(without, with, true).log_likelihood(floor.cell_variance) -
-            photo_misfit(with, with, true).log_likelihood(floor.cell_variance);
+    loss += seen_misfit(without, with, true).log_likelihood(floor.cell_variance) -
+            seen_misfit(with, with, true).log_likelihood(floor.cell_variance);
   return loss < floor.limits->diagnosis.tie;
 }
 

@@ -16,9 +16,13 @@ Tested::Example tested_example(const ExampleEvaluation& seen, const ExampleSpec&
   Tested::Example out{spec.name};
   double r2 = 0.0, count = 0.0;
   for (const PhotoEvaluation& photo : seen.photos) r2 += photo.r2, count += photo.count;
+  for (const auto& measured : seen.measured) {
+    if (!measured.is_field())
+      out.measured = std::max(out.measured, measured.r.norm());
+    else if (seen.photos.empty())
+      r2 += measured.r.squaredNorm(), count += measured.size();
+  }
   if (count > 0.0) out.chi = std::sqrt(r2 / count);
-  for (const auto& measured : seen.measured)
-    out.measured = std::max(out.measured, measured.r.norm());
   *r2_of_all += r2, *count_of_all += count;
   return out;
 }

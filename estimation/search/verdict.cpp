@@ -49,22 +49,37 @@ std::string hidden_by_mesh(const Diagnosis& diagnosis) {
   return "";
 }
 
+const char* what_is_seen(const Fitted& fitted) {
+  switch (fitted.evaluation.seen()) {
+    case Evaluation::Seen::photos:
+      return "photos";
+    case Evaluation::Seen::fields:
+      return "fields";
+    case Evaluation::Seen::sensors:
+      break;
+  }
+  return "values";
+}
+
 /// Fitted photos that are explained know no more: the user hears which held-out ones do.
 std::string shown_by_held_out(const Fitted& fitted) {
   const ExampleEvaluation* worst = nullptr;
   const auto chi2 = [](const ExampleEvaluation& example) {
     double r2 = 0.0, count = 0.0;
     for (const auto& photo : example.photos) r2 += photo.r2, count += photo.count;
+    for (const auto& measured : example.measured)
+      if (example.photos.empty() && measured.is_field())
+        r2 += measured.r.squaredNorm(), count += measured.size();
     return r2 / std::max(1.0, count);
   };
   for (const auto& example : fitted.evaluation.examples)
     if (example.held_out && (!worst || chi2(example) > chi2(*worst))) worst = &example;
-  if (!worst || worst->photos.empty()) return "";
+  if (!worst || chi2(*worst) == 0.0) return "";
   return fmt::format(
-      ", and what is missing shows in held-out photos alone, most in '{}': no values that the "
+      ", and what is missing shows in held-out {} alone, most in '{}': no values that the "
       "fitted ones allow were found to explain it. Fit it too (without use: validate), with "
       "another load held out",
-      fitted.form.scene->capture.examples[worst->example].name);
+      what_is_seen(fitted), fitted.form.scene->capture.examples[worst->example].name);
 }
 
 /// The effects are right for all that is seen; held-out photos are missed by values.
@@ -86,11 +101,6 @@ std::string left_in_one_camera(const Fitted& fitted, const Floor& floor) {
                      floor.limits->floor.at);
 }
 
-bool seen(const Fitted& fitted) {
-  return std::any_of(fitted.evaluation.examples.begin(), fitted.evaluation.examples.end(),
-                     [](const auto& example) { return !example.photos.empty(); });
-}
-
 }  // namespace
 
 Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vector<std::string>& tie,
@@ -105,7 +115,7 @@ Verdict judge(const Fitted& fitted, const Diagnosis& diagnosis, const std::vecto
     *why = fmt::format(
         "what is left is {:.2f} times the noise floor{}{}", chi / diagnosis.floor.chi,
         held_out > 0.0 ? fmt::format(" ({:.2f} on held-out {})", held_out / diagnosis.floor.chi,
-                                     seen(fitted) ? "photos" : "values")
+                                     what_is_seen(fitted))
                        : "",
         photos || at_floor(fitted, diagnosis.floor)
             ? ""
@@ -154,7 +164,7 @@ std::string more_stays(const Fitted& fitted, const Diagnosis& diagnosis,
   const bool bright = floor.chi > floor.limits->floor.on && brightness_alone_is_named(fitted);
   if (bright) floor.chi = 1.0;
   const bool named = taken.fit > 0.0 || taken.held_out > 0.0;
-  if (!named || !seen(fitted) || on_floor(fitted, floor) ||
+  if (!named || fitted.evaluation.seen() == Evaluation::Seen::sensors || on_floor(fitted, floor) ||
       sensors_speak(taken.measured, diagnosis) || taken.fit >= over_floor(fitted, floor, false) ||
       taken.held_out > over_floor(fitted, floor, true))
     return "";

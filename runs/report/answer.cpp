@@ -52,16 +52,25 @@ std::string string_in(const json& object, const char* key) {
              : "";
 }
 
+/// What the residual is of: photos; where there is none, fields, else sensors.
+const char* what_is_seen(const json& metrics) {
+  if (!metrics.is_object() || !metrics.contains("photos") || !metrics["photos"].empty())
+    return "photos";
+  return metrics.value("fields", json::array()).empty() ? "values" : "fields";
+}
+
 /// The newest step against the noise floor.
 struct Left {
+  std::string seen;                     ///< "photos", "fields" or "values"
   double fitted = 0.0, held_out = 0.0;  ///< times the floor; 0: nothing is held out
   bool at_floor = false;                ///< all photos together
   bool on_floor = false;                ///< no more than renderers leave at least
   std::string one_camera;               ///< ", but ..." where one alone is not
   /// "1.04 times the noise floor (1.03 on held-out photos)".
   std::string text() const {
-    return fmt::format("{:.2f} times the noise floor{}", fitted,
-                       held_out > 0.0 ? fmt::format(" ({:.2f} on held-out photos)", held_out) : "");
+    return fmt::format(
+        "{:.2f} times the noise floor{}", fitted,
+        held_out > 0.0 ? fmt::format(" ({:.2f} on held-out {})", held_out, seen) : "");
   }
 };
 
@@ -74,6 +83,7 @@ double floor_of(const json& timeline, const json& metrics) {
 
 Left left_of(const json& step, const json& metrics, double floor, const Limits& limits) {
   Left out;
+  out.seen = what_is_seen(metrics);
   out.on_floor = std::max(number_in(step, "chi_fit"), number_in(step, "chi_validate")) <=
                  limits.floor.on * floor;
   out.fitted = number_in(step, "chi_fit") / floor;
@@ -96,8 +106,8 @@ std::string with_words(const std::string& effect, const json& step) {
 }
 
 std::string explains(const std::string& what, const Left& left) {
-  return left.on_floor ? what + " explains the photos down to their noise"
-                       : fmt::format("{} explains the photos to {}", what, left.text());
+  return left.on_floor ? fmt::format("{} explains the {} down to their noise", what, left.seen)
+                       : fmt::format("{} explains the {} to {}", what, left.seen, left.text());
 }
 
 /// What `discover` found, in plain words; empty where these words would not do.
@@ -120,11 +130,11 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
     if (left.at_floor) return std::nullopt;  // sensors, or one camera: the long sentence says which
     if (const Names untold = strings_in(timeline, "untold"); !untold.empty())
       return fmt::format(
-          "{}These photos cannot tell what {}is missing: {} is left, and {} stand{} out by more "
+          "{}These {} cannot tell what {}is missing: {} is left, and {} stand{} out by more "
           "than chance, but not by enough to be named (`hookeye plan RUN` names views and loads "
           "that can tell)",
           found.empty() ? "" : capital(listed(found)) + " is missing, but it is not enough. ",
-          found.empty() ? "" : "else ", left.text(), any_of_them(untold),
+          left.seen, found.empty() ? "" : "else ", left.text(), any_of_them(untold),
           untold.size() > 1 ? "" : "s");
     return found.empty()
                ? fmt::format("No effect of the catalogue explains what is left{}: {}", on,
@@ -144,7 +154,8 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
   return fmt::format(
       "The given model lacks {}{}. {}", listed(found),
       verdict == "ambiguous"
-          ? "; these photos cannot tell which (`hookeye plan RUN` names some that can)"
+          ? fmt::format("; these {} cannot tell which (`hookeye plan RUN` names some that can)",
+                        left.seen)
           : "",
       explains(verdict == "ambiguous" ? "With one of them" + on + " the model"
                                       : with + on + " the model",
@@ -204,12 +215,14 @@ std::string met_forces(const json& metrics) {
 std::string misfit_sentence(const json& step, const json& metrics, double floor,
                             const std::string& source) {
   const double held_out = number_in(step, "chi_validate"), px = number_in(step, "rms_px_fit");
-  std::string out =
-      fmt::format("normalised residual {:.3f} on fitted photos", number_in(step, "chi_fit"));
+  std::string out = fmt::format("normalised residual {:.3f} on fitted {}",
+                                number_in(step, "chi_fit"), what_is_seen(metrics));
   if (held_out > 0.0) out += fmt::format(", {:.3f} on held-out ones", held_out);
   out += fmt::format("; noise floor {:.3f}{}", floor,
                      source == "rest photos"     ? " (reference images)"
                      : source == "loaded photos" ? " (what no model could take from the photos)"
+                     : source == "rest fields"   ? " (fields at rest)"
+                     : source == "loaded fields" ? " (what is rough in the fields)"
                      : source.empty()            ? ""
                                                  : " (" + source + ")");
   if (px > 0.0) out += fmt::format("; surface off by {:.2g} px", px);

@@ -1,0 +1,29 @@
+// A measured field against a model: as many numbers as points, condensed at once.
+#pragma once
+
+#include <map>
+
+#include "estimation/evaluation/sensor.h"
+#include "estimation/model/field_points.h"
+
+namespace hookeye {
+
+/// Predictions of points [first, first + count) of a field, along its axes, and their derivatives.
+SensorPrediction predicted_field(const MeasuredSpec& measured, const FieldPoints& points,
+                                 const Sensed& seen, Eigen::Index first, Eigen::Index count);
+
+/// A field's evaluation as MeasuredEvaluation tells. With derivatives r and J are a root of the
+/// products of the whole ones: a dense field takes no more memory than the columns ask for.
+MeasuredEvaluation compare_field(const MeasuredSpec& measured, const FieldPoints& points,
+                                 const Sensed& seen);
+
+/// Of one example: finds its fields' points on the body once. One at a time.
+class FieldComparer {
+ public:
+  MeasuredEvaluation compare(int index, const Sensed& seen);
+
+ private:
+  std::map<int, FieldPoints> points_;  ///< by index among what is measured
+};
+
+}  // namespace hookeye

@@ -1,0 +1,22 @@
+// What a step leaves of measured fields: figures, and their residuals on the body.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "estimation/fit/fit.h"
+
+namespace hookeye {
+
+/// metrics.json, `fields`: by example what is left of each, over noise and as a length.
+nlohmann::json fields_json(const Scene& scene, const Fitted& fitted);
+
+/// Residual of an example's fields on the nodes: the mean of what the points near a node have,
+/// weighted with its share in them. A component that is not measured is zero.
+struct NodalField {
+  Eigen::MatrixXd residual;  ///< 3 x n, predicted less measured [length]
+  Eigen::MatrixXd rms;       ///< 1 x n, of a component, over told noise
+  Eigen::MatrixXd share;     ///< 1 x n, the points' weights; 0: no point is near
+};
+NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example);
+
+}  // namespace hookeye

@@ -1,0 +1,78 @@
+// A capture of fields alone from outside: no photo, no camera.
+#include <gmock/gmock.h>
+
+#include "app/cli.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The cube under a pull on its top, seen from one side; `W` is what 1 mm of height gains.
+class FieldCapture : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    write_cube("{z: 0.8}");
+    std::string yaml = read(folder_ / "capture.yaml");
+    yaml += "    measured:\n      - {force_on: top, value: [0, 0, 1.2], sigma: 0.05}\n";
+    yaml += "      - {field: u.csv, sigma: 0.02}\n";
+    write("capture.yaml", yaml);
+    std::string table = "X,Y,Z,U,V,W\n";
+    for (int y = 1; y < 10; ++y)
+      for (int z = 1; z < 10; ++z)
+        table += "0," + std::to_string(y) + "," + std::to_string(z) + ",0.1," +
+                 std::to_string(0.01 * (5 - y)) + "," + std::to_string(0.08 * z) + "\n";
+    write("u.csv", table + "0,nan,1,0,0,0\n");
+  }
+};
+
+TEST_F(FieldCapture, CheckListsItAndAsksForItsUnit) {
+  const Result said = hookeye("check capture.yaml");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("measured fields [mm]"));
+  EXPECT_THAT(said.out, HasSubstr("field of 81 points"));
+  EXPECT_THAT(said.err, HasSubstr("neither u.csv nor the capture tells the unit"));
+  EXPECT_THAT(too_long(said.out), IsEmpty());
+  const json document = json::parse(hookeye("check --json capture.yaml").out);
+  const json& field = document.at("fields").at(0);
+  EXPECT_EQ(field.at("points"), 81);
+  EXPECT_EQ(field.at("dropped"), 1);
+  EXPECT_EQ(field.at("components"), 3);
+  EXPECT_NEAR(field.at("spacing").get<double>(), 1.0, 1e-9);
+  EXPECT_NEAR(field.at("correlation").get<double>(), 3.0, 1e-9);
+}
+
+TEST_F(FieldCapture, AFitIsComparedAndReported) {
+  const Result fitted = hookeye("fit capture.yaml -o run");
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  const Result compared = hookeye("compare run");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("u.csv"));
+  EXPECT_THAT(compared.out, HasSubstr("force_on"));
+  EXPECT_THAT(too_long(compared.out), IsEmpty());
+  const json metrics = json::parse(read(folder_ / "run/steps/00-base/metrics.json"));
+  ASSERT_EQ(metrics.at("fields").size(), 1u);
+  EXPECT_EQ(metrics.at("fields").at(0).at("chi"), metrics.at("chi_fit"));
+  EXPECT_EQ(metrics.at("measured").size(), 1u) << "a table of all points would be no help";
+  EXPECT_THAT(read(folder_ / "run/steps/00-base/deformed/pull.vtu"), HasSubstr("field_residual"));
+  const Result reported = hookeye("report run -o report.html");
+  EXPECT_EQ(reported.status, 0) << reported.err;
+  EXPECT_TRUE(fs::exists(folder_ / "report.html"));
+  EXPECT_EQ(hookeye("plan run").status, 2) << "there is no camera to look from";
+  // A field that was measured anew is another capture.
+  write("u.csv", "X,Y,Z,U,V,W\n0,5,5,0,0,0\n");
+  EXPECT_NE(hookeye("compare run").err + hookeye("diagnose run").err, "");
+}
+
+TEST_F(FieldCapture, APointOffTheBodyEndsWithItsLine) {
+  write("u.csv", "X [mm],Y,Z,U,V,W\n0,5,5,0,0,0\n-4,5,5,0,0,0\n");
+  const Result said = hookeye("check capture.yaml");
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.err,
+              HasSubstr("u.csv:3: the point (-4, 5, 5) lies 4 mm off the body's surface"));
+}
+
+}  // namespace
+}  // namespace hookeye::test
