@@ -29,7 +29,8 @@ const CalibrationFile& chosen_calibration(const Inventory& inventory, Questions&
                                  kinds));
   }
   std::vector<std::string> names;
-  for (const CalibrationFile& one : inventory.calibrations) names.push_back(one.name(inventory.folder));
+  for (const CalibrationFile& one : inventory.calibrations)
+    names.push_back(one.name(inventory.folder));
   const std::string answer = questions.ask({.name = "calibration",
                                             .text = "which calibration holds",
                                             .standard = names.front(),

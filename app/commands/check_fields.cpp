@@ -2,9 +2,9 @@
 
 #include <functional>
 
-#include "app/text.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/model/field_points.h"
+#include "runs/text.h"
 
 namespace hookeye {
 namespace {
