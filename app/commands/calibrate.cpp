@@ -170,7 +170,7 @@ std::string cameras_table(const Calibration& calibration) {
     };
     rows.push_back({camera.name, fmt::format("{:.3f}", calibration.rms_px[c]),
                     number("fx", camera.fx), number("fy", camera.fy), number("cx", camera.cx),
-                    number("cy", camera.cy), vector_text(camera.centre()),
+                    number("cy", camera.cy), yaml_vector(camera.centre()),
                     shift.norm() > 0 ? fmt::format("{:.2g}", shift.norm()) : "world"});
   }
   return table(rows);

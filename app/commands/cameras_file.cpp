@@ -22,7 +22,7 @@ std::string one_line(std::string text) {
   return text + "\n";
 }
 
-std::string vector_text(const Eigen::Vector3d& v) {
+std::string yaml_vector(const Eigen::Vector3d& v) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);  // no -0
 }
 

@@ -15,6 +15,6 @@ void refuse_to_overwrite_cameras(const std::filesystem::path& file);
 /// `text` as a line of a file, whatever names stand in it.
 std::string one_line(std::string text);
 /// "(12.3, 0, -4.56)".
-std::string vector_text(const Eigen::Vector3d& v);
+std::string yaml_vector(const Eigen::Vector3d& v);
 
 }  // namespace hookeye

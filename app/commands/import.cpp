@@ -99,8 +99,8 @@ std::string cameras_table(const Imported& imported, const std::vector<Reprojecti
     const Camera& camera = imported.cameras[i];
     rows.push_back({camera.name, camera.model->name(),
                     fmt::format("{} x {}", camera.width, camera.height),
-                    fmt::format("{:.1f}", camera.fx), vector_text(camera.centre()),
-                    vector_text(camera.R.row(2).transpose())});
+                    fmt::format("{:.1f}", camera.fx), yaml_vector(camera.centre()),
+                    yaml_vector(camera.R.row(2).transpose())});
     if (!points) continue;
     rows.back().push_back(std::to_string(seen[i].points));
     rows.back().push_back(seen[i].points ? fmt::format("{:.3f}", seen[i].rms_px) : "-");
