@@ -29,14 +29,6 @@ std::shared_ptr<const Scene> OpenedCapture::scene() {
   return scene_;
 }
 
-std::shared_ptr<const Scene> OpenedCapture::whole_scene() {
-  auto whole = std::make_shared<Scene>(*scene());
-  for (const ExampleSpec& example : capture_.examples)
-    if (example.test) whole->capture.examples.push_back(example);
-  whole->photos.resize(whole->capture.examples.size());
-  return whole;
-}
-
 namespace {
 
 using Shared = std::shared_ptr<OpenedCapture>;

@@ -27,8 +27,6 @@ class OpenedCapture {
   /// Without the examples that no fit may see. Read at the first call, which logs what is most
   /// likely not meant. Thread-safe.
   std::shared_ptr<const Scene> scene();
-  /// The same with every example, those of `use: test` last; without their photos.
-  std::shared_ptr<const Scene> whole_scene();
 
  private:
   Capture capture_;

@@ -54,12 +54,17 @@ Model of_scene(const ModelState& model, std::shared_ptr<const Scene> scene) {
   return form.realise(p);
 }
 
-/// With the examples of `use: test`, where it is one of those.
+/// With the examples of `use: test`, where it is one of those; on the model's own mesh, without
+/// their photos.
 Model with_example(const ModelState& model, const std::string& example) {
   const Model own = model.realise();
   if (own.scene->example_index(example) >= 0) return own;
   example_of(model.capture->capture(), example);  // or it is not known at all
-  return of_scene(model, model.capture->whole_scene());
+  auto whole = std::make_shared<Scene>(*own.scene);
+  for (const ExampleSpec& one : model.capture->capture().examples)
+    if (one.test) whole->capture.examples.push_back(one);
+  whole->photos.resize(whole->capture.examples.size());
+  return of_scene(model, std::move(whole));
 }
 
 int photo_of(const ExampleSpec& example, const std::string& camera) {

@@ -1,3 +1,4 @@
+import shutil
 import threading
 import time
 
@@ -18,6 +19,18 @@ def test_equilibria_are_those_of_the_command(folder, capture):
             assert list(state.reaction(support["region"])) == support["force"]
             assert list(state.moment(support["region"], support["about"])) == support["moment"]
         assert state.stable
+
+
+def test_an_example_that_no_fit_may_see_is_simulated_all_the_same(folder, capture, tmp_path):
+    shutil.copytree(folder / "capture", tmp_path, dirs_exist_ok=True)
+    text = (tmp_path / "capture.yaml").read_text()
+    assert text.count("use: validate") == 1
+    (tmp_path / "capture.yaml").write_text(text.replace("use: validate", "use: test"))
+    hidden = he.Capture(tmp_path)
+    assert hidden.examples["poke"]["use"] == "test" and ("poke", "cam0") not in hidden.photos
+    model = hidden.model()
+    assert np.array_equal(model.simulate("poke").u, capture.model().simulate("poke").u)
+    assert model.render("poke", "cam0").mask.any()
 
 
 def test_stress_follows_from_the_deformation(capture):
