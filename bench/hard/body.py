@@ -3,6 +3,7 @@
 Lengths in mm, in the frame of the cameras. Nodes n x 3, tetrahedra n x 10 in CalculiX's order, counted from 0.
 """
 
+import json
 import os
 import re
 import subprocess
@@ -35,6 +36,15 @@ def draw(scad, turn, move, path):
     with open(path + ".scad", "w") as file:
         file.write(f"multmatrix({rows}) part();\n{scad}")
     run(["openscad", "-o", name, name + ".scad"], folder)
+
+
+def melt(blob, path):
+    """Metaballs by Blender -> STL."""
+    with open(path + ".json", "w") as file:
+        json.dump(blob, file)
+    script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "blob.py")
+    run(["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", script, "--",
+         path + ".json", path], os.path.dirname(path))
 
 
 def read_stl(path):

@@ -14,11 +14,11 @@ from stand import area_lamp, look_at, speckle, sun
 BRACKET = """
 module part() difference() {
   union() {
-    translate([0, -11, 0]) cube([60, 22, 16]);
-    translate([0, -11, 0]) cube([16, 22, 52]);
-    rotate([90, 0, 0]) translate([0, 0, -3]) linear_extrude(6) polygon([[15.9, 15.9], [38, 15.9], [38, 16], [16, 36], [15.9, 36]]);
+    translate([0, -7.5, 0]) cube([60, 15, 14]);
+    translate([0, -7.5, 0]) cube([14, 15, 52]);
+    rotate([90, 0, 0]) translate([0, 0, -3]) linear_extrude(6) polygon([[13.9, 13.9], [26, 13.9], [26, 14], [14, 26], [13.9, 26]]);
   }
-  translate([48, 0, -1]) cylinder(r = 4.5, h = 20, $fn = 48);
+  translate([52, 0, -1]) cylinder(r = 3.5, h = 20, $fn = 48);
 }
 """
 
@@ -30,22 +30,22 @@ def bracket():
     matrix = rotation(*turn[1]) @ rotation(*turn[0])
     move = [37.0, -12.0, 81.0]
     middle = (matrix @ [28, 0, 24] + move).round(3).tolist()
-    ball = {"centres": [[27.5, -2.5, 8.2]], "radius": 6.0, "strength": 4.0}
+    ball = {"centres": [[37, 0.5, 7.0]], "radius": 6.0, "strength": 4.0}
 
     def example(force, use="fit"):
         world = (matrix @ np.array(force)).round(4).tolist()
         return {"use": use, "held": ["wall"], "moved": {}, "forces": {"end": world}, "photos": ["left", "right"]}
     rest = {"use": "fit", "held": ["wall"], "moved": {}, "forces": {}, "photos": ["left", "right"]}
-    examples = {"rest": rest, "lift": example([0, 0, 0.13]), "push": example([0.06, 0, 0]),
-                "swing": example([0, 0.045, 0.0]), "oblique": example([-0.035, -0.03, -0.05]),
-                "check_down": example([0.02, 0.01, -0.11], "validate"),
-                "check_side": example([-0.045, 0.025, 0.03], "validate")}
+    examples = {"rest": rest, "lift": example([0, 0, 0.048]), "push": example([0.034, 0, 0]),
+                "swing": example([0, 0.021, 0.0]), "oblique": example([-0.016, -0.012, -0.02]),
+                "check_down": example([0.008, 0.004, -0.04], "validate"),
+                "check_side": example([-0.02, 0.012, 0.01], "validate")}
     light = {"ambient": 0.5, "lamps": [area_lamp([-0.5, -0.7, 0.8], middle, 0.5)]}
     sensor = {"full_well": 8000, "read": 0.002, "encoding": "linear", "bits": 16, "file": "png", "colour": False}
     return {
         "seed": 2024, "title": "silicone bracket", "scad": BRACKET, "turn": turn, "move": move,
-        "edge": 3.6, "fine": [[ball["centres"][0], 6.5, 2.0], [[48, 0, 8], 6.0, 2.4]], "surface_edge": 1.2, "smooth": 30,
-        "regions": {"wall": [[60, 0, 8], [1, 0, 0]], "end": [[8, 0, 52], [0, 0, 1]]},
+        "edge": 3.6, "fine": [[ball["centres"][0], 6.5, 1.9], [[52, 0, 7], 5.0, 2.2]], "surface_edge": 1.2, "smooth": 30,
+        "regions": {"wall": [[60, 0, 7], [1, 0, 0]], "end": [[7, 0, 52], [0, 0, 1]]},
         "mu": 0.06, "kappa": 0.72, "hidden": {"ball": ball}, "examples": examples,
         "cameras": {"left": look_at(middle, -120, 20, 420, 2150, (640, 480)),
                     "right": look_at(middle, -60, 20, 420, 2150, (640, 480))},
@@ -170,19 +170,19 @@ def drawn(seed, size=(400, 300), samples=32):
     angles = {"front": azimuth, "left": azimuth - spread / 2, "right": azimuth + spread / 2}
     mu = round(float(rng.uniform(0.04, 0.07)), 4)
     sensor = draw_sensor(rng, green)
-    pixel = shape["size"] / (0.55 * size[1])  # mm
-    skin = draw_skin(rng, float(rng.uniform(3, 5)) * pixel)
+    
+    skin = draw_skin(rng, float(rng.uniform(3, 5)))  # in px
     if green:
         skin["layers"] = []
     texture = {"uniform": 0.6} if green else {"from": "rest" if rest else "load1"}
     return {
         "seed": seed, "title": f"{body} {seed}", "body": body, **{k: shape[k] for k in ("regions", "edge")},
         **{k: shape[k] for k in ("scad", "blob") if k in shape}, "turn": turn,
-        "move": rng.uniform(-60, 60, 3).round(2).tolist(), "fine": [], "surface_edge": round(6 * pixel, 2), "smooth": 30,
+        "move": rng.uniform(-60, 60, 3).round(2).tolist(), "fine": [], "smooth": 30,
         "mu": mu, "kappa": round(12 * mu, 4), "hidden": hidden_values(rng, kind, shape, examples, views, seed),
         "examples": examples,
         "views": {v: {"azimuth": round(angles[v], 1), "elevation": round(float(rng.uniform(8, 35)), 1)} for v in views},
-        "size": list(size), "away": 7.0, "lens": chance(rng, 0.25) and not green, "clamp": chance(rng, 0.35), "green": green,
+        "size": list(size), "away": 7.0, "lens": chance(rng, 0.25) and not green, "clamp": chance(rng, 0.35) and not green, "green": green,
         "skin": skin, "draw_light": draw_light(rng), "samples": samples,
         "background": round(float(rng.uniform(0.02, 0.2)), 3), "props": [], "sensor": sensor,
         "told_edge": round(shape["edge"] * float(rng.uniform(0.9, 1.15)), 2),

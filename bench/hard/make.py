@@ -59,6 +59,7 @@ def told_examples(case):
         if forces:
             example["loads"] = [{"region": r, "force": f} for r, f in forces.items()]
         photos = {c: case.files[name, c] for c in told["photos"]}
+        photos = {c: {"file": file, "mask": case.masks[c]} if c in case.masks else file for c, file in photos.items()}
         found[name] = {**example, "photos": photos}
     return found
 
@@ -81,9 +82,10 @@ def tell(case):
 def main():
     parser = argparse.ArgumentParser(prog="bench/hard/make", description=__doc__)
     parser.add_argument("spec", help="a seed, `bracket`, or a specification (json)")
-    parser.add_argument("-o", "--out", required=True, help="gets capture/, truth.json and work/")
+    parser.add_argument("-o", "--out", required=True, help="gets capture/ and truth.json")
     parser.add_argument("--solve-only", action="store_true", help="print how far it moves; no photos")
     parser.add_argument("--differences", action="store_true", help="solve without what is hidden too, for truth.json")
+    parser.add_argument("--keep", action="store_true", help="leave decks, solutions and linear pictures in work/")
     told = parser.parse_args()
     if told.spec == "bracket":
         spec = draw.bracket()
@@ -106,6 +108,8 @@ def main():
              "mu": spec["mu"], "kappa": spec["kappa"], "examples": shifts, "specification": spec}
     with open(os.path.join(told.out, "truth.json"), "w") as file:
         json.dump(truth, file, indent=1, default=plain)
+    if not told.keep:
+        shutil.rmtree(case.work)
 
 
 main()
