@@ -25,17 +25,33 @@ bpy.context.scene.collection.objects.link(thing)
 bpy.context.view_layer.update()
 mesh = bpy.data.meshes.new_from_object(thing.evaluated_get(bpy.context.evaluated_depsgraph_get()))
 
-solid = bmesh.new()
-solid.from_mesh(mesh)
-for height, up in ((spec["bottom"], -1), (spec["top"], 1)):
-    geometry = solid.verts[:] + solid.edges[:] + solid.faces[:]
-    cut = bmesh.ops.bisect_plane(solid, geom=geometry, plane_co=(0, 0, height), plane_no=(0, 0, up),
-                                 clear_outer=True, dist=1e-4)
-    rim = [e for e in cut["geom_cut"] if isinstance(e, bmesh.types.BMEdge)]
-    bmesh.ops.remove_doubles(solid, verts=list({v for e in rim for v in e.verts}), dist=0.25 * spec["facet"])
-    bmesh.ops.holes_fill(solid, edges=[e for e in solid.edges if e.is_boundary], sides=0)
-bmesh.ops.triangulate(solid, faces=solid.faces[:])
-bmesh.ops.recalc_face_normals(solid, faces=solid.faces[:])
+
+def cut(share):
+    """The closed body. Tiny triangles would hang gmsh: corners within a share of the facet become one."""
+    near = share * spec["facet"]
+    solid = bmesh.new()
+    solid.from_mesh(mesh)
+    bmesh.ops.remove_doubles(solid, verts=solid.verts[:], dist=near)
+    for vertex in solid.verts:
+        for height in (spec["bottom"], spec["top"]):
+            if abs(vertex.co.z - height) < near:
+                vertex.co.z = height
+    bmesh.ops.dissolve_degenerate(solid, edges=solid.edges[:], dist=1e-3)
+    for height, up in ((spec["bottom"], -1), (spec["top"], 1)):
+        geometry = solid.verts[:] + solid.edges[:] + solid.faces[:]
+        bmesh.ops.bisect_plane(solid, geom=geometry, plane_co=(0, 0, height), plane_no=(0, 0, up), clear_outer=True, dist=1e-3)
+        bmesh.ops.holes_fill(solid, edges=[e for e in solid.edges if e.is_boundary], sides=0)
+    bmesh.ops.triangulate(solid, faces=solid.faces[:])
+    bmesh.ops.recalc_face_normals(solid, faces=solid.faces[:])
+    return solid
+
+
+for share in (0.3, 0.25, 0.35, 0.2, 0.15, 0.1):
+    solid = cut(share)
+    if all(edge.is_manifold for edge in solid.edges):
+        break
+else:
+    raise SystemExit("blob.py: no closed body")
 
 turn, move = np.array(spec["turn"]), np.array(spec["move"])
 with open(out, "w") as file:

@@ -6,6 +6,7 @@ Lengths in mm, in the frame of the cameras. Nodes n x 3, tetrahedra n x 10 in Ca
 import json
 import os
 import re
+import resource
 import subprocess
 
 import numpy as np
@@ -23,8 +24,10 @@ def rotation(axis, degrees):
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
-def run(command, folder):
-    told = subprocess.run(command, cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+def run(command, folder, seconds=600):
+    """Within so many seconds of computing: gmsh hangs on some surfaces, and asking it to stop is not enough."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    told = subprocess.run(command, cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, preexec_fn=limit)
     if told.returncode:
         raise SystemExit(f"{' '.join(command)} in {folder}:\n{(told.stdout + told.stderr)[-2000:]}")
 
@@ -86,8 +89,7 @@ def divided(face, middle):
 
 GEO = """
 Merge "{stl}";
-ClassifySurfaces{{{angle}*Pi/180, 1, 1, Pi}};
-CreateGeometry;
+{remesh}
 Surface Loop(1) = Surface{{:}};
 Volume(1) = {{1}};
 Mesh.CharacteristicLengthMax = {edge};
@@ -108,8 +110,11 @@ Background Field = 100;
 """
 
 
-def mesh(stl, edge, places, angle=40):
-    """Nodes and quadratic tetrahedra by gmsh. places: (centre, radius, edge there)."""
+REMESH = "ClassifySurfaces{40*Pi/180, 1, 1, Pi}; CreateGeometry;"
+
+
+def mesh(stl, edge, places, as_drawn):
+    """Nodes and quadratic tetrahedra by gmsh. places: (centre, radius, edge there); as_drawn: the STL's triangles stay."""
     folder, name = os.path.split(stl)
     fields = ""
     for k, (centre, radius, fine) in enumerate(places, 1):
@@ -117,9 +122,9 @@ def mesh(stl, edge, places, angle=40):
         fields += (f"Field[{k}] = Ball;{at} Field[{k}].Radius = {radius}; Field[{k}].Thickness = {3 * edge};"
                    f" Field[{k}].VIn = {fine}; Field[{k}].VOut = {edge};\n")
     with open(stl + ".geo", "w") as file:
-        file.write(GEO.format(stl=name, angle=angle, edge=edge, fine=min([edge, *(p[2] for p in places)]) / 3,
+        file.write(GEO.format(stl=name, remesh="" if as_drawn else REMESH, edge=edge, fine=min([edge, *(p[2] for p in places)]) / 3,
                               fields=fields, numbers="".join(f",{k}" for k in range(1, len(places) + 1))))
-    run(["gmsh", "-3", name + ".geo", "-o", name + ".msh", "-v", "3", "-nt", "1"], folder)
+    run(["gmsh", "-3", name + ".geo", "-o", name + ".msh", "-v", "3", "-nt", "1"], folder, 90)
     return read_msh(stl + ".msh")
 
 
@@ -141,8 +146,8 @@ def read_msh(path):
 class Body:
     """Tetrahedra, the patches of their boundary, and the surface that is photographed."""
 
-    def __init__(self, stl, edge, places, pixel):
-        self.nodes, self.tets = mesh(stl, edge, places)
+    def __init__(self, stl, edge, places, pixel, as_drawn=False):
+        self.nodes, self.tets = mesh(stl, edge, places, as_drawn)
         self.boundary = self.outer_triangles()
         self.surface, self.faces = split(*read_stl(stl), pixel)
         self.weigh()

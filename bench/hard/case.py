@@ -53,7 +53,7 @@ class Case:
         if "views" in self.spec:
             size.frame(self.spec, bodies.read_stl(stl)[0])
         fine = [(self.place(c), r, e) for c, r, e in self.spec["fine"]]
-        self.body = Body(stl, self.spec["edge"], fine, self.spec["surface_edge"])
+        self.body = Body(stl, self.spec["edge"], fine, self.spec["surface_edge"], "blob" in self.spec)
         self.regions = {}
         for name, (point, normal) in self.spec["regions"].items():
             point, normal = self.place(point), self.direction(unit(normal))

@@ -74,7 +74,7 @@ def blob(rng):
              [2 * x + 8, 2 * y - 3, 46, 6.5], [2 * x - 8, 2 * y - 3, 46, 6.5], [0, 13, 9, 7]]
     balls = [[round(s * float(v), 3) for v in ball] for ball in balls]
     top = round(43 * s, 3)
-    return {"blob": {"balls": balls, "bottom": 0.0, "top": top, "facet": 1.6},
+    return {"blob": {"balls": balls, "bottom": 0.0, "top": top, "facet": 2.4},
             "regions": {"base": [[0, 0, 0], [0, 0, -1]], "end": [[0, 0, top], [0, 0, 1]]},
             "edge": 4.4, "size": top, "inside": [[0, 0, 14 * s], [3, 3, 5]], "room": 7.0,
             "long": [1, 0, 0], "aim": [1.5, 5]}
