@@ -137,7 +137,7 @@ def draw_skin(rng, dot):
 
 def draw_sensor(rng, green):
     if green:
-        return {"full_well": 8000, "read": 0.003, "encoding": "linear", "bits": 8, "file": "png", "colour": True, "key": 0.06}
+        return {"full_well": 8000, "read": 0.003, "encoding": "linear", "bits": 8, "file": "png", "colour": True, "key": 0.04}
     sensor = {"full_well": int(rng.choice([5000, 10000, 20000])), "read": 0.002}
     kinds = {"jpeg": {"encoding": "srgb", "bits": 8, "file": "jpeg", "quality": 90, "colour": True},
              "srgb8": {"encoding": "srgb", "bits": 8, "file": "png", "colour": chance(rng, 0.5)},
