@@ -1,6 +1,6 @@
 """Blender makes a metaball body, cut flat at both ends: `blender --background --python blob.py -- SPEC.json OUT.stl`.
 
-SPEC: balls [x, y, z, radius], bottom, top, facet, turn (3 x 3), move.
+SPEC: balls [x, y, z, radius], bottom, top, facet, share, turn (3 x 3), move.
 """
 
 import json
@@ -40,17 +40,16 @@ def cut(share):
     for height, up in ((spec["bottom"], -1), (spec["top"], 1)):
         geometry = solid.verts[:] + solid.edges[:] + solid.faces[:]
         bmesh.ops.bisect_plane(solid, geom=geometry, plane_co=(0, 0, height), plane_no=(0, 0, up), clear_outer=True, dist=1e-3)
+        flat = [f for f in solid.faces if all(abs(v.co.z - height) < 1e-3 for v in f.verts)]  # the lid stands for them
+        bmesh.ops.delete(solid, geom=flat, context="FACES")
         bmesh.ops.holes_fill(solid, edges=[e for e in solid.edges if e.is_boundary], sides=0)
     bmesh.ops.triangulate(solid, faces=solid.faces[:])
     bmesh.ops.recalc_face_normals(solid, faces=solid.faces[:])
     return solid
 
 
-for share in (0.3, 0.25, 0.35, 0.2, 0.15, 0.1):
-    solid = cut(share)
-    if all(edge.is_manifold for edge in solid.edges):
-        break
-else:
+solid = cut(spec["share"])
+if not all(edge.is_manifold for edge in solid.edges):
     raise SystemExit("blob.py: no closed body")
 
 turn, move = np.array(spec["turn"]), np.array(spec["move"])

@@ -24,12 +24,16 @@ def rotation(axis, degrees):
     return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
+class Failed(SystemExit):
+    """A program could not do what was asked."""
+
+
 def run(command, folder, seconds=600):
     """Within so many seconds of computing: gmsh hangs on some surfaces, and asking it to stop is not enough."""
     limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     told = subprocess.run(command, cwd=folder, capture_output=True, text=True, stdin=subprocess.DEVNULL, preexec_fn=limit)
     if told.returncode:
-        raise SystemExit(f"{' '.join(command)} in {folder}:\n{(told.stdout + told.stderr)[-2000:]}")
+        raise Failed(f"{' '.join(command)} in {folder}:\n{(told.stdout + told.stderr)[-2000:]}")
 
 
 def draw(scad, turn, move, path):

@@ -47,13 +47,10 @@ class Case:
     def shape(self):
         stl = os.path.join(self.work, "body.stl")
         if "blob" in self.spec:
-            bodies.melt({**self.spec["blob"], "turn": self.turn.tolist(), "move": self.move.tolist()}, stl)
+            self.blob(stl)
         else:
             bodies.draw(self.spec["scad"], self.turn, self.move, stl)
-        if "views" in self.spec:
-            size.frame(self.spec, bodies.read_stl(stl)[0])
-        fine = [(self.place(c), r, e) for c, r, e in self.spec["fine"]]
-        self.body = Body(stl, self.spec["edge"], fine, self.spec["surface_edge"], "blob" in self.spec)
+            self.fill(stl)
         self.regions = {}
         for name, (point, normal) in self.spec["regions"].items():
             point, normal = self.place(point), self.direction(unit(normal))
@@ -63,6 +60,23 @@ class Case:
             self.regions[name] = (point, normal, patch)
         if self.spec.get("clamp"):
             size.clamp(self)
+
+    def blob(self, stl):
+        """Merged a little more or less until gmsh fills it."""
+        for share in (0.3, 0.2, 0.1, 0.35, 0.25, 0.15):
+            told = {**self.spec["blob"], "share": share, "turn": self.turn.tolist(), "move": self.move.tolist()}
+            try:
+                bodies.melt(told, stl)
+                return self.fill(stl)
+            except bodies.Failed as failed:
+                last = failed
+        raise last
+
+    def fill(self, stl):
+        if "cameras" not in self.spec:
+            size.frame(self.spec, bodies.read_stl(stl)[0])
+        fine = [(self.place(c), r, e) for c, r, e in self.spec["fine"]]
+        self.body = Body(stl, self.spec["edge"], fine, self.spec["surface_edge"], "blob" in self.spec)
 
     def problem(self, example, kind=Problem):
         told = self.examples[example]

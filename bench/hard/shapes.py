@@ -62,7 +62,7 @@ def bracket(rng):
   translate([{a - 11}, 0, -1]) cylinder(r = {hole}, h = 40, $fn = 48); }}""")
     return {"scad": scad, "regions": {"base": [[a, 0, t / 2], [1, 0, 0]], "end": [[t / 2, 0, b], [0, 0, 1]]},
             "edge": 4.2, "size": a, "inside": [[a * 0.45, 0, t / 2], [a / 6, w / 6, t / 16]], "room": 0.42 * t,
-            "long": [0, 0, 1], "aim": [2, 8]}
+            "long": [1, 0, 0], "aim": [2, 8]}
 
 
 @shape
