@@ -160,4 +160,5 @@ def main():
         photograph(photo, folder, skin(told["albedo"], photo.get("glossy")))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -32,6 +32,7 @@ class Problem:
     pressure: tuple = None  # triangles (corners), pressure
     growth: np.ndarray = None  # thermal strain by node
     wall: tuple = None  # point, normal into the free half, stiffness [stress / length]
+    increment: float = 0.25  # the first share of the load
 
     def outer_faces(self):
         """Faces without a neighbour: sorted corners -> (element, number of the face)."""
@@ -52,7 +53,7 @@ class Problem:
             lines += ["*INITIAL CONDITIONS,TYPE=TEMPERATURE", "NALL,0."]
             self.ends += ["*TEMPERATURE"] + [f"{i},{t:.9g}" for i, t in enumerate(self.growth, 1)]
         lines += self.sections() + self.foundation() + self.obstacle()
-        lines += ["*STEP,NLGEOM,INC=500", "*STATIC", "0.25,1.,1e-5,0.5"]
+        lines += ["*STEP,NLGEOM,INC=500", "*STATIC", f"{self.increment},1.,1e-5,0.5"]
         lines += ["*CONTROLS,PARAMETERS=FIELD", "1e-5,1e-4,,,1e-3,1e-8"]
         if self.fixed:
             lines += ["*BOUNDARY"]
