@@ -116,8 +116,7 @@ void Brightness::balance(const Image& photo, double level) {
   Eigen::VectorXd of_photo = Eigen::VectorXd::Constant(nodes, kToOne * level);
   Products products(nodes);
   for_each([&](size_t i, const std::array<Corner, 4>& at) {
-    // noise can be less than nothing where the picture is dark
-    products.add(at, std::max(I_.values[i], 0.0f));
+    products.add(at, I_.values[i]);
     for (const Corner& c : at) of_photo[c.node] += double(c.weight) * photo.values[i];
   });
   products.for_each(add);

@@ -259,55 +259,57 @@ TEST(RestTexture, PlacementMovesTheReferencePhotoToo) {
         VectorXd::Constant(1, 2.0 * sums.Jtr.dot(direction)), 2e-4, 0.01);
 }
 
-/// The misfit's slope by every candidate of the effects, a little off their nulls.
-void check_slopes(const std::vector<std::string>& effects, double step) {
+/// The misfit's slope by every candidate of an effect, a little off its nulls. Returns how many of
+/// its parameters have one.
+int check_slopes(const std::string& name, double step) {
   const test::TemporaryFolder folder;
   const auto scene = turned_scene(folder);
   Workspace workspace(scene);
   const ModelForm base = base_form(scene);
-  for (const std::string& name : effects) {
-    int tried = 0;
-    for (const auto& candidate :
-         find_effect(name)->candidates(base.realise(base.initial()), nullptr)) {
-      ModelForm form = base;
-      form.ingredients.push_back(candidate);
-      const auto parameters = form.parameters();
-      VectorXd p = form.initial();
-      for (Eigen::Index i = base.size(); i < p.size(); ++i) p[i] += 0.3 * parameters[i].typical;
-      auto look = [&](const VectorXd& at, bool derivatives) {
-        EvaluationOptions options;
-        options.derivatives = derivatives;
-        return std::get<Evaluation>(workspace.evaluate(form, at, options));
-      };
-      const auto misfit = [&](Eigen::Index i, double h) {
-        return look(p + h * VectorXd::Unit(p.size(), i), false).examples.at(1).photos.at(0).r2;
-      };
-      const auto sums = normal_equations(look(p, true));
-      for (Eigen::Index i = base.size(); i < p.size(); ++i) {
-        const std::string label = name + " [" + candidate->variant() + "] " + parameters[i].name;
-        const double h = step * parameters[i].typical;
-        if (std::abs(sums.Jtr[i]) * parameters[i].typical < 1e-9 * misfit(i, 0.0)) {
-          // The distance of an orthographic camera; a gain that both photos share.
-          EXPECT_NEAR(misfit(i, h), misfit(i, -h), 1e-6 * misfit(i, 0.0)) << label;
-          continue;
-        }
-        test::expect_derivative([&](double t) { return VectorXd::Constant(1, misfit(i, t)); },
-                                VectorXd::Constant(1, 2.0 * sums.Jtr[i]), h, 0.01, label);
-        ++tried;
+  int tried = 0;
+  for (const auto& candidate :
+       find_effect(name)->candidates(base.realise(base.initial()), nullptr)) {
+    ModelForm form = base;
+    form.ingredients.push_back(candidate);
+    const auto parameters = form.parameters();
+    VectorXd p = form.initial();
+    for (Eigen::Index i = base.size(); i < p.size(); ++i) p[i] += 0.3 * parameters[i].typical;
+    auto look = [&](const VectorXd& at, bool derivatives) {
+      EvaluationOptions options;
+      options.derivatives = derivatives;
+      return std::get<Evaluation>(workspace.evaluate(form, at, options));
+    };
+    const auto misfit = [&](Eigen::Index i, double h) {
+      return look(p + h * VectorXd::Unit(p.size(), i), false).examples.at(1).photos.at(0).r2;
+    };
+    const auto sums = normal_equations(look(p, true));
+    for (Eigen::Index i = base.size(); i < p.size(); ++i) {
+      const std::string label = name + " [" + candidate->variant() + "] " + parameters[i].name;
+      const double h = step * parameters[i].typical;
+      if (sums.JtJ(i, i) * std::pow(parameters[i].typical, 2) < 1.0) {
+        // The distance of an orthographic camera; a gain, which the picture follows.
+        EXPECT_NEAR(misfit(i, h), misfit(i, -h), 1e-6 * misfit(i, 0.0)) << label;
+        continue;
       }
+      test::expect_derivative([&](double t) { return VectorXd::Constant(1, misfit(i, t)); },
+                              VectorXd::Constant(1, 2.0 * sums.Jtr[i]), h, 0.01, label);
+      ++tried;
     }
-    EXPECT_GT(tried, 0) << name;
   }
+  return tried;
 }
 
 /// The photo that gives the texture was taken by a camera and with an exposure of its own: what
 /// changes these changes every picture, and derivatives know it.
 TEST(RestTexture, WhatTheReferencePhotoWasTakenWithCounts) {
-  check_slopes({"focal_length", "exposure", "camera_pose"}, 2e-3);
+  // both photos zoom: what is left is small beside the rounding of pictures kept as floats
+  EXPECT_GT(check_slopes("focal_length", 8e-3), 0);
+  EXPECT_GT(check_slopes("camera_pose", 2e-3), 0);
+  EXPECT_EQ(check_slopes("exposure", 2e-3), 0) << "the picture follows the photo's brightness";
 }
 
 /// What bends the body in every example bends it in the photo that gives the texture as well.
-TEST(RestTexture, WhatMovesTheBodyAtRestCounts) { check_slopes({"gravity"}, 0.05); }
+TEST(RestTexture, WhatMovesTheBodyAtRestCounts) { EXPECT_GT(check_slopes("gravity", 0.05), 0); }
 
 /// A body that hangs in one jaw is at rest wherever the jaw went: such photos tell the floor.
 TEST(RestTexture, BodyHeldByOneJawIsAtRest) {
