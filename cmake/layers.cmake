@@ -58,6 +58,14 @@ function(hookeye_helper name)
   install(TARGETS helper_${name} RUNTIME DESTINATION libexec/hookeye)
 endfunction()
 
+# The program's BLAS is OpenBLAS, whatever else is installed. A linker that drops what no object has
+# asked for yet would drop it, and Ceres' own choice (ATLAS) would serve CHOLMOD and Eigen too.
+function(hookeye_blas target)
+  list(JOIN OPENBLAS_LIBRARY "," libraries)
+  target_link_options(${target} PRIVATE
+    "LINKER:--push-state,--no-as-needed,${libraries},--pop-state")
+endfunction()
+
 # hookeye_test_entries(TARGET PREFIX FILE...): ctest's PREFIX.NAME runs the tests of NAME_test.cpp in
 # one process. Those that tests/costs.txt tells begin first, the longest ahead. Those of a folder
 # long/ have the label `long`: ./check leaves them out, ./check --long does not. Those of
@@ -113,6 +121,7 @@ function(hookeye_tests name)
   target_include_directories(test_${name} PRIVATE ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE HOOKEYE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
   add_dependencies(test_${name} helpers)
+  hookeye_blas(test_${name})
   hookeye_flags(test_${name})
   hookeye_test_headers(test_${name})
   hookeye_test_entries(test_${name} ${name} ${sources})

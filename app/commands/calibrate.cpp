@@ -273,7 +273,7 @@ void add_calibrate(CLI::App& app, CommandBody& chosen) {
   add_board_options(*command, *told);
   command
       ->add_option("--lens", told->options.lens,
-                   "Numbers of the lens: 0, 4 (k1 k2 p1 p2), 5 (and k3; default), 8 (and k4 k5 k6)")
+                   "0, 4 (k1 k2 p1 p2), 5 (and k3; default) or 8 numbers of the lens")
       ->check(CLI::IsMember({0, 4, 5, 8}));
   command->add_option("--frame", told->options.frame,
                       "A photo: the world is the frame of its board, not the first camera's");

@@ -192,13 +192,12 @@ void run_new(const NewCommand& options, Session& session) {
 }  // namespace
 
 void add_new(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "new", "A capture from a folder of photos, calibration, mesh and test machine's table");
+  CLI::App* command =
+      app.add_subcommand("new", "A capture from a folder of photos, calibration, mesh and CSV");
   const auto options = std::make_shared<NewCommand>();
   command->add_option("FOLDER", options->folder, "Where all of it lies")->required();
   command->add_option("-o,--out", options->out,
-                      "Folder or yaml file of the capture, in FOLDER or above (default: "
-                      "FOLDER/capture.yaml)");
+                      "Folder or yaml file of the capture, in FOLDER or above");
   command->add_flag("-y,--yes", options->yes, "Ask nothing, take the defaults");
   command->add_option("--set", options->told, "Answers a question; may be given again")
       ->type_name("NAME=VALUE")
