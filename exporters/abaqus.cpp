@@ -17,7 +17,8 @@ class Abaqus final : public Exporter {
                 .results = "*OUTPUT, FIELD, VARIABLE=PRESELECT\n",
                 .most_ogden_terms = 6,
                 .swelling = "Abaqus takes it out of the volume ratio: to first order under load",
-                .elastic_by_green = false});
+                .elastic_by_green = false,
+                .pressed_step = 0.5});
     out.notes = {"In this folder: abaqus job=CASE. CASE.dat has the displacements of all nodes.",
                  "The volumetric energy of *HYPERELASTIC is Hookeye's: 1/D1 (J - 1)^2 with D1 = "
                  "2/kappa. There is no difference at any J.",

@@ -171,11 +171,13 @@ std::string case_cards(const SolverModel& model, const SolverCase& one, const Di
     out += material_cards(model, m, one.stiffness, dialect);
   out += spring_cards(model, one, 2 * model.mesh().size() + 1);
   if (swells) out += "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL,0.\n";
+  const double largest = one.pressures.empty() ? 0.5 : dialect.pressed_step;
   for (size_t s = 0; s < one.shares.size(); ++s) {
     // One Newton tolerance for both programs, far below their standard: residual and correction.
-    out +=
-        "*STEP, NLGEOM, INC=500\n*STATIC\n0.25,1.,1e-5,0.5\n"
-        "*CONTROLS, PARAMETERS=FIELD\n1e-5,1e-4,,,1e-3,1e-8\n";
+    fmt::format_to(Out(out),
+                   "*STEP, NLGEOM, INC=500\n*STATIC\n{},1.,1e-5,{}\n"
+                   "*CONTROLS, PARAMETERS=FIELD\n1e-5,1e-4,,,1e-3,1e-8\n",
+                   std::min(0.25, largest), largest);
     out += boundary_cards(model, one, one.shares[s]) + load_cards(model, one, one.shares[s]);
     if (swells) {
       const VectorXd strain = one.shares[s] * swelling_at_nodes(model);

@@ -13,6 +13,7 @@ struct Dialect {
   size_t most_ogden_terms;  ///< of *HYPERELASTIC, OGDEN
   const char* swelling;     ///< what it makes of a thermal strain
   bool elastic_by_green;    ///< *ELASTIC is linear between stress and Green strain
+  double pressed_step;      ///< largest increment of a step where a pressure follows faces
 };
 
 /// Node k of an element in the order of these programs is node kOrder[k] of TetMesh: they count the

@@ -17,7 +17,7 @@ std::string item(const std::string& text) {
     const std::string word = text.substr(at, end - at);
     if (line.size() + 1 + word.size() > 90) {
       out += "\n ";
-      line = " ";
+      line.assign(1, ' ');
     }
     out += " " + word;
     line += " " + word;

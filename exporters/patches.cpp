@@ -32,10 +32,11 @@ Patch patch_of(const TetMesh& mesh, const std::string& name,
   return out;
 }
 
-/// "(a*x+b*y+c*z+d)".
+/// "(a*x+b*y+c*z+d)"; gradients of displacement that are round-off become 0.
 std::string form(const Vector3d& a, double d) {
-  return fmt::format("({:.12g}*x+{:.12g}*y+{:.12g}*z+{:.12g})", a.x() + 0.0, a.y() + 0.0,
-                     a.z() + 0.0, d + 0.0);
+  const auto clean = [](double value) { return std::abs(value) < 1e-12 ? 0.0 : value; };
+  return fmt::format("({:.12g}*x+{:.12g}*y+{:.12g}*z+{:.12g})", clean(a.x()), clean(a.y()),
+                     clean(a.z()), d + 0.0);
 }
 
 /// u = a.X + b over nodes, nearest by least squares; the largest error.

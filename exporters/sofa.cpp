@@ -51,7 +51,10 @@ bool fits(const Rubber& r) { return r.c20 == 0 && r.c30 == 0 && r.ogden.empty();
 
 std::string force_field(const std::string& material, const std::vector<double>& values) {
   std::string set;
-  for (const double v : values) set += (set.empty() ? "" : " ") + number(v);
+  for (const double v : values) {
+    if (!set.empty()) set += ' ';
+    set += number(v);
+  }
   return fmt::format(
       "      <TetrahedronHyperelasticityFEMForceField materialName=\"{}\" ParameterSet=\"{}\"/>\n",
       material, set);

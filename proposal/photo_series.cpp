@@ -146,10 +146,11 @@ std::vector<PhotoSeries> photo_series(const std::vector<fs::path>& pictures,
   for (const auto& [form, names] : forms) add_form(names, found);
   size_t most = 0;
   for (const Numbered& one : found) most = std::max(most, one.series.photos.size());
-  // An overview, a picture of the set-up: single ones beside a series.
+  // An overview, pictures of the set-up: a single one, or few, beside a series.
   std::vector<Numbered> kept;
   for (Numbered& one : found) {
-    if (most >= 3 && 4 * one.series.photos.size() < most)
+    const size_t count = one.series.photos.size();
+    if (most >= 3 && (count == 1 || 4 * count < most))
       for (const auto& [number, file] : one.series.photos) left.push_back(file);
     else
       kept.push_back(std::move(one));

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "capture_io/camera_text.h"
 #include "proposal/loading.h"
@@ -82,15 +84,22 @@ MachineRecord chosen_record(const Inventory& inventory, Questions& questions) {
   return machine_record(inventory.tables[static_cast<size_t>(at)], questions);
 }
 
+/// Each camera's photos that another one has; a load case goes without them.
 void say_missing_photos(const ProposedCameras& cameras, std::vector<std::string>& said) {
+  std::set<long> all;
   for (const auto& [camera, series] : cameras.cameras)
-    for (const auto& [other, theirs] : cameras.cameras)
-      for (const auto& [number, file] : theirs->photos)
-        if (!series->photos.contains(number)) {
-          said.push_back(fmt::format("photo {} of `{}` is missing, `{}` has it: {}", number,
-                                     series->camera, theirs->camera, file.filename().string()));
-          return;
-        }
+    for (const auto& [number, file] : series->photos) all.insert(number);
+  for (const auto& [camera, series] : cameras.cameras) {
+    std::vector<long> missing;
+    for (const long number : all)
+      if (!series->photos.contains(number)) missing.push_back(number);
+    if (missing.empty()) continue;
+    const size_t told = std::min<size_t>(missing.size(), 8);
+    said.push_back(fmt::format(
+        "of `{}` photos are missing that another camera has: {}{}", series->camera,
+        fmt::join(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(told), ", "),
+        told < missing.size() ? fmt::format(" and {} more", missing.size() - told) : ""));
+  }
 }
 
 double start_mu(const Parts& parts, Questions& questions) {

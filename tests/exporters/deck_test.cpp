@@ -107,6 +107,19 @@ TEST(Deck, PressureActsOnThePatch) {
   EXPECT_NEAR(force, 0.01 * block.region("flank").area, 1e-6);
 }
 
+TEST(Deck, CalculiXPressesInSmallIncrements) {
+  const Block block;
+  Model model = block.model();
+  model.examples[0].loading.forces.push_back(follower_pressure(block.region("flank"), 0.01));
+  const Exported calculix = exported(model, "calculix"), abaqus = exported(model, "abaqus");
+  const auto increments = [](const Exported& out, const std::string& name) {
+    return behind(file_of(out, name), "*STATIC");
+  };
+  EXPECT_EQ(increments(calculix, "rest.inp"), std::vector<std::string>{"0.05,1.,1e-5,0.05"});
+  EXPECT_EQ(increments(calculix, "pull.inp"), std::vector<std::string>{"0.25,1.,1e-5,0.5"});
+  EXPECT_EQ(increments(abaqus, "rest.inp"), std::vector<std::string>{"0.25,1.,1e-5,0.5"});
+}
+
 TEST(Deck, NumbersFitTheirFields) {
   const Block block;
   Model model = block.model();

@@ -89,7 +89,7 @@ TEST(MachineRecord, RowsThatAreNoneAreToldWithTheirLine) {
     text.replace(text.find(from), from.size(), to);
   };
   replace("\n7.000,", "\nSpecimen slipped\n7.000,");
-  replace("9.000,1.8000,3.5960", "9.000,1.8000,overload");
+  replace("9.000,1.8000,3.5980", "9.000,1.8000,overload");
   const MachineRecord record = record_of(lab, text);
   EXPECT_EQ(record.size(), 29u);
   EXPECT_TRUE(any_says(record.said, "test.csv:16: `Specimen slipped`"))

@@ -162,6 +162,18 @@ TEST(Proposal, WhatIsMissingIsNamed) {
   EXPECT_THAT(lab.complaint(), HasSubstr("photos of 2 cameras and a calibration of 1 camera"));
 }
 
+TEST(Proposal, PhotosOfOneCameraAloneAreTold) {
+  const LabFolder lab;
+  fill(lab);
+  EXPECT_FALSE(any_says(lab.proposal().said, "are missing"));
+  for (const char* name : {"cam0_0009", "cam1_0006", "cam1_0007"})
+    ASSERT_TRUE(std::filesystem::remove(lab.path() / "photos" / (std::string(name) + ".tif")));
+  const Proposal proposal = lab.proposal();
+  EXPECT_TRUE(any_says(proposal.said, "of `cam0` photos are missing that another camera has: 9"));
+  EXPECT_TRUE(
+      any_says(proposal.said, "of `cam1` photos are missing that another camera has: 6, 7"));
+}
+
 TEST(Proposal, AnExistingCaptureStaysAndNothingHalfWrittenIsLeft) {
   const LabFolder lab;
   fill(lab);
