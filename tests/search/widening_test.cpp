@@ -70,7 +70,7 @@ TEST(Widening, APlaceGetsItsEdgeBesideWhatElseIsMissing) {
   const Model model = form.realise(form.initial());
   form.ingredients.push_back(find_effect("stiffness_field")->rebuild(model, "free blob"));
   VectorXd p = form.initial();
-  p.tail(5) << -1.5, 2.5, -1.5, 18.0, 6.0;  // from farther off a processor's rounding decides
+  p.tail(5) << -1.5, 2.5, -1.5, 18.0, 6.0;  // from farther off it may end on the way
   const Fitted faded = std::get<Fitted>(fit(workspace, form, p));
   const Floor floor = measure_floor(*small.scene, faded.evaluation);
   const Fitted edged = std::get<Fitted>(widened(workspace, faded, at, floor, {}));
