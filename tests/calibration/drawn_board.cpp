@@ -50,12 +50,15 @@ double DrawnBoard::at(double x, double y) const {
   if (x < first || y < first || x > end_x || y > end_y) return inverted ? 0.05 : 0.9;
   bool white = true;
   if (board.dots()) {
-    const int row = std::clamp(static_cast<int>(std::lround(y / p)), 0, board.rows - 1);
     const bool even = board.kind == Board::Kind::circles;
-    const double along = even ? x / p : (x / p - row % 2) / 2;
-    const int column = std::clamp(static_cast<int>(std::lround(along)), 0, board.columns - 1);
-    const auto middle = board.corner(row * board.columns + column);
-    white = std::hypot(middle.x() - x, middle.y() - y) > board.diameter / 2;
+    // A dot of an asymmetric grid may reach beyond the middle between two rows.
+    for (const double near : {std::floor(y / p), std::ceil(y / p)}) {
+      const int row = std::clamp(static_cast<int>(near), 0, board.rows - 1);
+      const double along = even ? x / p : (x / p - row % 2) / 2;
+      const int column = std::clamp(static_cast<int>(std::lround(along)), 0, board.columns - 1);
+      const auto middle = board.corner(row * board.columns + column);
+      white = white && std::hypot(middle.x() - x, middle.y() - y) > board.diameter / 2;
+    }
   } else {
     const int column = std::min(static_cast<int>(x / p), board.columns - 1);
     const int row = std::min(static_cast<int>(y / p), board.rows - 1);
