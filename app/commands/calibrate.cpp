@@ -185,10 +185,11 @@ std::string places_table(const Calibration& calibration) {
     const double error = shift.norm();
     const int digits = digits_for(error);
     const Eigen::Vector3d at = camera.centre();
-    rows.push_back(
-        {camera.name,
-         fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", at.x(), digits, at.y(), digits, at.z(), digits),
-         error > 0 ? fmt::format("{:.{}f}", error, digits) : "world"});
+    rows.push_back({camera.name,
+                    error > 0 ? fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", at.x(), digits, at.y(),
+                                            digits, at.z(), digits)
+                              : yaml_vector(at),
+                    error > 0 ? fmt::format("{:.{}f}", error, digits) : "world"});
   }
   return table(rows);
 }

@@ -286,15 +286,8 @@ TEST(Bundle, OneCameraIsThatOfOpenCv) {
   const double theirs[] = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
                            K.at<double>(1, 2), lens.at<double>(0), lens.at<double>(1),
                            lens.at<double>(2), lens.at<double>(3), lens.at<double>(4)};
-  const double own[] = {ours.fx,
-                        ours.fy,
-                        ours.cx,
-                        ours.cy,
-                        ours.distortion[0],
-                        ours.distortion[1],
-                        ours.distortion[2],
-                        ours.distortion[3],
-                        ours.distortion[4]};
+  std::vector<double> own{ours.fx, ours.fy, ours.cx, ours.cy};
+  own.insert(own.end(), ours.distortion.begin(), ours.distortion.end());
   // OpenCV 4.6 divides the squared sum by points - parameters, where each point has two residuals;
   // later ones by 2 points - parameters.
   const double parameters = 9.0 + 6.0 * static_cast<double>(bundle.views.size());
