@@ -90,12 +90,13 @@ class Start {
   /// Root mean square of the view's corners with the camera at `camera_from_world` [px].
   double misfit(size_t v, const Motion& camera_from_world, const BoardTurn& turn) const {
     const BoardView& view = bundle_.views[v];
-    const Motion pose = camera_from_world * board_motion(view.board);
-    const Camera& camera = bundle_.cameras[view.camera];
+    const Motion board = board_motion(view.board);
+    Camera camera = bundle_.cameras[view.camera];  // it may stand elsewhere, or nowhere yet
+    camera.R = camera_from_world.R, camera.t = camera_from_world.t;
     double sum = 0.0;
     for (size_t i = 0; i < view.ids.size(); ++i) {
       const int id = turn.turned[static_cast<size_t>(view.ids[i])];
-      const Eigen::Vector2d pixel = camera.project(pose.R * bundle_.board.corner(id) + pose.t);
+      const Eigen::Vector2d pixel = camera.project(board.R * bundle_.board.corner(id) + board.t);
       const double off = (pixel - view.pixels.col(static_cast<Eigen::Index>(i))).norm();
       sum += std::isfinite(off) ? std::min(off * off, 1e8) : 1e8;
     }

@@ -141,10 +141,14 @@ double error_of(const Calibration& calibration, size_t camera, const std::string
   return 0.0;
 }
 
+/// Decimals that show two digits of the error.
+int digits_for(double error) {
+  return error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 8) : 2;
+}
+
 /// "1200.13 +- 0.21".
 std::string with_error(double value, double error) {
-  const int digits =
-      error > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 8) : 2;
+  const int digits = digits_for(error);
   return fmt::format("{:.{}f} +- {:.{}f}", value, digits, error, digits);
 }
 
@@ -158,20 +162,34 @@ std::string photos_table(const Calibration& calibration) {
 }
 
 std::string cameras_table(const Calibration& calibration) {
-  std::vector<std::vector<std::string>> rows{
-      {"camera", "rms px", "fx", "fy", "cx", "cy", "stands at", "+-"}};
+  std::vector<std::vector<std::string>> rows{{"camera", "rms px", "fx", "fy", "cx", "cy"}};
   for (size_t c = 0; c < calibration.bundle.cameras.size(); ++c) {
     const Camera& camera = calibration.bundle.cameras[c];
-    Eigen::Vector3d shift;
-    for (int k = 0; k < 3; ++k)
-      shift[k] = error_of(calibration, c, std::string("shift_") + "xyz"[k]);
     const auto number = [&](const char* name, double value) {
       return with_error(value, error_of(calibration, c, name));
     };
     rows.push_back({camera.name, fmt::format("{:.3f}", calibration.rms_px[c]),
                     number("fx", camera.fx), number("fy", camera.fy), number("cx", camera.cx),
-                    number("cy", camera.cy), yaml_vector(camera.centre()),
-                    shift.norm() > 0 ? fmt::format("{:.2g}", shift.norm()) : "world"});
+                    number("cy", camera.cy)});
+  }
+  return table(rows);
+}
+
+std::string places_table(const Calibration& calibration) {
+  std::vector<std::vector<std::string>> rows{{"camera", "stands at", "+-"}};
+  for (size_t c = 0; c < calibration.bundle.cameras.size(); ++c) {
+    const Camera& camera = calibration.bundle.cameras[c];
+    Eigen::Vector3d shift;
+    for (int k = 0; k < 3; ++k)
+      shift[k] = error_of(calibration, c, std::string("shift_") + "xyz"[k]);
+    const double error = shift.norm();
+    const int digits = digits_for(error);
+    const Eigen::Vector3d at = camera.centre();
+    rows.push_back({camera.name,
+                    error > 0 ? fmt::format("({:.{}f}, {:.{}f}, {:.{}f})", at.x(), digits, at.y(),
+                                            digits, at.z(), digits)
+                              : yaml_vector(at),
+                    error > 0 ? fmt::format("{:.{}f}", error, digits) : "world"});
   }
   return table(rows);
 }
@@ -182,6 +200,7 @@ void tell(const Calibration& calibration, const CalibrateCommand& told, Session&
   session.say("{} corners of a {}; {} dropped, off by more than 4 sigma\n", calibration.corners,
               board.title(), calibration.dropped);
   session.say("{}", cameras_table(calibration));
+  session.say("{}", places_table(calibration));
   session.say("{}", wrapped(fmt::format("the world is {} [{}]", calibration.world, told.unit), 2));
   for (const std::string& said : calibration.said) session.say("{}", wrapped(said, 2));
   session.say(

@@ -2,6 +2,7 @@
 // of a camera. A program of its own.
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <map>
 #include <opencv2/aruco.hpp>
@@ -28,18 +29,51 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
   return cv::aruco::getPredefinedDictionary(static_cast<int>(at));
 }
 
-/// `window`: half of its side [px]. False where the corner ran away or is too near to the rim.
-bool refine(const cv::Mat& grey, int window, cv::Point2f& corner) {
-  const float rim = static_cast<float>(window) + 2.0F;
+constexpr int kFarthest = 8;  ///< reach of a disc [px]: farther, the lens bends edges
+
+/// From the grey values in a disc (row by row of its square) to the coefficients of
+/// x^2, xy, y^2, x, y, 1, by least squares; places near its rim count little.
+Eigen::Matrix<double, 6, Eigen::Dynamic> fit_of_disc(int reach) {
+  const int side = 2 * reach + 1;
+  Eigen::Matrix<double, Eigen::Dynamic, 6> terms(side * side, 6);
+  Eigen::VectorXd weights(side * side);
+  for (int i = 0; i < side * side; ++i) {
+    const double x = i % side - reach, y = i / side - reach;
+    terms.row(i) << x * x, x * y, y * y, x, y, 1.0;
+    weights[i] = std::max(0.0, 1.0 - (x * x + y * y) / ((reach + 1.0) * (reach + 1.0)));
+  }
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> weighted =
+      terms.transpose() * weights.asDiagonal();
+  return (weighted * terms).eval().ldlt().solve(weighted);
+}
+
+/// Moves a corner to the saddle of the grey around it. (cv::cornerSubPix() wants windows much wider
+/// than the blur: within the blurred saddle its steps lead away from it.) `reach` of the disc [px].
+/// False where the corner ran away, is none, or is too near to the rim.
+bool refine(const cv::Mat& grey, int reach, cv::Point2f& corner) {
+  const float rim = static_cast<float>(reach) + 2.0F;
   const cv::Rect2f inside(rim, rim, static_cast<float>(grey.cols) - 2 * rim,
                           static_cast<float>(grey.rows) - 2 * rim);
-  if (!inside.contains(corner)) return false;
-  Points moved{corner};
-  cv::cornerSubPix(grey, moved, {window, window}, {-1, -1},
-                   {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 100, 1e-4});
-  const bool stayed = cv::norm(moved[0] - corner) < window && inside.contains(moved[0]);
-  corner = moved[0];
-  return stayed;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> fit = fit_of_disc(reach);
+  const cv::Point2f rough = corner;
+  constexpr int kMostSteps = 30;
+  for (int step = 0; step < kMostSteps; ++step) {
+    if (!inside.contains(corner) || cv::norm(corner - rough) > reach) return false;
+    cv::Mat around;
+    cv::getRectSubPix(grey, {2 * reach + 1, 2 * reach + 1}, corner, around, CV_32F);
+    const Eigen::Map<const Eigen::VectorXf> values(around.ptr<float>(),
+                                                   static_cast<Eigen::Index>(around.total()));
+    const Eigen::Matrix<double, 6, 1> c = fit * values.cast<double>();
+    Eigen::Matrix2d bend;
+    bend << 2 * c[0], c[1], c[1], 2 * c[2];
+    if (bend.determinant() >= 0.0) return false;
+    const Eigen::Vector2d move = -bend.inverse() * c.segment<2>(3);
+    const double length = move.norm();
+    const Eigen::Vector2d part = move * std::min(1.0, 1.0 / std::max(length, 1e-12));
+    corner += cv::Point2f(static_cast<float>(part.x()), static_cast<float>(part.y()));
+    if (length < 1e-3) return true;
+  }
+  return false;
 }
 
 // ---- ChArUco ----
@@ -49,7 +83,8 @@ using Markers = std::map<int, Points>;
 Markers markers_in(const cv::Mat& grey, const std::string& dictionary) {
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->minMarkerPerimeterRate = 0.01;  // boards far away
-  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
+  // Their windows would hold the board's own corner, which lies near, and be drawn to it.
+  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   std::vector<Points> corners;
   std::vector<int> ids;
   cv::aruco::detectMarkers(grey, dictionary_of(dictionary), corners, ids, parameters);
@@ -133,9 +168,9 @@ void corners_between(const cv::Mat& grey, const Board& board, const Layout& layo
     if (count < 2) continue;
     mean /= static_cast<float>(count);
     for (const cv::Point2f& corner : around) nearest = std::min(nearest, cv::norm(corner - mean));
-    // The markers' own corners stay outside, in any turn of the board.
-    const int window = std::clamp(static_cast<int>(0.7 * nearest) - 1, 2, 15);
-    if (refine(grey, window, mean)) found.corners[id] = mean;
+    // The markers' own corners, and their blur, stay outside in any turn of the board.
+    const int reach = std::clamp(static_cast<int>(nearest) - 2, 2, kFarthest);
+    if (refine(grey, reach, mean)) found.corners[id] = mean;
   }
 }
 
@@ -200,8 +235,8 @@ Found find_chessboard(const cv::Mat& grey, const Board& board) {
     double nearest = 1e9;
     for (const auto& [id, other] : rough)
       if (id != at->first) nearest = std::min(nearest, cv::norm(other - rough.at(at->first)));
-    const int window = std::clamp(static_cast<int>(0.4 * nearest), 2, 15);
-    at = refine(grey, window, at->second) ? std::next(at) : found.corners.erase(at);
+    const int reach = std::clamp(static_cast<int>(0.4 * nearest), 2, kFarthest);
+    at = refine(grey, reach, at->second) ? std::next(at) : found.corners.erase(at);
   }
   return found;
 }

@@ -166,8 +166,8 @@ TEST(Calibrate, AChessboardThatLooksAlikeTurnedIsOneBoardForBothCameras) {
 TEST(Calibrate, DotsAreSeenWhereTheMiddleOfTheirAreaIs) {
   std::mt19937 random(5);
   const std::vector<Camera> truth{true_camera("left")};
-  for (const DrawnBoard& drawn : {dots(Board::Kind::circles, 8, 6, 18, 12),
-                                  dots(Board::Kind::asymmetric_circles, 4, 9, 11, 11)}) {
+  for (const DrawnBoard& drawn : {dots(Board::Kind::circles, 5, 4, 34, 20),
+                                  dots(Board::Kind::asymmetric_circles, 3, 7, 18, 18)}) {
     const TemporaryFolder folder;
     const auto poses = spread_poses(truth[0], drawn.board, 9, 340, 40, random);
     const auto photos = photograph(folder, drawn, truth, poses, random);
@@ -176,7 +176,11 @@ TEST(Calibrate, DotsAreSeenWhereTheMiddleOfTheirAreaIs) {
     Board unknown = drawn.board;
     unknown.diameter = 0;
     const Calibration centres = calibrate(unknown, photos, {});
-    EXPECT_GT(centres.rms_px[0], 1.02 * found.rms_px[0]);
+    // Tilted centres are seen some tenths of a pixel off, much alike all over a board: its pose
+    // takes up most of that, the camera the rest, and the residuals tell little of it.
+    constexpr double kLimit = 3.1;  // 99.9 % of chi-square of 9 numbers, over 9
+    EXPECT_LT(chi_square(found.errors, errors_of(found.bundle, truth)), kLimit);
+    EXPECT_GT(chi_square(centres.errors, errors_of(centres.bundle, truth)), kLimit);
     EXPECT_THAT(centres.warnings, testing::Contains(HasSubstr("give --diameter")));
   }
 }
@@ -282,18 +286,19 @@ TEST(Bundle, OneCameraIsThatOfOpenCv) {
   const double theirs[] = {K.at<double>(0, 0), K.at<double>(1, 1), K.at<double>(0, 2),
                            K.at<double>(1, 2), lens.at<double>(0), lens.at<double>(1),
                            lens.at<double>(2), lens.at<double>(3), lens.at<double>(4)};
-  const double own[] = {ours.fx,
-                        ours.fy,
-                        ours.cx,
-                        ours.cy,
-                        ours.distortion[0],
-                        ours.distortion[1],
-                        ours.distortion[2],
-                        ours.distortion[3],
-                        ours.distortion[4]};
+  std::vector<double> own{ours.fx, ours.fy, ours.cx, ours.cy};
+  own.insert(own.end(), ours.distortion.begin(), ours.distortion.end());
+  // OpenCV 4.6 divides the squared sum by points - parameters, where each point has two residuals;
+  // later ones by 2 points - parameters.
+  const double parameters = 9.0 + 6.0 * static_cast<double>(bundle.views.size());
+  double points = 0.0;
+  for (const auto& view : in_photo) points += static_cast<double>(view.size());
+  const double early = std::sqrt((2 * points - parameters) / (points - parameters));
+  const bool is_early = deviations.at<double>(0) > std::sqrt(early) * errors->error(0);
   for (size_t i = 0; i < 9; ++i) {
     EXPECT_NEAR(own[i], theirs[i], 0.02 * errors->error(i)) << errors->parameters[i].name;
-    EXPECT_NEAR(errors->error(i), deviations.at<double>(int(i)), 0.03 * errors->error(i))
+    EXPECT_NEAR(errors->error(i), deviations.at<double>(int(i)) / (is_early ? early : 1.0),
+                0.03 * errors->error(i))
         << errors->parameters[i].name;
   }
 }
@@ -380,7 +385,7 @@ TEST(Calibrate, FewPosesThatFaceAlikeInTheMiddleAreDoubted) {
   const TemporaryFolder folder;
   const DrawnBoard drawn = charuco(7, 5);
   const Camera camera = true_camera("a");
-  auto poses = spread_poses(camera, drawn.board, 4, 700, 8, random);
+  auto poses = spread_poses(camera, drawn.board, 4, 450, 8, random);
   for (BoardPose& pose : poses) pose.t.head<2>() *= 0.3;
   const auto photos = photograph(folder, drawn, {camera}, poses, random);
   CalibrateOptions options;
