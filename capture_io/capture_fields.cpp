@@ -1,6 +1,7 @@
 // Measured fields of displacement: a file, its unit, its frame, and how its noise hangs together.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
