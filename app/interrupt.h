@@ -3,7 +3,7 @@
 
 #include <atomic>
 
-#include "capture_io/interrupted.h"
+#include "core/interrupted.h"
 
 namespace hookeye {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/wire.h"
+#include "core/wire.h"
 
 namespace hookeye {
 

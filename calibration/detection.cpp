@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/helper.h"
+#include "core/helper.h"
 
 namespace hookeye {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "capture_io/camera_model.h"
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 

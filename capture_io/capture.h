@@ -14,7 +14,7 @@
 
 #include "capture_io/camera.h"
 #include "capture_io/image.h"
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 

@@ -5,7 +5,8 @@
 #include <climits>
 
 #include "capture_io/capture_reader.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

@@ -11,7 +11,8 @@
 #include <limits>
 #include <string_view>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <optional>
 
-#include "capture_io/helper.h"
-#include "capture_io/run.h"
 #include "capture_io/yaml_file.h"
+#include "core/helper.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

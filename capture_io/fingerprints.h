@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <string_view>
 
 namespace hookeye {
 
@@ -12,9 +11,6 @@ namespace hookeye {
 /// names there, in a file of cameras too: XXH3 of all bytes. A yaml that cannot be read has none,
 /// and nor has what it would name.
 std::map<std::string, std::string> fingerprints(const std::filesystem::path& yaml);
-
-/// Of bytes at hand.
-std::string fingerprint_of(std::string_view bytes);
 
 /// The first name whose fingerprints differ, or that one of them lacks; empty: none. Fingerprints
 /// of another kind, those of older programs, are not compared.

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "capture_io/encode_png.h"
-#include "capture_io/helper.h"
-#include "capture_io/parcels.h"
+#include "core/helper.h"
+#include "core/parcels.h"
 
 namespace hookeye {
 namespace {

@@ -12,7 +12,7 @@
 #include <cmath>
 
 #include "capture_io/calm_noise.h"
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 
 namespace hookeye {
 namespace {

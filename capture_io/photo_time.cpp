@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdio>
 
-#include "capture_io/helper.h"
+#include "core/helper.h"
 
 namespace hookeye {
 

@@ -10,7 +10,8 @@
 #include <system_error>
 
 #include "capture_io/fingerprints.h"
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

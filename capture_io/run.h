@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 
@@ -50,9 +50,5 @@ class Run {
   explicit Run(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
-
-/// Writes a text file whole or not at all.
-void write_text(const std::filesystem::path& file, const std::string& text);
-std::string read_text(const std::filesystem::path& file);
 
 }  // namespace hookeye

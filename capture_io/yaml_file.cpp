@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace fs = std::filesystem;

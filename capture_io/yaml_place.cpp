@@ -1,7 +1,8 @@
 #include "capture_io/yaml_place.h"
 
-#include "capture_io/run.h"
 #include "capture_io/yaml_file.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 YamlPlaces::YamlPlaces(const std::filesystem::path& file, const std::string& told)

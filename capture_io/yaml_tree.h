@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 

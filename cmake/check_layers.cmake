@@ -1,5 +1,5 @@
 # cmake -DROOT=FOLDER -P check_layers.cmake: an include may only go down.
-#   capture_io <- meshing <- simulation, render <- estimation <- runs <- app
+#   core <- capture_io <- meshing <- simulation, render <- estimation <- runs <- app
 #                 meshing <- importers <- proposal <- app      runs, importers <- python
 #   capture_io <- calibration <- app      estimation/model <- exporters <- app
 # Inside estimation/ (all of them on images and model, but for images itself):
@@ -8,19 +8,20 @@
 # and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
 # that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
-set(layers capture_io meshing simulation render estimation importers proposal calibration exporters runs app python)
-set(below_capture_io "")
-set(below_meshing capture_io)
-set(below_simulation capture_io meshing)
-set(below_render capture_io meshing)
-set(below_estimation capture_io meshing simulation render)
-set(below_importers capture_io meshing)
-set(below_proposal capture_io meshing importers)
-set(below_calibration capture_io)
-set(below_exporters capture_io meshing simulation estimation)
-set(below_runs capture_io meshing simulation render estimation)
-set(below_app capture_io meshing simulation render estimation importers proposal calibration exporters runs)
-set(below_python capture_io meshing simulation render estimation importers runs)
+set(layers core capture_io meshing simulation render estimation importers proposal calibration exporters runs app python)
+set(below_core "")
+set(below_capture_io core)
+set(below_meshing core capture_io)
+set(below_simulation core capture_io meshing)
+set(below_render core capture_io meshing)
+set(below_estimation core capture_io meshing simulation render)
+set(below_importers core capture_io meshing)
+set(below_proposal core capture_io meshing importers)
+set(below_calibration core capture_io)
+set(below_exporters core capture_io meshing simulation estimation)
+set(below_runs core capture_io meshing simulation render estimation)
+set(below_app core capture_io meshing simulation render estimation importers proposal calibration exporters runs)
+set(below_python core capture_io meshing simulation render estimation importers runs)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
 set(below_model images)

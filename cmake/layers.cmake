@@ -42,7 +42,7 @@ function(hookeye_layer name)
   endif()
 endfunction()
 
-# A program that hosts a library for the main one (capture_io/helper.h), from helpers/NAME.cpp:
+# A program that hosts a library for the main one (core/helper.h), from helpers/NAME.cpp:
 # hookeye_helper(gmsh LAYER meshing PRIVATE ${GMSH_LIBRARY}). Whatever uses them depends on `helpers`.
 add_custom_target(helpers)
 function(hookeye_helper name)

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 #include "importers/detail.h"
 
 namespace hookeye {

@@ -8,8 +8,9 @@
 
 #include <algorithm>
 
-#include "capture_io/run.h"
-#include "capture_io/xml_file.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
+#include "core/xml_file.h"
 #include "importers/detail.h"
 #include "importers/lens_of_dic.h"
 #include "meshing/file_cursor.h"

@@ -1,5 +1,5 @@
 // Meshes that gmsh reads, in a helper of its own (helpers/gmsh.cpp).
-#include "capture_io/helper.h"
+#include "core/helper.h"
 #include "meshing/detail.h"
 #include "meshing/parcels.h"
 

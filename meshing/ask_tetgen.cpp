@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "capture_io/helper.h"
+#include "core/helper.h"
 #include "meshing/detail.h"
 
 namespace hookeye::detail {

@@ -7,7 +7,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye::detail {
 namespace {

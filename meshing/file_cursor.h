@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye::detail {
 

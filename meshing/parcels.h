@@ -1,7 +1,7 @@
 // Meshes as bytes, between the program and its helpers.
 #pragma once
 
-#include "capture_io/wire.h"
+#include "core/wire.h"
 #include "meshing/detail.h"
 
 namespace hookeye::detail {

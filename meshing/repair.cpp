@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "capture_io/helper.h"
+#include "core/helper.h"
 #include "meshing/detail.h"
 #include "meshing/parcels.h"
 #include "meshing/skin.h"

@@ -10,7 +10,8 @@
 #include <map>
 #include <sstream>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "meshing/detail.h"
 #include "meshing/surface_mesh.h"
 #include "meshing/whole_numbers.h"

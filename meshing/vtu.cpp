@@ -5,9 +5,10 @@
 #include <charconv>
 #include <map>
 
-#include "capture_io/base64.h"
-#include "capture_io/run.h"
-#include "capture_io/xml_file.h"
+#include "core/base64.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
+#include "core/xml_file.h"
 #include "meshing/detail.h"
 #include "meshing/tet_mesh.h"
 #include "meshing/vtu_numbers.h"

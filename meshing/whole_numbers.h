@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye::detail {
 

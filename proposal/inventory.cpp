@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "proposal/machine_record.h"
 #include "proposal/words.h"
 

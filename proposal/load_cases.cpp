@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "proposal/words.h"
 
 namespace hookeye {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <set>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "proposal/inventory.h"
 #include "proposal/words.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "proposal/text_table.h"
 
 namespace hookeye {

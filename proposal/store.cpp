@@ -2,7 +2,8 @@
 #include <unistd.h>
 
 #include "capture_io/capture.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "proposal/proposal.h"
 
 namespace hookeye {

@@ -6,8 +6,8 @@
 #include <array>
 #include <map>
 
-#include "capture_io/input_error.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "proposal/words.h"
 
 namespace hookeye {

@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "python/arrays.h"
 #include "python/errors.h"

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "capture_io/scope.h"
+#include "core/scope.h"
 #include "estimation/effects/catalogue.h"
 #include "python/arrays.h"
 #include "python/errors.h"

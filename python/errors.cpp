@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <new>
 
-#include "capture_io/input_error.h"
-#include "capture_io/interrupted.h"
-#include "capture_io/scope.h"
+#include "core/input_error.h"
+#include "core/interrupted.h"
+#include "core/scope.h"
 #include "python/work.h"
 #include "runs/failed.h"
 #include "runs/printable.h"

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-#include "capture_io/interrupted.h"
+#include "core/interrupted.h"
 #include "estimation/evaluation/evaluation.h"
 #include "python/errors.h"
 #include "python/log.h"

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 

@@ -1,6 +1,6 @@
 #include "runs/bench.h"
 
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/doubts.h"

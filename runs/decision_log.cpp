@@ -3,7 +3,7 @@
 #include <ctime>
 #include <fstream>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 

@@ -4,8 +4,8 @@
 #include <utility>
 #include <variant>
 
-#include "capture_io/interrupted.h"
-#include "capture_io/numerical_failure.h"
+#include "core/interrupted.h"
+#include "core/numerical_failure.h"
 
 namespace hookeye {
 

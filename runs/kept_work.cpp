@@ -2,8 +2,9 @@
 
 #include <spdlog/spdlog.h>
 
-#include "capture_io/fingerprints.h"
-#include "capture_io/own_file.h"
+#include "core/fingerprint.h"
+#include "core/own_file.h"
+#include "core/text_file.h"
 #include "estimation/fit/archive.h"
 #include "runs/versions.h"
 

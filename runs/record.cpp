@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/output/page_data.h"

@@ -1,6 +1,6 @@
 #include "runs/run_limits.h"
 
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 
 namespace hookeye {
 

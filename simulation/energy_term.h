@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "capture_io/capture.h"
-#include "capture_io/parameter.h"
+#include "core/parameter.h"
 
 namespace hookeye {
 

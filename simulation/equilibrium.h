@@ -7,7 +7,7 @@
 #include <memory>
 #include <variant>
 
-#include "capture_io/numerical_failure.h"
+#include "core/numerical_failure.h"
 #include "simulation/energy_model.h"
 #include "simulation/loading.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "simulation/rigid_modes.h"
 
 namespace hookeye {

@@ -15,7 +15,8 @@
 #include "app/validators.h"
 #include "calibration/detection.h"
 #include "calibration/output.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "capture_io/input_error.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 

@@ -9,7 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/commands/run_support.h"
-#include "capture_io/scope.h"
+#include "core/scope.h"
 #include "estimation/model/model.h"
 
 namespace hookeye {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "capture_io/base64.h"
-#include "capture_io/run.h"
+#include "core/base64.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 
 namespace hookeye {
 namespace {

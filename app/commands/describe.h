@@ -5,7 +5,7 @@
 #include <string>
 
 #include "capture_io/capture.h"
-#include "capture_io/parameter.h"
+#include "core/parameter.h"
 #include "meshing/tet_mesh.h"
 
 namespace hookeye {

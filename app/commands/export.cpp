@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "app/commands/solve.h"
+#include "core/text_file.h"
 #include "estimation/effects/catalogue.h"
 #include "exporters/exporter.h"
 

@@ -5,7 +5,7 @@
 #include "app/commands/limit_options.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 #include "estimation/effects/catalogue.h"
 #include "runs/fit_base.h"
 #include "runs/kept_work.h"

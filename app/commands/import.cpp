@@ -10,8 +10,9 @@
 #include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"
 #include "app/validators.h"
-#include "capture_io/run.h"
-#include "capture_io/scope.h"
+#include "core/input_error.h"
+#include "core/scope.h"
+#include "core/text_file.h"
 #include "importers/importer.h"
 
 namespace hookeye {

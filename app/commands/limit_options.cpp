@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "runs/run_limits.h"
 #include "runs/text.h"
 

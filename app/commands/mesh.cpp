@@ -4,7 +4,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/validators.h"
-#include "capture_io/scope.h"
+#include "core/scope.h"
 #include "meshing/repair.h"
 #include "meshing/surface_mesh.h"
 #include "meshing/tet_mesh.h"

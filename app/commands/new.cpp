@@ -9,7 +9,7 @@
 
 #include "app/commands/check.h"
 #include "app/commands/commands.h"
-#include "capture_io/scope.h"
+#include "core/scope.h"
 #include "proposal/proposal.h"
 
 namespace hookeye {

@@ -7,7 +7,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/validators.h"
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/plan/plan_json.h"

@@ -5,7 +5,7 @@
 #include "app/commands/run_support.h"
 #include "app/commands/solve.h"
 #include "app/interrupt.h"
-#include "capture_io/scope.h"
+#include "core/scope.h"
 #include "runs/look.h"
 
 namespace hookeye {

@@ -5,7 +5,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/session.h"
-#include "capture_io/scope.h"
+#include "core/scope.h"
 #include "estimation/effects/catalogue.h"
 #include "runs/failed.h"
 

@@ -14,7 +14,8 @@
 
 #include "app/interrupt.h"
 #include "app/server/refit_job.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "runs/report/inside.h"
 #include "runs/report/page.h"
 

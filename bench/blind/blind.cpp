@@ -12,7 +12,7 @@
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/effect.h"
 #include "estimation/synth/synth.h"

@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "bench/blind/draw.h"
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "estimation/synth/synth.h"
 #include "tests/invariance/transformed.h"
 

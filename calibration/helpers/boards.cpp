@@ -11,8 +11,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/board.h"
-#include "capture_io/helper_main.h"
-#include "capture_io/input_error.h"
+#include "core/helper_main.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 namespace {

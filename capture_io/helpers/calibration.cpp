@@ -4,8 +4,9 @@
 #include <opencv2/core.hpp>
 
 #include "capture_io/file_storage.h"
-#include "capture_io/helper_main.h"
-#include "capture_io/run.h"
+#include "core/helper_main.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <fstream>
 
-#include "capture_io/helper.h"
-#include "capture_io/helper_main.h"
 #include "capture_io/image.h"
-#include "capture_io/parcels.h"
 #include "capture_io/png_chunks.h"
+#include "core/helper.h"
+#include "core/helper_main.h"
+#include "core/parcels.h"
 
 namespace hookeye {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/fit/smooth_motion.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "estimation/diagnosis/candidates.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/diagnosis/diagnosis_sums.h"

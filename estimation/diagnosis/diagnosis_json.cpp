@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "capture_io/distributions.h"
-#include "capture_io/input_error.h"
+#include "core/distributions.h"
+#include "core/input_error.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/parameters_json.h"
 

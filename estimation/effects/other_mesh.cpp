@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "estimation/effects/catalogue.h"
 #include "meshing/interpolation.h"
 

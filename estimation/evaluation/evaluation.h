@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/numerical_failure.h"
+#include "core/numerical_failure.h"
 #include "estimation/images/flow.h"
 #include "estimation/model/model.h"
 #include "render/condensed.h"

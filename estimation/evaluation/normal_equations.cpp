@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 
 namespace hookeye {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "capture_io/fingerprints.h"
+#include "core/fingerprint.h"
 
 namespace hookeye {
 

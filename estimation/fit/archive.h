@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/journal.h"
+#include "core/journal.h"
 
 namespace hookeye {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "capture_io/fingerprints.h"
+#include "core/fingerprint.h"
 #include "estimation/evaluation/normal_equations.h"
 
 namespace hookeye {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/evaluation/normal_equations.h"
 
 namespace hookeye {

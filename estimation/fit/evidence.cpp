@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/evaluation/gram.h"
 
 namespace hookeye {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "capture_io/distributions.h"
-#include "capture_io/input_error.h"
+#include "core/distributions.h"
+#include "core/input_error.h"
 #include "estimation/fit/archived.h"
 #include "estimation/fit/convex_fit.h"
 #include "estimation/fit/fit_stage.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/fit/smooth_motion.h"
 #include "meshing/extent.h"

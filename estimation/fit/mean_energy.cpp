@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/energy_curves.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "estimation/inspection/options.h"
 #include "estimation/model/model.h"
 

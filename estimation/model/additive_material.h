@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "capture_io/numerical_failure.h"
+#include "core/numerical_failure.h"
 #include "estimation/model/model.h"
 #include "simulation/additive.h"
 

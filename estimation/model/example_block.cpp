@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "capture_io/image.h"
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "estimation/model/declaration.h"
 
 namespace hookeye {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "capture_io/capture.h"
-#include "capture_io/parameter.h"
+#include "core/parameter.h"
 #include "estimation/model/limits.h"
 #include "meshing/body.h"
 #include "render/optics.h"

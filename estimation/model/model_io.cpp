@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "capture_io/run.h"
 #include "capture_io/yaml_section.h"
 #include "capture_io/yaml_tree.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "estimation/model/additive_material.h"
 #include "estimation/model/effect.h"
 #include "estimation/model/held.h"

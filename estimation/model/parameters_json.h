@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "capture_io/parameter.h"
+#include "core/parameter.h"
 
 namespace hookeye {
 

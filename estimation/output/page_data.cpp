@@ -4,8 +4,8 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "capture_io/base64.h"
-#include "capture_io/run.h"
+#include "core/base64.h"
+#include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/energy_curves.h"
 #include "estimation/model/fitted_fields.h"

@@ -6,8 +6,8 @@
 #include <map>
 #include <mutex>
 
-#include "capture_io/base64.h"
-#include "capture_io/run.h"
+#include "core/base64.h"
+#include "core/text_file.h"
 #include "estimation/evaluation/photo_evaluation.h"
 #include "estimation/output/compare_picture.h"
 #include "estimation/output/page_data.h"

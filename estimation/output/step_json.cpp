@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/diagnosis/diagnosis_sums.h"
 #include "estimation/effects/catalogue.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/at_floor.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/fit/at_floor.h"
 
 namespace hookeye {

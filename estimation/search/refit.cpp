@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/search/discover.h"
 #include "estimation/search/extension.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/extension.h"

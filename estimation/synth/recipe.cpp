@@ -6,7 +6,8 @@
 #include <algorithm>
 
 #include "capture_io/capture_reader.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/effect.h"
 #include "estimation/synth/recipe_sections.h"

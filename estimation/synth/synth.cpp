@@ -9,8 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "capture_io/run.h"
-#include "capture_io/scope.h"
+#include "core/input_error.h"
+#include "core/scope.h"
+#include "core/text_file.h"
 #include "estimation/evaluation/photo_evaluation.h"
 #include "estimation/synth/synth_body.h"
 #include "estimation/synth/synth_capture.h"

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "capture_io/numerical_failure.h"
+#include "core/numerical_failure.h"
 #include "estimation/synth/recipe.h"
 
 namespace hookeye {

@@ -12,7 +12,8 @@
 #include <opencv2/imgproc.hpp>
 #include <system_error>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "render/vertex_normals.h"
 
 namespace hookeye::detail {

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "capture_io/numerical_failure.h"
+#include "core/numerical_failure.h"
 #include "estimation/model/effect.h"
 #include "estimation/synth/recipe.h"
 #include "estimation/synth/synth_capture.h"

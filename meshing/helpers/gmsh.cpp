@@ -8,7 +8,7 @@
 #include <sstream>
 #include <unordered_map>
 
-#include "capture_io/helper_main.h"
+#include "core/helper_main.h"
 #include "meshing/detail.h"
 #include "meshing/parcels.h"
 #include "meshing/whole_numbers.h"

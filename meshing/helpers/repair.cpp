@@ -8,7 +8,7 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 
-#include "capture_io/helper_main.h"
+#include "core/helper_main.h"
 #include "meshing/parcels.h"
 
 namespace hookeye {

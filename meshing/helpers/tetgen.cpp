@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/helper_main.h"
+#include "core/helper_main.h"
 #include "meshing/detail.h"
 
 namespace hookeye::detail {

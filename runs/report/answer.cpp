@@ -9,8 +9,8 @@
 #include <optional>
 #include <vector>
 
-#include "capture_io/json_file.h"
-#include "capture_io/run.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/verdict.h"

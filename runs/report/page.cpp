@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "capture_io/base64.h"
-#include "capture_io/json_file.h"
+#include "core/base64.h"
+#include "core/json_file.h"
 
 #ifdef HOOKEYE_HAS_PAGE
 // Symbols that `ld -r -b binary` makes of page.html (runs/CMakeLists.txt).

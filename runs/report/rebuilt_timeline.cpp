@@ -3,8 +3,8 @@
 #include <sstream>
 #include <string>
 
-#include "capture_io/json_file.h"
-#include "capture_io/run.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 #include "runs/report/inside.h"
 
 namespace hookeye {

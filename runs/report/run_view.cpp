@@ -6,8 +6,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "capture_io/json_file.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 #include "runs/decision_log.h"
 #include "runs/report/answer.h"
 #include "runs/report/encode_png.h"

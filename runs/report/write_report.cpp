@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "capture_io/interrupted.h"
-#include "capture_io/run.h"
+#include "core/interrupted.h"
+#include "core/text_file.h"
 #include "runs/report/page.h"
 
 namespace hookeye {

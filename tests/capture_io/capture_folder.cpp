@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "capture_io/capture.h"
+#include "core/text_file.h"
 
 namespace hookeye::test {
 namespace {

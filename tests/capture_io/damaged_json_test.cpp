@@ -1,8 +1,9 @@
 // run.json and other JSON that is damaged or another's.
 #include <gmock/gmock.h>
 
-#include "capture_io/json_file.h"
 #include "capture_io/run.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 #include "support/temporary_folder.h"
 
 namespace hookeye::test {

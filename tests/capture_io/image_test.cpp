@@ -10,7 +10,8 @@
 #include <random>
 
 #include "capture_io/capture_folder.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye::test {
 namespace {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "capture_io/capture_folder.h"
+#include "core/text_file.h"
 
 namespace hookeye::test {
 namespace {

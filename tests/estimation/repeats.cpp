@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/effects/toolbox.h"
 
 namespace hookeye::test {

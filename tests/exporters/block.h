@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "core/text_file.h"
 #include "exporters/exported.h"
 
 namespace hookeye::test {

@@ -1,4 +1,5 @@
 // CalculiX solves what was exported: nodal displacements against Hookeye's own equilibrium.
+#include "core/text_file.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/synth/synth.h"
 #include "exporters/block.h"

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <sstream>
 
-#include "capture_io/run.h"
 #include "estimation/model/declaration.h"
 #include "exporters/exporter.h"
 #include "simulation/equilibrium.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "capture_io/xml_file.h"
+#include "core/xml_file.h"
 #include "exporters/block.h"
 #include "exporters/patches.h"
 

@@ -1,7 +1,7 @@
 // What a helper answers: believed no more than a file.
 #include "capture_io/file_storage.h"
-#include "capture_io/parcels.h"
-#include "capture_io/wire.h"
+#include "core/parcels.h"
+#include "core/wire.h"
 #include "fuzz.h"
 #include "meshing/parcels.h"
 

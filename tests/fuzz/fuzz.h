@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "support/temporary_folder.h"
 
 namespace hookeye::fuzz {

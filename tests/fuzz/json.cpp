@@ -1,5 +1,5 @@
 // Any JSON of a run folder, before a shape is asked of it.
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 #include "fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -5,8 +5,8 @@
 #include <new>
 #include <vector>
 
-#include "capture_io/helper_main.h"
-#include "capture_io/input_error.h"
+#include "core/helper_main.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 namespace {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "importers/published.h"
 #include "support/temporary_folder.h"
 

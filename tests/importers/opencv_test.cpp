@@ -3,7 +3,7 @@
 
 #include <opencv2/calib3d.hpp>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "importers/published.h"
 #include "support/temporary_folder.h"
 

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "importers/published.h"
 #include "support/temporary_folder.h"
 

@@ -1,7 +1,7 @@
 // ROS camera_info and Kalibr's camchain, written as their documents say.
 #include <gtest/gtest.h>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "importers/published.h"
 #include "support/temporary_folder.h"
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "tests/invariance/leaning_blob.h"
 #include "tests/invariance/transformed.h"
 #include "tests/support/temporary_folder.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <set>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "meshing/body.h"
 
 namespace hookeye::test {

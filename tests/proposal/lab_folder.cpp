@@ -7,7 +7,8 @@
 #include <random>
 
 #include "capture_io/capture.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye::test {
 namespace {

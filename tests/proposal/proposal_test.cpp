@@ -3,7 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "capture_io/capture.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "proposal/lab_folder.h"
 
 namespace hookeye::test {

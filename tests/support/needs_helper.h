@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "capture_io/helper.h"
+#include "core/helper.h"
 
 /// First line of a test that asks the helper `name`; skips loudly where this build has none.
 #define HOOKEYE_NEEDS_HELPER(name, package)                                              \

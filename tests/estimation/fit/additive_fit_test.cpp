@@ -5,8 +5,7 @@
 #include <fstream>
 #include <set>
 
-#include "capture_io/distributions.h"
-#include "capture_io/run.h"
+#include "core/distributions.h"
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/convex_fit.h"

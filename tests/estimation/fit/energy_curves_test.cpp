@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/lost_ellipticity.h"

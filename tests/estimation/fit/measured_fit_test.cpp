@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/effects_scene.h"
 #include "estimation/evaluation/normal_equations.h"

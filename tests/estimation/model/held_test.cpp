@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 #include "estimation/effects/catalogue.h"
 #include "tests/estimation/effects_scene.h"
 #include "tests/support/temporary_folder.h"

@@ -1,7 +1,7 @@
 // A whole fit from photos of a fisheye near the body and of a telecentric camera.
 #include <gmock/gmock.h>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
 #include "estimation/synth/synth.h"
 #include "tests/estimation/small_capture.h"
 

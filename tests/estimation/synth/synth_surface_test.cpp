@@ -7,7 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 #include "estimation/model/model.h"
 #include "estimation/synth/synth.h"
 #include "support/temporary_folder.h"

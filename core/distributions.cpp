@@ -1,4 +1,4 @@
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>

@@ -1,4 +1,4 @@
-#include "capture_io/helper.h"
+#include "core/helper.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -19,10 +19,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include "capture_io/interrupted.h"
-#include "capture_io/message.h"
-#include "capture_io/own_file.h"
-#include "capture_io/wire.h"
+#include "core/interrupted.h"
+#include "core/message.h"
+#include "core/own_file.h"
+#include "core/wire.h"
 
 namespace hookeye {
 namespace {

@@ -1,4 +1,4 @@
-#include "capture_io/message.h"
+#include "core/message.h"
 
 #include <poll.h>
 #include <sys/socket.h>

@@ -1,4 +1,4 @@
-#include "capture_io/distributions.h"
+#include "core/distributions.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <string>
 
-#include "capture_io/input_error.h"
-#include "capture_io/wire.h"
+#include "core/input_error.h"
+#include "core/wire.h"
 
 namespace hookeye {
 

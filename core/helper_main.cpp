@@ -1,4 +1,4 @@
-#include "capture_io/helper_main.h"
+#include "core/helper_main.h"
 
 #include <poll.h>
 #include <signal.h>
@@ -14,9 +14,9 @@
 #include <thread>
 #include <utility>
 
-#include "capture_io/helper.h"
-#include "capture_io/input_error.h"
-#include "capture_io/message.h"
+#include "core/helper.h"
+#include "core/input_error.h"
+#include "core/message.h"
 
 namespace hookeye {
 namespace {

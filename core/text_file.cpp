@@ -1,3 +1,5 @@
+#include "core/text_file.h"
+
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,7 +9,7 @@
 #include <fstream>
 #include <system_error>
 
-#include "capture_io/run.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 namespace {

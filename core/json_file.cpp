@@ -1,11 +1,11 @@
-#include "capture_io/json_file.h"
+#include "core/json_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "capture_io/input_error.h"
-#include "capture_io/run.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace hookeye {
 namespace {

@@ -1,4 +1,4 @@
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "capture_io/input_error.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 

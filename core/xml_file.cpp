@@ -1,4 +1,4 @@
-#include "capture_io/xml_file.h"
+#include "core/xml_file.h"
 
 #include <fmt/format.h>
 

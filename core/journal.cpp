@@ -1,4 +1,4 @@
-#include "capture_io/journal.h"
+#include "core/journal.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "capture_io/fingerprints.h"
-#include "capture_io/input_error.h"
+#include "core/fingerprint.h"
+#include "core/input_error.h"
 
 namespace hookeye {
 namespace {

@@ -1,4 +1,4 @@
-#include "capture_io/journal.h"
+#include "core/journal.h"
 
 #include <gmock/gmock.h>
 #include <signal.h>
@@ -7,7 +7,7 @@
 
 #include <random>
 
-#include "capture_io/run.h"
+#include "core/text_file.h"
 #include "support/temporary_folder.h"
 
 namespace hookeye::test {

@@ -1,12 +1,12 @@
-#include "capture_io/helper.h"
+#include "core/helper.h"
 
 #include <gmock/gmock.h>
 
 #include <cstdlib>
 #include <thread>
 
-#include "capture_io/interrupted.h"
-#include "capture_io/wire.h"
+#include "core/interrupted.h"
+#include "core/wire.h"
 
 namespace hookeye {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "capture_io/wire.h"
+#include "core/wire.h"
 
 namespace hookeye {
 

@@ -1,4 +1,4 @@
-#include "capture_io/own_file.h"
+#include "core/own_file.h"
 
 #include <cstdint>
 #include <fstream>

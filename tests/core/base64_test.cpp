@@ -1,4 +1,4 @@
-#include "capture_io/base64.h"
+#include "core/base64.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "capture_io/wire.h"
+#include "core/wire.h"
 
 namespace hookeye {
 

@@ -1,0 +1,3 @@
+#pragma once
+
+#include "capture_io/capture.h"
