@@ -15,6 +15,7 @@
 #include "capture_io/camera.h"
 #include "capture_io/image.h"
 #include "core/input_error.h"
+#include "core/shared_value.h"
 
 namespace hookeye {
 
@@ -245,11 +246,12 @@ Capture read_capture(const std::filesystem::path& path);
 struct Photo {
   std::string camera;
   PhotoSpec::Kind kind = PhotoSpec::Kind::image;
-  std::vector<Image> planes;         ///< 1-channel, linear; luminance unless rgb
-  std::vector<Image> sigma;          ///< 1-channel, same shape: noise standard deviation, from the
-                                     ///< mean of the pixel's neighbours
-  std::vector<unsigned char> valid;  ///< per pixel: 0 masked out (or saturated), 1 counts
-  std::vector<Image> backdrop;       ///< the planes of background: {photo}, else empty
+  std::vector<SharedValue<Image>> planes;  ///< 1-channel, linear; luminance unless rgb
+  std::vector<SharedValue<Image>> sigma;   ///< 1-channel, same shape: noise standard deviation,
+                                           ///< from the mean of the pixel's neighbours
+  SharedValue<std::vector<unsigned char>> valid;  ///< per pixel: 0 masked out (or saturated), 1
+                                                  ///< counts
+  std::vector<SharedValue<Image>> backdrop;       ///< the planes of background: {photo}, else empty
   NoiseModel noise;
   std::vector<double> channel_weights;  ///< planes[k] = channel k (rgb) or the luminance weights
 };

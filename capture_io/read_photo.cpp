@@ -79,24 +79,26 @@ NoiseModel estimated_noise(const Image& image, const ImageHeader& header) {
 
 void mark_invalid(const PhotoSpec& spec, const Camera& camera, const Image& image, bool floating,
                   Photo& photo) {
-  photo.valid.assign(image.pixels(), 1);
+  std::vector<unsigned char>& valid = photo.valid.own();
+  valid.assign(image.pixels(), 1);
   if (!floating && photo.kind == PhotoSpec::Kind::image)
     for (size_t i = 0; i < image.values.size(); ++i)
-      if (image.values[i] >= saturated) photo.valid[i / image.channels] = 0;
+      if (image.values[i] >= saturated) valid[i / image.channels] = 0;
   if (spec.mask.empty()) return;
   const Image mask = luminance(read_image(NamedFile{spec.mask, spec.place}, Encoding{}));
   check_size(spec, "the mask", mask, camera);
   for (size_t p = 0; p < mask.pixels(); ++p)
-    if (mask.values[p] < 0.5f) photo.valid[p] = 0;
+    if (mask.values[p] < 0.5f) valid[p] = 0;
 }
 
 /// The empty scene, taken as the photo was: by planes like the photo's own.
-std::vector<Image> backdrop_of(const PhotoSpec& spec, const Camera& camera, bool by_channel) {
+std::vector<SharedValue<Image>> backdrop_of(const PhotoSpec& spec, const Camera& camera,
+                                            bool by_channel) {
   if (spec.background.kind != BackgroundSpec::Kind::photo) return {};
   const Image empty = read_image(NamedFile{spec.background.photo, spec.place}, spec.encoding);
   check_size(spec, "the photo of the background", empty, camera);
   if (!by_channel || empty.channels != 3)
-    return std::vector<Image>(by_channel ? 3 : 1, luminance(empty));
+    return std::vector<SharedValue<Image>>(by_channel ? 3 : 1, luminance(empty));
   return {plane_of(empty, 0), plane_of(empty, 1), plane_of(empty, 2)};
 }
 

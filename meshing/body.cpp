@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/work_clock.h"
 #include "meshing/detail.h"
 #include "meshing/subdivide.h"
 #include "meshing/triangle_tree.h"
@@ -302,9 +303,13 @@ Body make(const Capture& capture, double edge_factor, int order, const RenderSur
 
 }  // namespace
 
-Body make_body(const Capture& capture) { return make(capture, 1.0, 0, nullptr); }
+Body make_body(const Capture& capture) {
+  const Working part(WorkPart::meshing);
+  return make(capture, 1.0, 0, nullptr);
+}
 
 Body remesh(const Capture& capture, const Body& told, double edge_factor, int order) {
+  const Working part(WorkPart::meshing);
   return make(capture, edge_factor, order, &told.surface);
 }
 

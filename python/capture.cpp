@@ -58,17 +58,17 @@ py::object pixels_of(const Camera& camera, const py::handle& xyz) {
 }
 
 py::dict photo_dict(const Photo& photo, const PhotoSpec& spec) {
-  const auto stacked = [&](const std::vector<Image>& planes) -> py::array {
+  const auto stacked = [&](const std::vector<SharedValue<Image>>& planes) -> py::array {
     if (planes.empty()) return py::array_t<float>(0);
-    Image all{planes[0].width, planes[0].height, static_cast<int>(planes.size()), {}};
-    all.values.resize(planes[0].pixels() * planes.size());
+    Image all{planes[0]->width, planes[0]->height, static_cast<int>(planes.size()), {}};
+    all.values.resize(planes[0]->pixels() * planes.size());
     for (size_t c = 0; c < planes.size(); ++c)
-      for (size_t i = 0; i < planes[c].pixels(); ++i)
-        all.values[i * planes.size() + c] = planes[c].values[i];
+      for (size_t i = 0; i < planes[c]->pixels(); ++i)
+        all.values[i * planes.size() + c] = planes[c]->values[i];
     return image_array(all);
   };
-  py::array_t<bool> valid({photo.planes.front().height, photo.planes.front().width});
-  for (size_t i = 0; i < photo.valid.size(); ++i) valid.mutable_data()[i] = photo.valid[i] != 0;
+  py::array_t<bool> valid({photo.planes.front()->height, photo.planes.front()->width});
+  for (size_t i = 0; i < photo.valid->size(); ++i) valid.mutable_data()[i] = (*photo.valid)[i] != 0;
   py::dict out;
   out["values"] = stacked(photo.planes);
   out["sigma"] = stacked(photo.sigma);

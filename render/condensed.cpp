@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "core/work_clock.h"
 #include "render/vertex_sums.h"
 
 namespace hookeye {
@@ -195,6 +196,7 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
                                                     const ImageDerivative& dI, const VectorXd& wr,
                                                     const VectorXd& w, const VectorXd& Bt_r,
                                                     CondensedColumns columns, SumsBehind behind) {
+  const Working part_of_work(WorkPart::sums);
   NodeNormalEquations out;
   Impl& m = *out.impl_;
   m.columns = columns;

@@ -29,6 +29,13 @@ double window_variance() {
 
 }  // namespace
 
+double PixelFilter::window(double px, double width_px) const {
+  double sum = 0;
+  for (int i = 0; i < parts_; ++i)
+    sum += blackman_harris((px * parts_ - i + (parts_ - 1) / 2.0) / width_px);
+  return sum;
+}
+
 std::vector<double> PixelFilter::sampled(double width_px) const {
   const auto place = [&](int tap, int other) {
     return (tap - margin - (n - 1) / 2.0 + shift(other - margin, n)) / n;
@@ -37,8 +44,7 @@ std::vector<double> PixelFilter::sampled(double width_px) const {
   double sum = 0;
   for (int j = 0; j < taps(); ++j)
     for (int i = 0; i < taps(); ++i)
-      sum += weights.emplace_back(blackman_harris(place(i, j) / width_px) *
-                                  blackman_harris(place(j, i) / width_px));
+      sum += weights.emplace_back(window(place(i, j), width_px) * window(place(j, i), width_px));
   if (sum <= 0)  // A window narrower than the ray spacing of an even pattern: the plain mean.
     weights.assign(weights.size(), 1.0), sum = static_cast<double>(weights.size());
   for (double& w : weights) w /= sum;
@@ -55,10 +61,11 @@ double PixelFilter::variance(const std::vector<double>& weights) const {
   return out;
 }
 
-PixelFilter::PixelFilter(int rays_per_axis, double width_px) : n(rays_per_axis) {
-  const double least = 0.01 * blackman_harris(0.0);
+PixelFilter::PixelFilter(int rays_per_axis, double width_px, int halvings)
+    : n(rays_per_axis), parts_(1 << halvings) {
+  const double least = 0.01 * window(0.0, width_px);
   // Offsets of the first ray outside the pixel: (n+1)/2/n px, then one more ray each.
-  while (blackman_harris(((n + 1) / 2.0 + margin) / n / width_px) > least) ++margin;
+  while (window(((n + 1) / 2.0 + margin) / n, width_px) > least) ++margin;
   weights_ = sampled(width_px);
   widen(width_px);
   rows_.assign(static_cast<size_t>(taps()) * padded(), 0.0f);
@@ -69,7 +76,8 @@ PixelFilter::PixelFilter(int rays_per_axis, double width_px) : n(rays_per_axis) 
 
 /// To the variance of a window of that width.
 void PixelFilter::widen(double width_px) {
-  const double wanted = window_variance() * width_px * width_px;
+  const double finer = 1.0 / (double(parts_) * parts_);
+  const double wanted = window_variance() * width_px * width_px * finer + (1.0 - finer) / 12.0;
   double narrow = width_px, wide = 2.0 * width_px;
   if (variance(sampled(wide)) < wanted) return;  // one ray, or a window narrower than its spacing
   for (int i = 0; i < 40; ++i) {

@@ -14,8 +14,10 @@ namespace hookeye {
 /// 1 % of the centre's are left out. A few rays see less of the window than there is (3 an axis:
 /// 0.0053 px^2 of 0.0432): it is widened until their variance is the window's own, so that pictures
 /// of other numbers of rays, and of renderers that take many, are as sharp to second order.
+/// A pixel of a halved photo is the mean of 2^halvings by 2^halvings such pixels; `width_px` is in
+/// theirs.
 struct PixelFilter {
-  PixelFilter(int rays_per_axis, double width_px);
+  PixelFilter(int rays_per_axis, double width_px, int halvings = 0);
   int n = 1, margin = 0;
   int taps() const { return n + 2 * margin; }
   /// Offset of a ray along one axis by its index along the other, in units of 1/n px; |.| < 1/2.
@@ -32,9 +34,11 @@ struct PixelFilter {
   int padded() const { return (taps() + kPad - 1) / kPad * kPad; }
 
  private:
+  double window(double px, double width_px) const;            ///< along one axis, 1 in the middle
   std::vector<double> sampled(double width_px) const;         ///< weights of a window
   double variance(const std::vector<double>& weights) const;  ///< along an axis [px^2]
   void widen(double width_px);
+  int parts_ = 1;  ///< pixels along an axis that this one is the mean of
   std::vector<double> weights_;
   std::vector<float> rows_;
 };

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/work_clock.h"
 #include "render/frame.h"
 #include "render/picture.h"
 #include "render/ray_scene.h"
@@ -27,10 +28,16 @@ constexpr int kBandRows = 8;
 template <class Body>
 void for_each_task(int tasks, bool parallel, const Body& body) {
   if (!parallel || tasks <= 1) {
+    const Working part(WorkPart::rays);
     for (int i = 0; i < tasks; ++i) body(i);
     return;
   }
-  tbb::this_task_arena::isolate([&] { tbb::parallel_for(0, tasks, [&](int i) { body(i); }); });
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(0, tasks, [&](int i) {
+      const Working part(WorkPart::rays);
+      body(i);
+    });
+  });
 }
 
 std::vector<Vector3d> facet_normals(const std::vector<std::array<int, 3>>& triangles,
@@ -200,6 +207,7 @@ Rendering Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, con
 void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Texture& texture,
                       const PhotoState& photo, const RenderOptions& options, bool silhouette,
                       const std::vector<unsigned char>* count, Rendering* out) {
+  const Working part(WorkPart::rays);
   Impl& m = *impl_;
   if (x.cols() != m.surface.X.cols()) throw std::invalid_argument("render: wrong vertex count");
   if (photo.backdrop && (photo.backdrop->width != photo.camera.width ||
@@ -210,7 +218,7 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
     throw std::invalid_argument("render: a texture that is a photo has its light in it");
   m.set_state(x, photo.shaded ? options.visibility_rays : 0);
   const View view(photo.camera, x, m.surface.triangles);
-  const PixelFilter filter(options.rays_per_axis, options.filter_width_px);
+  const PixelFilter filter(options.rays_per_axis, options.filter_width_px, options.halvings);
   const SurfaceState state{m.surface, x, m.seen_normals, m.seen_facets, m.seen_visibility};
   const TriangleTable table = triangle_table(state, view, m.scene.centre(), texture);
   Frame frame{state, view, m.scene, table, texture, photo, options};

@@ -17,7 +17,9 @@ struct RenderOptions {
   int rays_per_axis = 3;         ///< fixed pattern of rays_per_axis^2 rays per pixel
   double filter_width_px = 3.0;  ///< whole Blackman-Harris window over which the rays are weighted;
                                  ///< renderers that state half of it (Cycles) call this 1.5
-  bool smooth_normals = true;    ///< vertex normals: face normals weighted by the corner's angle
+  int halvings = 0;  ///< the picture is of a photo that was halved so often; the filter's width is
+                     ///< in pixels of the whole one
+  bool smooth_normals = true;  ///< vertex normals: face normals weighted by the corner's angle
   bool cast_shadows = true;
   int visibility_rays = 64;  ///< per vertex, cosine-weighted hemisphere; 0: visibility 1
   bool derivatives = true;

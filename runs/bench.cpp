@@ -79,6 +79,7 @@ Bench open_capture(const std::filesystem::path& path, const Warn& warn, const Li
 
 Bench bench_of(const Capture& capture, const Warn& warn, const Limits& limits) {
   auto scene = load_scene(without_tests(capture), true, limits);
+  for (const auto& [camera, reading] : scene->readings) warn(described(camera, reading));
   warn_of_doubts(*scene, warn);
   return {capture, scene, Workspace(scene)};
 }

@@ -2,7 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
+#include <fstream>
+
 #include "core/fingerprint.h"
+#include "core/json_file.h"
 #include "core/own_file.h"
 #include "core/text_file.h"
 #include "estimation/fit/archive.h"
@@ -20,10 +23,62 @@ std::string made_for(const Run& run) {
       .dump();
 }
 
+constexpr const char* kWorkFile = "work.jsonl";
+
+WorkTable since(const WorkTable& before) {
+  WorkTable out = worked();
+  out.wall_s -= before.wall_s;
+  for (int s = 0; s < kWorkStages; ++s)
+    for (int p = 0; p < kWorkParts; ++p) out.cpu_s[s][p] -= before.cpu_s[s][p];
+  return out;
+}
+
+nlohmann::json to_json(const CommandWork& work) {
+  nlohmann::json cpu = nlohmann::json::object();
+  for (int s = 0; s < kWorkStages; ++s)
+    for (int p = 0; p < kWorkParts; ++p)
+      if (work.table.cpu_s[s][p] > 0.0)
+        cpu[name_of(static_cast<WorkStage>(s))][name_of(static_cast<WorkPart>(p))] =
+            work.table.cpu_s[s][p];
+  return {{"first_step", work.first_step},
+          {"steps", work.steps},
+          {"wall_s", work.table.wall_s},
+          {"cpu_s", std::move(cpu)}};
+}
+
+/// Behind what is there. What it costs to know is not worth a command's end: a full disk is silent.
+void append_work(const Run& run, const CommandWork& work) {
+  std::ofstream(run.folder() / kWorkFile, std::ios::app) << to_json(work).dump() + "\n";
+}
+
 }  // namespace
 
+std::vector<CommandWork> work_of(const Run& run) {
+  std::vector<CommandWork> out;
+  std::ifstream file(run.folder() / kWorkFile);
+  for (std::string line; std::getline(file, line);) {
+    std::string damage;
+    const auto told = parse_json(line, damage);
+    if (!told || !told->is_object()) continue;
+    try {
+      CommandWork work{told->at("first_step"), told->at("steps"), {}};
+      work.table.wall_s = told->at("wall_s");
+      for (int s = 0; s < kWorkStages; ++s)
+        for (int p = 0; p < kWorkParts; ++p)
+          work.table.cpu_s[s][p] =
+              told->at("cpu_s")
+                  .value(name_of(static_cast<WorkStage>(s)), nlohmann::json::object())
+                  .value(name_of(static_cast<WorkPart>(p)), 0.0);
+      out.push_back(work);
+    } catch (const nlohmann::json::exception&) {
+      continue;
+    }
+  }
+  return out;
+}
+
 KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel)
-    : run_(run), bench_(bench), cancel_(cancel) {
+    : run_(run), bench_(bench), cancel_(cancel), first_step_(run.steps().size()) {
   auto archive = std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), made_for(run)));
   from_before_ = !archive->empty();
   archive->on_event = [](const Question& question, Archive::Event event) {
@@ -37,6 +92,7 @@ KeptWork::~KeptWork() {
   for (const auto& [kind, tally] : bench_.workspace.archive()->tallies())
     spdlog::debug("{}: {} anew, {} known", kind, tally.kept, tally.found);
   bench_.workspace.keep_in(nullptr);
+  if (!run_.steps().empty()) append_work(run_, {first_step_, run_.steps().size(), since(before_)});
   if (!run_.steps().empty() || (cancel_ && *cancel_)) return;
   std::error_code ignored;
   std::filesystem::remove(run_.archive(), ignored);

@@ -3,6 +3,7 @@
 
 #include <atomic>
 
+#include "core/work_clock.h"
 #include "runs/bench.h"
 
 namespace hookeye {
@@ -16,7 +17,8 @@ class KeptWork {
   KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel);
   KeptWork(const KeptWork&) = delete;
   KeptWork& operator=(const KeptWork&) = delete;
-  /// Of a run without a step nothing stays, unless the user stopped it.
+  /// Of a run without a step nothing stays, unless the user stopped it. Else a line of
+  /// RUN/work.jsonl tells where the time went (work_of()).
   ~KeptWork();
 
   bool from_before() const { return from_before_; }  ///< something was there
@@ -26,6 +28,17 @@ class KeptWork {
   Bench& bench_;
   const std::atomic<bool>* cancel_;
   bool from_before_;
+  WorkTable before_ = worked();
+  size_t first_step_;
 };
+
+/// One command's work on a run.
+struct CommandWork {
+  size_t first_step = 0, steps = 0;  ///< the run had so many steps before and after
+  WorkTable table;
+};
+
+/// What RUN/work.jsonl tells, in the order of the commands; lines that are damaged are left out.
+std::vector<CommandWork> work_of(const Run& run);
 
 }  // namespace hookeye

@@ -5,6 +5,7 @@
 
 #include "core/json_file.h"
 #include "core/text_file.h"
+#include "core/work_clock.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/output/page_data.h"
@@ -62,6 +63,7 @@ void drop_verdict(Run& run, bool of_search) {
 
 std::filesystem::path record(Run& run, const Step& step, const std::string& command,
                              bool of_search) {
+  const WorkingAt stage(WorkStage::pictures);
   nlohmann::json entry = timeline_entry(step);
   entry["command"] = command;
   std::error_code gone;  // a folder that was removed meanwhile has no name

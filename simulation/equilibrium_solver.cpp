@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/work_clock.h"
 #include "simulation/of_mesh.h"
 #include "simulation/rigid_modes.h"
 
@@ -264,6 +265,7 @@ void EquilibriumSolver::forget() {
 std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
     const EnergyModel& energy, const Loading& loading, const EquilibriumOptions& options,
     const VectorXd* start) {
+  const Working part(WorkPart::equilibria);
   Impl& s = *impl_;
   const Problem problem{*s.mesh, s.assembly, energy, loading};
   std::string fault;

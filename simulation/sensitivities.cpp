@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "core/work_clock.h"
 #include "simulation/krylov.h"
 #include "simulation/problem.h"
 
@@ -39,6 +40,7 @@ void solve(const Equilibrium& equilibrium, const MatrixXd& B, MatrixXd& X) {
 
 MatrixXd sensitivities(const Equilibrium& equilibrium, const Loading& loading,
                        const MatrixXd& dR_dp, const MatrixXd& dqc_dp) {
+  const Working part(WorkPart::sensitivities);
   const std::vector<int>& free = equilibrium.factor->free();
   MatrixXd S = MatrixXd::Zero(dR_dp.rows(), dR_dp.cols());
   const auto moves_support = [&](Eigen::Index j) {

@@ -136,10 +136,10 @@ std::string encoding_text(const PhotoSpec& spec) {
 }
 
 Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
-  const auto valid = std::count(photo.valid.begin(), photo.valid.end(), 1);
+  const auto valid = std::count(photo.valid->begin(), photo.valid->end(), 1);
   double mean = 0.0;
-  for (const float value : photo.planes.front().values) mean += value;
-  mean /= std::max<double>(1.0, static_cast<double>(photo.planes.front().values.size()));
+  for (const float value : photo.planes.front()->values) mean += value;
+  mean /= std::max<double>(1.0, static_cast<double>(photo.planes.front()->values.size()));
   return {{"camera", photo.camera},
           {"file", spec.file.string()},
           {"kind", photo.kind == PhotoSpec::Kind::image ? "image" : "silhouette"},
@@ -147,7 +147,7 @@ Json describe_photo(const Photo& photo, const PhotoSpec& spec) {
           {"encoding", encoding_text(spec)},
           {"behind", photo.kind == PhotoSpec::Kind::image ? background_text(spec.background) : "-"},
           {"mask", spec.mask.filename().string()},
-          {"counted", valid / std::max(1.0, static_cast<double>(photo.valid.size()))},
+          {"counted", valid / std::max(1.0, static_cast<double>(photo.valid->size()))},
           {"mean", mean},
           {"noise",
            {{"estimated", photo.noise.estimated},
@@ -334,7 +334,7 @@ void run_check(const CheckOptions& options, Session& session) {
                 {"force", capture.units.force},
                 {"stress", capture.units.stress()}};
   d["materials"] = describe_materials(capture);
-  const auto scene = load_scene(capture);
+  const auto scene = load_scene_to_look_at(capture, InspectionOptions{}.look_px);
   const ModelForm form = base_form(scene);
   const Model model = form.realise(form.initial());
   warn_of_doubts(*scene, session);

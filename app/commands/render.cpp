@@ -24,7 +24,9 @@ void run_render(const RenderCommand& options, Session& session) {
                      "cameras: {front: {size: [800, 600], intrinsics: ..., pose: ...}}");
   const bool from_photos = capture.body.texture == BodySpec::Texture::rest;
   if (!from_photos) look_with_all_cameras(capture);
-  const auto scene = load_scene(capture, from_photos);
+  Limits whole;
+  whole.fit.pixels = 0.0;  // pictures of the size that the capture tells
+  const auto scene = load_scene(capture, from_photos, whole);
   warn_of_doubts(*scene, session);
   const Model model = realise_model(options.model, scene);
 

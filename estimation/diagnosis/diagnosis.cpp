@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/input_error.h"
+#include "core/work_clock.h"
 #include "estimation/diagnosis/candidates.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/diagnosis/diagnosis_sums.h"
@@ -325,6 +326,7 @@ Question question_of_diagnosis(const Fitted& fitted, const DiagnosisOptions& opt
 
 std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
                                                    const DiagnosisOptions& options) {
+  const WorkingAt stage(WorkStage::diagnosis);
   return archived<Diagnosis>(
       {workspace, fitted.form, fitted.p, options.cancel,
        [&] { return question_of_diagnosis(fitted, options); }},

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 #include "core/input_error.h"
+#include "core/work_clock.h"
 #include "estimation/effects/catalogue.h"
 #include "meshing/interpolation.h"
 
@@ -59,6 +60,7 @@ const VectorXd& OtherMesh::force(int example) {
   // want what this one has locked, or pile solve upon solve on one stack.
   std::call_once(slot.once, [&] {
     tbb::this_task_arena::isolate([&] {
+      const Working part(WorkPart::finer_mesh);
       try {
         slot.force = compute(example);
       } catch (const InputError&) {  // a surface that cannot be filled

@@ -11,7 +11,7 @@ namespace {
 /// Where the photo shows something that is not the told background although the model has none
 /// there: such pixels count, else a body that left the model's silhouette would cost nothing.
 bool shows_body(const PhotoPlane& photo, size_t i, const PhotoState& state) {
-  return std::abs(photo.I.values[i] - state.behind(i)) > 6.0 * photo.sigma.values[i];
+  return std::abs(photo.I->values[i] - state.behind(i)) > 6.0 * photo.sigma->values[i];
 }
 
 }  // namespace
@@ -37,19 +37,20 @@ Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, c
                           ComparedAs as, const PhotoState& state) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   Comparison out;
-  out.residual = Image{photo.I.width, photo.I.height, 1, {}};
-  out.residual.values.resize(photo.I.pixels());
-  const auto telling =
-      as.mask ? telling_pixels(rendering.I, photo.I) : std::vector<unsigned char>();
+  const Image& I = photo.I;
+  const std::vector<unsigned char>& valid = photo.valid;
+  out.residual = Image{I.width, I.height, 1, {}};
+  out.residual.values.resize(I.pixels());
+  const auto telling = as.mask ? telling_pixels(rendering.I, I) : std::vector<unsigned char>();
   size_t count = 0;
-  for (size_t i = 0; i < photo.I.pixels(); ++i) {
+  for (size_t i = 0; i < I.pixels(); ++i) {
     const float coverage = rendering.coverage.values[i];
     const bool counts = as.mask         ? telling[i] != 0
                         : as.silhouette ? coverage > 0.0f || shows_body(photo, i, state)
                                         : coverage > 1.0f - 1e-6f;
     out.residual.values[i] = kNone;
-    if (!counts || (!photo.valid.empty() && !photo.valid[i])) continue;
-    const float r = (rendering.I.values[i] - photo.I.values[i]) / sigma.values[i];
+    if (!counts || (!valid.empty() && !valid[i])) continue;
+    const float r = (rendering.I.values[i] - I.values[i]) / sigma.values[i];
     out.residual.values[i] = r;
     out.r2 += double(r) * r;
     ++count;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/work_clock.h"
 #include "estimation/evaluation/compared_pixels.h"
 
 namespace hookeye {
@@ -20,10 +21,12 @@ namespace {
 /// every speckle once (a box has 2.5 times the variance of the 1.5 px window). A texture that is a
 /// photo went through the camera's aperture once already: one ray a pixel, or the model would be
 /// blurred twice and every motion come out too long.
-RenderOptions at_level(RenderOptions options, int level, const Texture& texture,
+RenderOptions at_level(RenderOptions options, int level, int halvings, const Texture& texture,
                        bool single_rays = false) {
   if (level == 0 && (single_rays || texture.source == Texture::Source::photo))
     options.rays_per_axis = 1, options.filter_width_px = 1.0;
+  else if (level == 0)
+    options.halvings = halvings;
   if (level == 0) return options;
   options.rays_per_axis = std::min(1 + 3 * level, 15);
   options.filter_width_px = 2.4;
@@ -104,8 +107,14 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
     texture.source = Texture::Source::image;
     const bool by_channel = scene.capture.examples[example].photos[photo].rgb;
     const auto& sizes = scene.albedo[by_channel && scene.albedo.size() > 1 ? plane : 0];
-    // rays of level 3 and 5 are about 1 and 2 pixels apart: texels as large
-    texture.image = sizes[std::min<size_t>(level >= 5 ? 2 : level >= 3 ? 1 : 0, sizes.size() - 1)];
+    // Texels as large as the rays are apart, in pixels of the photo as it was taken.
+    const std::string& camera = scene.capture.examples[example].photos[photo].camera;
+    const int rays = level == 0 ? RenderOptions{}.rays_per_axis : std::min(1 + 3 * level, 15);
+    const double apart = std::exp2(level + scene.halvings_of(camera)) / rays;
+    texture.image = sizes[std::min<size_t>(apart > 1.4   ? 2
+                                           : apart > 0.7 ? 1
+                                                         : 0,
+                                           sizes.size() - 1)];
     return true;
   }
   const int reference = scene.example_index(body.texture_example);
@@ -114,8 +123,8 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
   if (k < 0 || reference == example) return false;
   const Photo& source = scene.photos[reference][k];
   texture.source = Texture::Source::photo;
-  texture.photo = {std::shared_ptr<const Scene>(model.scene), &source.planes[plane]};
-  texture.photo_valid = {std::shared_ptr<const Scene>(model.scene), &source.valid};
+  texture.photo = source.planes[plane].pointer();
+  texture.photo_valid = source.valid.pointer();
   texture.reference_camera = model.examples[reference].photos[k].camera;
   texture.reference_gain = model.examples[reference].photos[k].gain;
   return true;
@@ -189,10 +198,11 @@ Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const Vec
   PhotoState state = model.examples[impl_->example].photos[photo];
   const auto& photos = scene.photos[impl_->example];
   if (photo < static_cast<int>(photos.size()) && !photos[photo].backdrop.empty())
-    state.backdrop = {std::shared_ptr<const Scene>(impl_->scene), &photos[photo].backdrop[plane]};
+    state.backdrop = photos[photo].backdrop[plane].pointer();
   if (is_silhouette(scene, impl_->example, photo)) state = coverage_state(state);
   return impl_->renderer.render(x, q_reference ? &x_reference : nullptr, texture, state,
-                                at_level(options, 0, texture), true);
+                                at_level(options, 0, scene.halvings_of(state.camera.name), texture),
+                                true);
 }
 
 std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
@@ -235,7 +245,8 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       state.backdrop = photo.backdrop;
       if (mask_photo) state = coverage_state(state);
       RenderOptions render_options =
-          at_level(base_options, options.level, texture, options.single_rays);
+          at_level(base_options, options.level, scene.halvings_of(state.camera.name), texture,
+                   options.single_rays);
       render_options.derivatives = columns != nullptr;
       render_options.parallel = true;
       const auto moves = [&](PhotoColumn column) {
@@ -245,10 +256,12 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       render_options.gloss_derivative = moves(kSpecular);
       render_options.blur_derivative = moves(kBlur);
       render_options.centres = options.pictures || texture.source == Texture::Source::photo;
-      // Where there is blur, masked pixels are seen in their neighbours.
+      // Where there is blur, masked pixels are seen in their neighbours. A motion is looked for in
+      // whole pictures.
+      const bool all_pixels = state.blur_variance > 0.0 || options.registered;
       impl_->renderer.render(x, reference.state ? &x_reference : nullptr, texture, state,
-                             render_options, silhouette,
-                             state.blur_variance > 0.0 ? nullptr : &photo.valid, &rendering);
+                             render_options, silhouette, all_pixels ? nullptr : &*photo.valid,
+                             &rendering);
       const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
       const std::optional<Brightness> brightness = impl_->follow(photo, texture, &rendering);
       const Comparison comparison =
@@ -260,11 +273,13 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       one.r2 = comparison.r2;
       one.count = comparison.count;
       std::optional<Registration> registered;
-      if (options.pictures || options.registered)
+      if (options.pictures || options.registered) {
+        const Working part(WorkPart::motion);
         registered = mask_photo
                          ? register_silhouettes(rendering.I, photo.I, photo.valid,
                                                 comparison.residual, sigma)
                          : register_pictures(rendering.I, photo.I, comparison.residual, sigma);
+      }
       if (registered) one.motion_px = registered->rms_px;
       const Image& residual = registered ? registered->linear : comparison.residual;
       if (columns) {
@@ -278,11 +293,13 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
                               reference.columns->dphoto[source], &S);
         }
         if (mask_photo) S.photo.bottomRows(kPhotoColumns - kLogGain).setZero();
+        const Working part(WorkPart::sums);
         one.sums = condense(rendering, residual, sigma, surface.mesh, state, options.huber,
                             brightness ? &*brightness : nullptr, S);
       }
       one.sums.r2 = loss(options.registered ? residual : comparison.residual, options.huber);
       if (options.pictures) {
+        const Working part(WorkPart::motion);
         one.flow = residual_flow(rendering.I, residual, sigma, !mask_photo);
         const Image& rest = registered ? registered->residual : residual;
         one.aligned = residual_flow(rendering.I, rest, sigma, !mask_photo);

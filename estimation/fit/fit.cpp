@@ -7,6 +7,7 @@
 
 #include "core/distributions.h"
 #include "core/input_error.h"
+#include "core/work_clock.h"
 #include "estimation/fit/archived.h"
 #include "estimation/fit/convex_fit.h"
 #include "estimation/fit/fit_stage.h"
@@ -343,6 +344,7 @@ std::optional<std::variant<Fitted, NumericalFailure>> fit_from_json(Workspace& w
 std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
                                            const VectorXd& start, const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
+  const WorkingAt stage(WorkStage::fit);
   return archived<Fitted>(
       {workspace, form, start, options.cancel,
        [&] { return question_of_fit(form, start, options); }},

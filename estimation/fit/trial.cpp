@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/work_clock.h"
 #include "estimation/fit/archived.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/fit/floor.h"
@@ -96,6 +97,7 @@ std::variant<Trial, NumericalFailure> step_anew(Workspace& workspace, const Mode
 std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
                                                        const VectorXd& p,
                                                        const FitOptions& options) {
+  const WorkingAt stage(WorkStage::trials);
   const auto question = [&] {
     Question out = question_of("scale", form, p);
     out.numbers.push_back(options.huber_times(*form.scene));
@@ -121,6 +123,7 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
 std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
                                                const VectorXd& start, const TrialScale& scale,
                                                const FitOptions& options) {
+  const WorkingAt stage(WorkStage::trials);
   const auto question = [&] {
     Question out = question_of("trial", form, start);
     for (const double one : {scale.huber, scale.chi, scale.floor, scale.measured_weight})

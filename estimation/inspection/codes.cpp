@@ -24,12 +24,19 @@ int Codes::used_between(int low, int high) const {
 }
 
 std::vector<Codes> stored_codes(const Sight& sight) {
+  constexpr int kPhotos =
+      4;  // of a camera: all are of one kind, and reading them takes as long again
   std::map<std::string, Codes> by_camera;
-  for (const PhotoIndex& photo : sight.photos()) {
+  std::vector<PhotoIndex> photos = sight.photos();
+  std::sort(photos.begin(), photos.end(), [&](const PhotoIndex& a, const PhotoIndex& b) {
+    return sight.spec(a).file < sight.spec(b).file;
+  });
+  for (const PhotoIndex& photo : photos) {
     const PhotoSpec& spec = sight.spec(photo);
     const ImageHeader header = read_image_header(spec.file);
     if (header.floating || spec.kind != PhotoSpec::Kind::image) continue;
     Codes& codes = by_camera[spec.camera];
+    if (codes.photos == kPhotos) continue;
     if (codes.photos == 0) {
       codes.bits = header.bits <= 8 ? 8 : 16;
       codes.first = photo;

@@ -94,7 +94,7 @@ class Canvas {
   void tint(const std::vector<Drawn>& regions, const Matrix3Xd& x) {
     const BodyPicture look = sight_.plain_look(camera_, x);
     const auto& triangles = sight_.scene().body->surface.mesh.triangles;
-    const int width = sight_.small(photo_).I.width;
+    const int width = sight_.small(photo_).I->width;
     for (int y = 0; y < picture_.rows; ++y)
       for (int c = 0; c < picture_.cols; ++c) {
         const int t = look.triangle[static_cast<size_t>(y / times_) * width + c / times_];

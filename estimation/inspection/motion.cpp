@@ -16,13 +16,13 @@ Motion seen_motion(Sight& sight, PhotoIndex photo, PhotoIndex reference) {
   const BodyPicture look = sight.plain_look(camera, sight.shown(reference.first));
   std::vector<unsigned char> body = look.body;
   for (size_t i = 0; i < body.size(); ++i)
-    body[i] = body[i] && (from.valid.empty() || from.valid[i]);
-  const double reach = sight.options().moved_reach * std::hypot(from.I.width, from.I.height);
+    body[i] = body[i] && (from.valid->empty() || (*from.valid)[i]);
+  const double reach = sight.options().moved_reach * std::hypot(from.I->width, from.I->height);
   const PatchField field = find_patches(from.I, body, to.I, reach, sight.options());
   motion.sought = static_cast<int>(field.patches.size());
   if (field.found() < sight.options().least_patches) return motion;
   for (const Patch& patch : field.patches) {
-    const auto pixel = static_cast<size_t>(patch.at.y()) * static_cast<size_t>(from.I.width) +
+    const auto pixel = static_cast<size_t>(patch.at.y()) * static_cast<size_t>(from.I->width) +
                        static_cast<size_t>(patch.at.x());
     if (!patch.found || look.triangle[pixel] < 0) continue;
     motion.triangle.push_back(look.triangle[pixel]);

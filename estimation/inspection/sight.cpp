@@ -122,7 +122,7 @@ std::vector<Paint> Sight::paints_of_photos(PhotoIndex photo, const Trial& trial)
     paint.texture.source = Texture::Source::photo;
     paint.texture.photo = std::make_shared<Image>(turned(from.I, flip.turn));
     paint.texture.photo_valid = std::make_shared<std::vector<unsigned char>>(
-        turned(from.valid, from.I.width, from.I.height, flip.turn));
+        turned(from.valid, from.I->width, from.I->height, flip.turn));
     paint.texture.reference_camera = camera_at_level(flip.meant(camera(other)), from.level);
     out.push_back(std::move(paint));
   }
@@ -151,7 +151,7 @@ Agreement Sight::agreement(PhotoIndex photo, const Trial& trial) {
   const Camera camera = camera_at_level(flip.meant(this->camera(photo)), seen.level);
   const Image I = turned(seen.I, flip.turn);
   const auto straight = [&](const std::vector<unsigned char>& values) {
-    return turned(values, seen.I.width, seen.I.height, flip.turn);
+    return turned(values, seen.I->width, seen.I->height, flip.turn);
   };
   const auto valid = straight(seen.valid), inside = straight(seen.foreground.inside);
   const Matrix3Xd& x = shown(photo.first);

@@ -78,10 +78,10 @@ Foreground foreground_of(const PhotoSpec& spec, const PhotoPlane& plane, double 
   Foreground out;
   out.told = true;
   const auto by =
-      static_cast<float>(std::max(5.0 * sigma, kOfWhite * quantile(plane.I.values, 0.99)));
+      static_cast<float>(std::max(5.0 * sigma, kOfWhite * quantile(plane.I->values, 0.99)));
   if (spec.kind == PhotoSpec::Kind::silhouette) {
-    out.inside.resize(plane.I.pixels());
-    for (size_t i = 0; i < out.inside.size(); ++i) out.inside[i] = plane.I.values[i] > 0.5f;
+    out.inside.resize(plane.I->pixels());
+    for (size_t i = 0; i < out.inside.size(); ++i) out.inside[i] = plane.I->values[i] > 0.5f;
   } else if (spec.background.kind == BackgroundSpec::Kind::level) {
     out.inside = differing(plane.I, nullptr, static_cast<float>(spec.background.level), by);
   } else if (spec.background.kind == BackgroundSpec::Kind::photo && plane.backdrop) {
@@ -118,11 +118,12 @@ SmallPhoto small_photo(const Scene& scene, int e, int k, const InspectionOptions
   const int plane = looked_at_plane(photo);
   const Image& full = photo.planes[static_cast<size_t>(plane)];
   while (std::max(full.width, full.height) >> out.level > options.look_px) ++out.level;
+  out.halvings = out.level + scene.halvings_of(photo.camera);
   PhotoPlane small = photo_pyramid(photo, plane, out.level + 1).back();
-  const double mean = quantile(small.I.values, 0.5);
+  const double mean = quantile(small.I->values, 0.5);
   out.foreground = foreground_of(spec, small, photo.noise.sigma(mean) / out.px());
-  out.I = std::move(small.I);
-  out.valid = std::move(small.valid);
+  out.I = small.I;
+  out.valid = small.valid;
   return out;
 }
 

@@ -1,6 +1,7 @@
 // A photo at the size that questions look at, and what of it is the body.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,12 @@ struct Foreground {
 };
 
 struct SmallPhoto {
-  int level = 0;  ///< how often the photo was halved
-  Image I;        ///< one channel, linear
-  std::vector<unsigned char> valid;
+  int level = 0;         ///< how often the scene's photo was halved
+  int halvings = 0;      ///< how often the file's was
+  SharedValue<Image> I;  ///< one channel, linear
+  SharedValue<std::vector<unsigned char>> valid;
   Foreground foreground;
-  double px() const {
-    return static_cast<double>(1 << level);
-  }  ///< px of the photo in one of these
+  double px() const { return std::exp2(halvings); }  ///< px of the file in one of these
 };
 
 /// Photo `k` of example `e`, halved until its longer side is at most options.look_px.

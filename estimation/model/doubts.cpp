@@ -108,7 +108,7 @@ void look_at_photos(const Scene& scene, Sentences* out) {
     for (size_t k = 0; k < scene.photos[e].size(); ++k) {
       const Photo& photo = scene.photos[e][k];
       used.insert(photo.camera);
-      if (std::find(photo.valid.begin(), photo.valid.end(), 1) == photo.valid.end())
+      if (std::find(photo.valid->begin(), photo.valid->end(), 1) == photo.valid->end())
         out->push_back(fmt::format("example {}: no pixel of the photo by camera {} counts",
                                    scene.capture.examples[e].name, photo.camera));
     }

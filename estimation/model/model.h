@@ -10,6 +10,7 @@
 #include "capture_io/capture.h"
 #include "core/parameter.h"
 #include "estimation/model/limits.h"
+#include "estimation/model/photo_reading.h"
 #include "meshing/body.h"
 #include "render/optics.h"
 #include "simulation/energy_model.h"
@@ -19,15 +20,17 @@ namespace hookeye {
 
 /// Everything that a fit never changes: capture, body, photos. Shared by all models of a capture.
 struct Scene : std::enable_shared_from_this<Scene> {
-  Capture capture;
+  Capture capture;  ///< its cameras as `readings` has them
   std::shared_ptr<const Body> body;
   std::vector<std::vector<Photo>> photos;  ///< [example][photo], order of the capture
+  PhotoReadings readings;                  ///< of cameras whose photos are not read whole
   /// Planes of the texture image (1 or 3), each at full size, half, quarter (coarse levels).
   std::vector<std::vector<std::shared_ptr<const Image>>> albedo;
   /// What fits, floors, diagnoses and searches of it decide by. Never null.
   std::shared_ptr<const Limits> limits = std::make_shared<const Limits>();
   std::shared_ptr<const TetMesh> mesh() const { return {body, &body->mesh}; }
   int example_index(const std::string& name) const;  ///< -1: none
+  int halvings_of(const std::string& camera) const;  ///< of its photos when they were read
 };
 
 /// One example under the present parameter values.
@@ -118,9 +121,12 @@ struct ModelForm {
 /// whole.
 bool is_rest(const ExampleSpec& example);
 
-/// Scene of a capture: reads photos and builds the body.
+/// Scene of a capture: builds the body and reads photos, large ones as photo_reading.h says.
 std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true,
                                         const Limits& limits = {});
+/// The same with photos halved until their longer side is at most `longest_px`, and without their
+/// sigma: for pictures and looks, not for fits.
+std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int longest_px);
 /// The capture without the examples that nothing may see (use: test).
 Capture without_tests(Capture capture);
 /// `scene`, which was made without them, with the test examples of `whole` behind its own. Reads

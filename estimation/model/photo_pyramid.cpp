@@ -15,43 +15,45 @@ Image halved(const Image& image) {
   return half;
 }
 
-namespace {
+Image halved_sigma(const Image& sigma) {
+  Image variance = sigma;
+  for (float& s : variance.values) s *= s;
+  Image half = halved(variance);
+  for (float& v : half.values) v = 0.5f * std::sqrt(v);
+  return half;
+}
 
-std::vector<unsigned char> halved(const std::vector<unsigned char>& valid, const Image& size) {
-  const int width = size.width / 2, height = size.height / 2;
-  std::vector<unsigned char> half(static_cast<size_t>(width) * height);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const size_t at = static_cast<size_t>(2 * y) * size.width + 2 * x;
-      half[static_cast<size_t>(y) * width + x] =
-          valid[at] && valid[at + 1] && valid[at + size.width] && valid[at + size.width + 1];
+std::vector<unsigned char> halved_valid(const std::vector<unsigned char>& valid, int width,
+                                        int height) {
+  const int columns = width / 2, rows = height / 2;
+  std::vector<unsigned char> half(static_cast<size_t>(columns) * rows);
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const size_t at = static_cast<size_t>(2 * y) * width + 2 * x;
+      half[static_cast<size_t>(y) * columns + x] =
+          valid[at] && valid[at + 1] && valid[at + width] && valid[at + width + 1];
     }
   return half;
 }
 
-}  // namespace
-
 std::vector<PhotoPlane> photo_pyramid(const Photo& photo, int plane, int levels) {
   std::vector<PhotoPlane> pyramid;
-  pyramid.push_back({photo.planes[plane], photo.sigma[plane], photo.valid, nullptr});
-  if (!photo.backdrop.empty())
-    pyramid[0].backdrop = std::make_shared<const Image>(photo.backdrop[plane]);
+  pyramid.push_back({photo.planes[plane], {}, photo.valid, nullptr});
+  if (!photo.sigma.empty()) pyramid[0].sigma = photo.sigma[plane];
+  if (!photo.backdrop.empty()) pyramid[0].backdrop = photo.backdrop[plane].pointer();
   for (int level = 1; level < levels; ++level) {
     const PhotoPlane& fine = pyramid.back();
     PhotoPlane coarse;
     coarse.I = halved(fine.I);
-    Image variance = fine.sigma;
-    for (float& s : variance.values) s *= s;
-    coarse.sigma = halved(variance);
-    for (float& v : coarse.sigma.values) v = 0.5f * std::sqrt(v);
-    coarse.valid = halved(fine.valid, fine.I);
+    if (!photo.sigma.empty()) coarse.sigma = halved_sigma(fine.sigma);
+    coarse.valid = halved_valid(fine.valid, fine.I->width, fine.I->height);
     if (fine.backdrop) coarse.backdrop = std::make_shared<const Image>(halved(*fine.backdrop));
     pyramid.push_back(std::move(coarse));
   }
   // Coarse levels only bring the fit near. Their averaged noise is far below what sampling and a
   // misplaced outline do, and would let dark pixels rule: 2 % of full scale stands for that.
   for (size_t level = 1; level < pyramid.size(); ++level)
-    for (float& v : pyramid[level].sigma.values) v = std::hypot(v, 0.02f);
+    for (float& v : pyramid[level].sigma.own().values) v = std::hypot(v, 0.02f);
   return pyramid;
 }
 

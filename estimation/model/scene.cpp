@@ -1,8 +1,13 @@
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 #include <set>
 
+#include "core/work_clock.h"
 #include "estimation/model/field_points.h"
 #include "estimation/model/model.h"
 #include "estimation/model/photo_pyramid.h"
@@ -57,11 +62,88 @@ void check_large_enough(const PhotoSpec& spec, const Camera& camera) {
                   kLeast));
 }
 
-std::vector<Photo> photos_of(const ExampleSpec& example, const Capture& capture) {
-  std::vector<Photo> out;
-  for (const PhotoSpec& spec : example.photos) {
-    check_large_enough(spec, capture.camera(spec.camera));
-    out.push_back(read_photo(spec, capture.camera(spec.camera)));
+/// One photo of the capture.
+struct Wanted {
+  const ExampleSpec* example;
+  const PhotoSpec* spec;
+};
+
+std::vector<Wanted> wanted_photos(const Capture& capture) {
+  std::vector<Wanted> out;
+  for (const ExampleSpec& example : capture.examples)
+    for (const PhotoSpec& spec : example.photos) out.push_back({&example, &spec});
+  return out;
+}
+
+/// The photo of each camera that tells how all of its are read: of pictures rather than silhouettes
+/// the first by the file's name, whatever the order of the capture.
+std::map<std::string, const PhotoSpec*> deciding_photos(const std::vector<Wanted>& all) {
+  const auto rank = [](const PhotoSpec& spec) {
+    return std::make_pair(spec.kind == PhotoSpec::Kind::silhouette, spec.file);
+  };
+  std::map<std::string, const PhotoSpec*> out;
+  for (const Wanted& one : all) {
+    const PhotoSpec*& first = out[one.spec->camera];
+    if (!first || rank(*one.spec) < rank(*first)) first = one.spec;
+  }
+  return out;
+}
+
+/// In the order of `all`, a few at a time: a photo of 12 Mpx takes some hundred MB until it is
+/// halved. The first of several faults is the one told.
+std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& capture,
+                            const PhotoReadings& readings) {
+  constexpr int kAtOnce = 4;
+  std::vector<Photo> out(all.size());
+  std::vector<std::exception_ptr> faults(all.size());
+  std::atomic<bool> failed = false;
+  const auto read = [&](size_t i) {
+    if (failed) return;
+    const Working part(WorkPart::reading);
+    try {
+      const PhotoSpec& spec = *all[i].spec;
+      const Camera& camera = capture.camera(spec.camera);
+      check_large_enough(spec, camera);
+      out[i] = read_photo(spec, camera);
+      const auto reading = readings.find(spec.camera);
+      if (reading != readings.end())
+        out[i] =
+            as_read(std::move(out[i]), reading->second, all[i].example->name + "/" + spec.camera);
+    } catch (...) {
+      faults[i] = std::current_exception();
+      failed = true;
+    }
+  };
+  tbb::task_arena few(std::min(kAtOnce, tbb::this_task_arena::max_concurrency()));
+  few.execute([&] { tbb::parallel_for(size_t{0}, all.size(), read, tbb::simple_partitioner()); });
+  for (const auto& fault : faults)
+    if (fault) std::rethrow_exception(fault);
+  return out;
+}
+
+PhotoReadings readings_of(const std::vector<Wanted>& all, const Capture& capture, const Body& body,
+                          const FitLimits& limits) {
+  PhotoReadings out;
+  for (const auto& [name, spec] : deciding_photos(all)) {
+    const Camera& camera = capture.camera(name);
+    if (limits.pixels <= 0.0 || double(camera.width) * camera.height <= limits.pixels) continue;
+    const PhotoReading reading =
+        reading_of(read_photo(*spec, camera), camera, body.surface.mesh, limits);
+    if (!reading.whole()) out[name] = reading;
+  }
+  return out;
+}
+
+/// Photos of the capture's examples, by example.
+std::vector<std::vector<Photo>> photos_of(const Capture& capture, const PhotoReadings& readings) {
+  const std::vector<Wanted> all = wanted_photos(capture);
+  std::vector<Photo> read = read_all(all, capture, readings);
+  std::vector<std::vector<Photo>> out;
+  size_t next = 0;
+  for (const ExampleSpec& example : capture.examples) {
+    out.emplace_back();
+    for (size_t k = 0; k < example.photos.size(); ++k)
+      out.back().push_back(std::move(read[next++]));
   }
   return out;
 }
@@ -72,6 +154,11 @@ int Scene::example_index(const std::string& name) const {
   for (size_t i = 0; i < capture.examples.size(); ++i)
     if (capture.examples[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+int Scene::halvings_of(const std::string& camera) const {
+  const auto reading = readings.find(camera);
+  return reading == readings.end() ? 0 : reading->second.halvings;
 }
 
 bool is_rest(const ExampleSpec& example) {
@@ -88,8 +175,10 @@ bool is_rest(const ExampleSpec& example) {
   return true;
 }
 
-std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos,
-                                        const Limits& limits) {
+namespace {
+
+/// The body and what stands beside it, without photos.
+std::shared_ptr<Scene> bare_scene(const Capture& capture, const Limits& limits) {
   auto scene = std::make_shared<Scene>();
   scene->capture = capture;
   scene->limits = std::make_shared<const Limits>(limits);
@@ -98,9 +187,41 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos
   if (capture.body.texture == BodySpec::Texture::image)
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
   for (const ExampleSpec& example : capture.examples) check_fields(*scene, example);
-  if (!with_photos) return scene;
-  for (size_t e = 0; e < capture.examples.size(); ++e)
-    scene->photos[e] = photos_of(capture.examples[e], capture);
+  return scene;
+}
+
+void take_photos(const PhotoReadings& readings, Scene* scene) {
+  scene->readings = readings;
+  scene->photos = photos_of(scene->capture, readings);
+  for (Camera& camera : scene->capture.cameras)
+    if (const auto reading = readings.find(camera.name); reading != readings.end())
+      camera = as_read(camera, reading->second);
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos,
+                                        const Limits& limits) {
+  auto scene = bare_scene(capture, limits);
+  if (with_photos)
+    take_photos(readings_of(wanted_photos(capture), capture, *scene->body, limits.fit),
+                scene.get());
+  return scene;
+}
+
+std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int longest_px) {
+  auto scene = bare_scene(capture, {});
+  PhotoReadings readings;
+  for (const Camera& camera : capture.cameras) {
+    PhotoReading reading;
+    while (std::max(camera.width, camera.height) >> reading.halvings > longest_px)
+      ++reading.halvings;
+    if (reading.halvings > 0) readings[camera.name] = reading;
+  }
+  take_photos(readings, scene.get());
+  // Nobody weighs the residuals of what is looked at.
+  for (auto& photos : scene->photos)
+    for (Photo& photo : photos) photo.sigma.clear();
   return scene;
 }
 
@@ -111,12 +232,13 @@ Capture without_tests(Capture capture) {
 
 std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole) {
   auto out = std::make_shared<Scene>(scene);
-  for (const ExampleSpec& example : whole.examples) {
-    if (!example.test) continue;
+  Capture tests = whole;
+  std::erase_if(tests.examples, [](const ExampleSpec& example) { return !example.test; });
+  for (const ExampleSpec& example : tests.examples) {
     out->capture.examples.push_back(example);
     check_fields(*out, example);
-    out->photos.push_back(photos_of(example, whole));
   }
+  for (auto& photos : photos_of(tests, scene.readings)) out->photos.push_back(std::move(photos));
   return out;
 }
 
@@ -129,6 +251,7 @@ std::shared_ptr<const Scene> remeshed(const Scene& scene, double edge_factor, in
   out->body = std::make_shared<const Body>(remesh(scene.capture, *scene.body, edge_factor, order));
   if (!with_photos) return out;
   out->photos = scene.photos;
+  out->readings = scene.readings;
   out->albedo = scene.albedo;
   return out;
 }

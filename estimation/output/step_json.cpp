@@ -151,6 +151,16 @@ void tell_material(const Scene& scene, const Fitted& fitted, json& out) {
   out["material"] = material_card(scene, fitted, near);
 }
 
+json readings_json(const PhotoReadings& readings) {
+  json out = json::object();
+  for (const auto& [camera, reading] : readings)
+    out[camera] = {{"width_over", 1 << reading.halvings},
+                   {"motion_kept", reading.kept},
+                   {"tiles", reading.share},
+                   {"body_px", reading.body_px}};
+  return out;
+}
+
 }  // namespace
 
 json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
@@ -190,6 +200,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
               {"rms_px_validate", fitted.evaluation.rms_px(true)},
               {"floor", to_json(floor)},
               {"photos", std::move(photos)},
+              {"read", readings_json(scene.readings)},
               {"chi_by_example", chi_table(by_example)},
               {"chi_by_camera", chi_table(by_camera)},
               {"chi_by_region", chi_table(by_region)},

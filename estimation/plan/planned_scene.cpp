@@ -83,7 +83,7 @@ Photo predicted_photo(PhotoComparer& comparer, const Model& model, int e, int k,
         comparer.render(model, q, q_reference, k, static_cast<int>(plane), options).I;
     out.sigma[plane] = sigma_like(out.planes[plane], like.planes[plane], like.sigma[plane]);
   }
-  out.valid.assign(out.planes.front().pixels(), 1);
+  out.valid = std::vector<unsigned char>(out.planes.front()->pixels(), 1);
   return out;
 }
 

@@ -94,6 +94,25 @@ json quantum_json(const Quantised& quantum) {
   return {{"step", quantum.step}, {"zero", quantum.zero}};
 }
 
+/// How often photos were halved for the newest step, whose residuals are of that size.
+PhotoReadings readings_in(const fs::path& run) {
+  PhotoReadings out;
+  const auto steps = step_folders(run);
+  if (steps.empty()) return out;
+  try {
+    const json told =
+        hookeye::read_json(steps.back() / "metrics.json").value("read", json::object());
+    for (const auto& [camera, one] : told.items()) {
+      const int over = one.at("width_over").get<int>();
+      while (out[camera].halvings < 8 && 1 << (out[camera].halvings + 1) <= over)
+        ++out[camera].halvings;
+    }
+  } catch (const std::exception&) {  // the step's own fault is told where the step is
+    return {};
+  }
+  return out;
+}
+
 /// Where the texture is a photo, its noise enters every residual too (photo_evaluation.cpp).
 double noise_factor(const Capture& capture) {
   return capture.body.texture == BodySpec::Texture::rest ? std::sqrt(2.0) : 1.0;
@@ -128,13 +147,16 @@ RunView::RunView(fs::path folder) : folder_(std::move(folder)) {
         error.what());
   }
   if (!capture_) return;
+  const PhotoReadings readings = readings_in(folder_);
   for (const auto& example : capture_->examples)
     for (const auto& photo : example.photos) {
       const std::string name = example.name + "-" + photo.camera;
       const int planes = photo.rgb ? read_image_header(photo.file).channels : 1;
+      const auto found = readings.find(photo.camera);
+      const PhotoReading reading = found == readings.end() ? PhotoReading{} : found->second;
       for (int k = 0; k < planes; ++k)
         planes_[planes > 1 ? name + "-" + "rgb"[k] : name] = {photo, capture_->camera(photo.camera),
-                                                              k};
+                                                              reading, k};
     }
 }
 
@@ -155,8 +177,8 @@ json RunView::photos_json(json& faults, int factor) {
                     {"example", example.name},
                     {"camera", spec.camera},
                     {"use", example.use()},
-                    {"width", plane.camera.width},
-                    {"height", plane.camera.height},
+                    {"width", plane.camera.width >> plane.reading.halvings},
+                    {"height", plane.camera.height >> plane.reading.halvings},
                     {"file", spec.file.filename().string()}};
         one["photo"] = {{"blob", at_factor("photo/" + name, factor)},
                         {"shrink", factor},
@@ -275,12 +297,13 @@ std::optional<RunView::Blob> RunView::photo_blob(const std::string& kind, const 
   if (found == planes_.end()) return {};
   const fs::path& file = found->second.spec.file;
   if (!inside(capture_->folder, file)) return {};  // it has become a link since it was named
-  Photo photo = read_photo(found->second.spec, found->second.camera);
+  Photo photo =
+      as_read(read_photo(found->second.spec, found->second.camera), found->second.reading, name);
   if (kind == "photo")
     return Blob{
         encode_png16(shrink(photo.planes[found->second.plane], factor), intensity_quantum(1.25)),
         "image/png"};
-  Image& sigma = photo.sigma[found->second.plane];
+  Image& sigma = photo.sigma[found->second.plane].own();
   for (float& s : sigma.values) s *= static_cast<float>(noise_factor(*capture_));
   return Blob{encode_png16(shrink(sigma, factor), intensity_quantum(0.25)), "image/png"};
 }

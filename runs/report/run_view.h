@@ -10,6 +10,7 @@
 #include <string>
 
 #include "capture_io/capture.h"
+#include "estimation/model/photo_reading.h"
 
 namespace hookeye {
 
@@ -43,6 +44,7 @@ class RunView {
   struct Plane {
     PhotoSpec spec;
     Camera camera;
+    PhotoReading reading;  ///< as the pictures of the newest step were
     int plane = 0;
   };
   std::filesystem::path folder_;

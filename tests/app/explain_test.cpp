@@ -43,6 +43,18 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
   EXPECT_EQ(first.at("candidate"), "swelling");
   EXPECT_EQ(hookeye("explain run gravty").status, 2);
 
+  // Where the time went: its parts are those of the work, and a damaged line hides no other.
+  std::ofstream(folder_ / "run/work.jsonl", std::ios::app) << "{\n";
+  const Result profile = hookeye("profile run");
+  EXPECT_THAT(profile.out, AllOf(HasSubstr("the command of steps 0 to "), HasSubstr("rays"),
+                                 HasSubstr("equilibria"), HasSubstr("diagnosis")));
+  const json work = json::parse(hookeye("profile run --json").out).at("commands").at(0);
+  double cpu = 0.0;
+  for (const auto& stage : work.at("cpu_s"))
+    for (const auto& part : stage) cpu += part.get<double>();
+  EXPECT_GT(cpu, 0.5);
+  EXPECT_LT(work.at("cpu_s").at("fit").at("other").get<double>(), 0.5 * cpu);
+
   std::ofstream(folder_ / "run/steps/00-base/decisions.jsonl", std::ios::app) << "{\n";
   const Result damaged = hookeye("explain run");
   EXPECT_EQ(damaged.status, 2);

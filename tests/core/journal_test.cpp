@@ -1,3 +1,4 @@
+#include "core/input_error.h"
 #include "core/journal.h"
 
 #include <gmock/gmock.h>

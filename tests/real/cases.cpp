@@ -164,8 +164,8 @@ double overlap(const Case& fitted, int example) {
   const Photo& photo = fitted.scene->photos[example][0];
   double both = 0, any = 0;
   for (size_t i = 0; i < model.pixels(); ++i) {
-    if (!photo.valid[i]) continue;
-    const bool a = model.values[i] > 0.5f, b = photo.planes[0].values[i] > 0.5f;
+    if (!(*photo.valid)[i]) continue;
+    const bool a = model.values[i] > 0.5f, b = photo.planes[0]->values[i] > 0.5f;
     both += a && b;
     any += a || b;
   }

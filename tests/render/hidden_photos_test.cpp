@@ -102,12 +102,12 @@ Score score(Case& c, Renderer& renderer, const ExampleSpec& example, const Photo
   for (int y = 0; y < plane.height; ++y)
     for (int x = 0; x < plane.width; ++x) {
       residual.at(x, y) = 0.5f;
-      if (r.coverage.at(x, y) <= 0 || !photo.valid[size_t(y) * plane.width + x]) continue;
-      const double z = (r.I.at(x, y) - plane.at(x, y)) / photo.sigma[0].at(x, y);
+      if (r.coverage.at(x, y) <= 0 || !(*photo.valid)[size_t(y) * plane.width + x]) continue;
+      const double z = (r.I.at(x, y) - plane.at(x, y)) / photo.sigma[0]->at(x, y);
       residual.at(x, y) = float(std::clamp(0.5 + z / 10, 0.0, 1.0));
       s.chi += z * z, s.mean += z, ++s.pixels;
       if (!even(model, x, y)) continue;
-      const double next = (r.I.at(x + 1, y) - plane.at(x + 1, y)) / photo.sigma[0].at(x + 1, y);
+      const double next = (r.I.at(x + 1, y) - plane.at(x + 1, y)) / photo.sigma[0]->at(x + 1, y);
       size.push_back(std::abs(z)), step.push_back(std::abs(z - next) / std::sqrt(2));
     }
   s.chi = std::sqrt(s.chi / s.pixels), s.mean /= s.pixels;

@@ -12,7 +12,7 @@ namespace hookeye::inspection {
 void ask_equal_photos(Sight& sight, Warnings& warnings) {
   std::map<size_t, PhotoIndex> seen;
   const auto pixels = [&](const PhotoIndex& photo) -> const std::vector<float>& {
-    return sight.scene().photos[size_t(photo.first)][size_t(photo.second)].planes.front().values;
+    return sight.scene().photos[size_t(photo.first)][size_t(photo.second)].planes.front()->values;
   };
   for (const PhotoIndex& photo : sight.photos()) {
     const auto& values = pixels(photo);

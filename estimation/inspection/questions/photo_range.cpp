@@ -18,9 +18,9 @@ void ask_photo_range(Sight& sight, Warnings& warnings) {
       if (!spec.encoding)
         warnings.say(
             spec.place,
-            fmt::format("the {} photos of camera `{}` hold 8 bits widened to 16 (all values are "
+            fmt::format("the photos of camera `{}` hold 8 bits widened to 16 (all values are "
                         "multiples of 257), and 16 bits are taken for linear",
-                        codes.photos, spec.camera),
+                        spec.camera),
             "say `encoding: srgb` if the camera wrote 8 bits for a screen, else `encoding: "
             "linear`");
       continue;
@@ -30,10 +30,10 @@ void ask_photo_range(Sight& sight, Warnings& warnings) {
     const int likely = bits <= 8 ? 8 : bits <= 10 ? 10 : 12;
     warnings.say(
         spec.place,
-        fmt::format("the largest value in the {} photos of camera `{}` is {} of 65535: {} bits "
+        fmt::format("the largest value in photos of camera `{}` is {} of 65535: {} bits "
                     "stored in 16? Full scale would be wrong by {:.0f}, saturated pixels count, "
                     "and told noise and light do not fit",
-                    codes.photos, spec.camera, codes.largest, likely, std::exp2(16 - likely)),
+                    spec.camera, codes.largest, likely, std::exp2(16 - likely)),
         fmt::format("values times {:.0f} (shift left by {} bits)", std::exp2(16 - likely),
                     16 - likely));
   }

@@ -192,7 +192,7 @@ std::shared_ptr<const Scene> covered_scene() {
       test::workspace().evaluate(test::base(), test::base().initial(), options));
   for (const auto& example : seen.examples)
     for (const auto& photo : example.photos) {
-      auto& valid = scene->photos[example.example][photo.photo].valid;
+      auto& valid = scene->photos[example.example][photo.photo].valid.own();
       valid.assign(photo.model.pixels(), 0);
       // nor at the picture's border, where blur is no convolution
       constexpr int kBorder = 6;
@@ -287,7 +287,7 @@ TEST(Gradient, OfShadingAlone) {
   for (const auto& photo : whole.examples.at(0).photos) {
     const Image& I = photo.model;
     const float brightest = *std::max_element(I.values.begin(), I.values.end());
-    auto& valid = scene->photos[bend][photo.photo].valid;
+    auto& valid = scene->photos[bend][photo.photo].valid.own();
     valid.assign(I.pixels(), 0);
     for (int y = 3; y < I.height - 3; ++y)
       for (int x = 3; x < I.width - 3; ++x) {

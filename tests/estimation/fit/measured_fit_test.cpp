@@ -165,11 +165,13 @@ TEST(MeasuredFit, WhatPhotosErrByTogetherGivesForcesMoreWeight) {
   auto wrong = std::make_shared<Scene>(*small.scene);
   for (auto& example : wrong->photos)
     for (Photo& photo : example)
-      for (Image& plane : photo.planes)
+      for (auto& shared : photo.planes) {
+        Image& plane = shared.own();
         for (int y = 0; y < plane.height; ++y)
           for (int x = 0; x < plane.width; ++x)
             plane.at(x, y) *=
                 static_cast<float>(1.0 + 0.03 * std::sin(0.2 * x) * std::sin(0.15 * y));
+      }
   const auto weight_in = [](std::shared_ptr<const Scene> scene) {
     Workspace workspace(scene);
     const Fitted fitted = base_fit(workspace);

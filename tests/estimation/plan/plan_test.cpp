@@ -66,12 +66,14 @@ std::shared_ptr<const Scene> sagging_scene() {
                           .I;
     std::mt19937 engine(5);
     std::normal_distribution<double> normal;
-    for (size_t i = 0; i < photo.planes[0].pixels(); ++i) {
-      float& I = photo.planes[0].values[i];
-      photo.sigma[0].values[i] = static_cast<float>(photo.noise.sigma(I));
-      I += static_cast<float>(normal(engine)) * photo.sigma[0].values[i];
+    Image& plane = photo.planes[0].own();
+    for (size_t i = 0; i < plane.pixels(); ++i) {
+      float& I = plane.values[i];
+      const double sigma = photo.noise.sigma(I);
+      photo.sigma[0].own().values[i] = static_cast<float>(sigma);
+      I += static_cast<float>(normal(engine) * sigma);
     }
-    photo.valid.assign(photo.planes[0].pixels(), 1);
+    photo.valid = std::vector<unsigned char>(plane.pixels(), 1);
     out->photos[0].push_back(std::move(photo));
     return out;
   }();

@@ -1,0 +1,154 @@
+#include "estimation/model/photo_reading.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/fingerprint.h"
+#include "estimation/model/photo_pyramid.h"
+#include "render/renderer.h"
+
+namespace hookeye {
+
+namespace {
+
+constexpr int kMostHalvings = 4;
+
+/// Pixels of the body at rest that the camera sees, from a small picture of it.
+double body_pixels(const Camera& camera, const SurfaceMesh& surface) {
+  constexpr int kSmall = 400;  // px
+  const double factor = std::min(1.0, double(kSmall) / std::max(camera.width, camera.height));
+  PhotoState state;
+  state.camera = camera.resized(factor);
+  state.camera.width = std::max(1, static_cast<int>(camera.width * factor));
+  state.camera.height = std::max(1, static_cast<int>(camera.height * factor));
+  state.shaded = false;
+  RenderOptions options;
+  options.rays_per_axis = 1;
+  options.visibility_rays = 0;
+  options.derivatives = options.cast_shadows = false;
+  const Rendering seen =
+      Renderer(surface).render(surface.X, nullptr, Texture{}, state, options, false);
+  const auto count = std::count_if(seen.triangle.begin(), seen.triangle.end(),
+                                   [](int triangle) { return triangle >= 0; });
+  return static_cast<double>(count) / (factor * factor);
+}
+
+/// Fourth-order central difference, as motions are found with.
+double slope(const Image& I, size_t at, size_t step) {
+  const float* v = I.values.data() + at;
+  return (8.0 * (double(v[step]) - v[-static_cast<std::ptrdiff_t>(step)]) -
+          (double(v[2 * step]) - v[-2 * static_cast<std::ptrdiff_t>(step)])) /
+         12.0;
+}
+
+double information(const PhotoPlane& plane) {
+  constexpr double kOfNoise = 2.0 * (64.0 + 1.0) / 144.0;  // variance of a slope over sigma^2
+  const Image& I = plane.I;
+  double sum = 0.0;
+  for (int y = 2; y + 2 < I.height; ++y)
+    for (int x = 2; x + 2 < I.width; ++x) {
+      const size_t at = static_cast<size_t>(y) * I.width + x;
+      if (!(*plane.valid)[at]) continue;
+      const double gx = slope(I, at, 1), gy = slope(I, at, static_cast<size_t>(I.width));
+      const double sigma = plane.sigma->values[at];
+      sum += (gx * gx + gy * gy) / (sigma * sigma) - 2.0 * kOfNoise;
+    }
+  return std::max(sum, 0.0);
+}
+
+void halve(PhotoPlane* plane) {
+  plane->valid = halved_valid(plane->valid, plane->I->width, plane->I->height);
+  plane->I = halved(plane->I);
+  plane->sigma = halved_sigma(plane->sigma);
+}
+
+/// 0 to 1, the same whatever the processor and whichever other tiles there are.
+double drawn(const std::string& name, int column, int row) {
+  const std::string mark = fingerprint_of(fmt::format("{} {} {}", name, column, row));
+  const auto digits = mark.substr(mark.find(':') + 1, 13);  // 52 bits
+  return static_cast<double>(std::stoull(digits, nullptr, 16)) / std::exp2(52);
+}
+
+void keep_tiles(Photo& photo, double share, const std::string& name) {
+  const int width = photo.planes.front()->width, height = photo.planes.front()->height;
+  std::vector<unsigned char>& valid = photo.valid.own();
+  for (int row = 0; row * kTile < height; ++row)
+    for (int column = 0; column * kTile < width; ++column) {
+      if (drawn(name, column, row) < share) continue;
+      const int x0 = column * kTile, x1 = std::min(x0 + kTile, width);
+      for (int y = row * kTile; y < std::min((row + 1) * kTile, height); ++y)
+        std::fill(valid.begin() + static_cast<std::ptrdiff_t>(y) * width + x0,
+                  valid.begin() + static_cast<std::ptrdiff_t>(y) * width + x1, 0);
+    }
+}
+
+}  // namespace
+
+double told_of_motion(const Photo& photo, int plane, int halvings) {
+  PhotoPlane at{photo.planes[plane], photo.sigma[plane], photo.valid, nullptr};
+  for (int i = 0; i < halvings; ++i) halve(&at);
+  // A pixel is 2^halvings of the whole photo's wide: its slope is that much larger.
+  return information(at) / std::pow(4.0, halvings);
+}
+
+PhotoReading reading_of(const Photo& photo, const Camera& camera, const SurfaceMesh& surface,
+                        const FitLimits& limits) {
+  PhotoReading out;
+  const double most = limits.pixels;
+  if (most <= 0.0 || double(camera.width) * camera.height <= most) return out;
+  out.body_px = body_pixels(camera, surface);
+  const bool silhouette = photo.kind == PhotoSpec::Kind::silhouette;
+  const int plane = photo.planes.size() == 3 ? 1 : 0;
+  const double all = silhouette ? 1.0 : told_of_motion(photo, plane, 0);
+  while (out.body_px > most && out.halvings < kMostHalvings && all > 0.0) {
+    // A silhouette's rim is as sharp in larger pixels, which tell of its place by their grey.
+    const double kept =
+        silhouette ? 1.0 : std::min(1.0, told_of_motion(photo, plane, out.halvings + 1) / all);
+    if (kept < limits.pixels_keep) break;
+    out.kept = kept;
+    ++out.halvings;
+    out.body_px /= 4.0;
+  }
+  if (out.body_px > most && !silhouette) {
+    out.share = most / out.body_px;
+    out.body_px = most;
+  }
+  return out;
+}
+
+Camera as_read(const Camera& camera, const PhotoReading& reading) {
+  Camera out = camera.resized(std::pow(0.5, reading.halvings));
+  out.width = camera.width >> reading.halvings;
+  out.height = camera.height >> reading.halvings;
+  return out;
+}
+
+Photo as_read(Photo photo, const PhotoReading& reading, const std::string& name) {
+  for (int i = 0; i < reading.halvings; ++i) {
+    photo.valid =
+        halved_valid(photo.valid, photo.planes.front()->width, photo.planes.front()->height);
+    for (auto& plane : photo.planes) plane = halved(plane);
+    for (auto& sigma : photo.sigma) sigma = halved_sigma(sigma);
+    for (auto& backdrop : photo.backdrop) backdrop = halved(backdrop);
+  }
+  if (reading.share < 1.0) keep_tiles(photo, reading.share, name);
+  return photo;
+}
+
+std::string described(const std::string& camera, const PhotoReading& reading) {
+  std::string how;
+  if (reading.halvings > 0)
+    how = fmt::format("at 1/{} of their width, which keeps {:.0f} % of what they tell of motion",
+                      1 << reading.halvings, 100.0 * reading.kept);
+  if (reading.share < 1.0)
+    how += fmt::format("{}in {:.0f} % of their tiles", how.empty() ? "" : ", and ",
+                       100.0 * reading.share);
+  return fmt::format(
+      "photos of camera {} are compared {}: {:.2g} million pixels of the body a "
+      "photo (--set fit.pixels=0 takes all)",
+      camera, how, reading.body_px / 1e6);
+}
+
+}  // namespace hookeye

@@ -1,0 +1,45 @@
+// How much of a photo a fit looks at. Photos of many megapixels tell the same thing many times
+// over: cost is to follow what they tell.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "capture_io/capture.h"
+#include "estimation/model/limits.h"
+#include "meshing/surface_mesh.h"
+
+namespace hookeye {
+
+/// How the photos of one camera are read.
+struct PhotoReading {
+  int halvings = 0;    ///< each takes the mean of two by two pixels
+  double share = 1.0;  ///< of the tiles (kTile) of a photo that count, drawn at random
+  double kept = 1.0;   ///< of what its photos tell of motion (Fisher information), by the halvings
+  double body_px = 0;  ///< pixels of the body at rest that count in a photo then
+  bool whole() const { return halvings == 0 && share == 1.0; }
+};
+
+/// By camera; those whose photos are read as they are have none.
+using PhotoReadings = std::map<std::string, PhotoReading>;
+
+constexpr int kTile = 64;  ///< side of a tile [px of the read photo]
+
+/// Such that the body has at most limits.pixels pixels that count. First by halving, as long as
+/// limits.pixels_keep of the information stays; then by tiles. `photo`: one of the camera's.
+PhotoReading reading_of(const Photo& photo, const Camera& camera, const SurfaceMesh& surface,
+                        const FitLimits& limits);
+
+/// Information of a motion along either axis that a plane has after so many halvings, per square
+/// pixel of the whole photo: sums of squared slope over variance, less what noise adds to the
+/// slope.
+double told_of_motion(const Photo& photo, int plane, int halvings);
+
+Camera as_read(const Camera& camera, const PhotoReading& reading);
+/// `name`: the draw of tiles, another for each photo.
+Photo as_read(Photo photo, const PhotoReading& reading, const std::string& name);
+
+/// "photos of camera left are read at 1/2 of their width ..."
+std::string described(const std::string& camera, const PhotoReading& reading);
+
+}  // namespace hookeye

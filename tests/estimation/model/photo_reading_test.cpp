@@ -1,0 +1,152 @@
+// Photos of many pixels: halved as long as that keeps what they tell, then in part of their tiles.
+#include "estimation/model/photo_reading.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "estimation/evaluation/evaluation.h"
+#include "tests/estimation/small_capture.h"
+
+namespace hookeye::test {
+namespace {
+
+/// Speckle of so many pixels from bright to bright, with noise.
+Photo speckled(double period) {
+  constexpr int kWide = 128;
+  constexpr float kNoise = 0.01f;
+  Photo photo;
+  Image I{kWide, kWide, 1, std::vector<float>(size_t(kWide) * kWide)};
+  std::mt19937 engine(3);
+  std::normal_distribution<float> noise(0.0f, kNoise);
+  for (int y = 0; y < kWide; ++y)
+    for (int x = 0; x < kWide; ++x)
+      I.at(x, y) = static_cast<float>(0.4 + 0.2 * std::sin(2 * M_PI * x / period) *
+                                                std::cos(2 * M_PI * y / period)) +
+                   noise(engine);
+  photo.valid = std::vector<unsigned char>(I.pixels(), 1);
+  photo.sigma = {Image{kWide, kWide, 1, std::vector<float>(I.pixels(), kNoise)}};
+  photo.planes = {I};
+  return photo;
+}
+
+double kept(const Photo& photo, int halvings) {
+  return told_of_motion(photo, 0, halvings) / told_of_motion(photo, 0, 0);
+}
+
+TEST(PhotoReading, HalvingKeepsWhatCoarseSpeckleTellsAndNotWhatFineDoes) {
+  // The mean of two pixels leaves cos(pi/period) of a pattern's amplitude, along both axes.
+  const Photo coarse = speckled(16.0), fine = speckled(5.0);
+  EXPECT_NEAR(kept(coarse, 1), std::pow(std::cos(M_PI / 16.0), 4), 0.03);
+  EXPECT_LT(kept(fine, 1), std::pow(std::cos(M_PI / 5.0), 4) + 0.05);
+  EXPECT_LT(kept(fine, 2), 0.1);
+}
+
+TEST(PhotoReading, NoiseTellsNothing) {
+  Photo blank = speckled(16.0);
+  std::mt19937 engine(4);
+  std::normal_distribution<float> noise(0.4f, 0.01f);
+  for (float& value : blank.planes[0].own().values) value = noise(engine);
+  EXPECT_LT(told_of_motion(blank, 0, 0), 0.02 * told_of_motion(speckled(16.0), 0, 0));
+}
+
+/// Two cameras of 400 x 520 px.
+const SmallScene& large_photos() {
+  static const SmallScene scene({.recipe = R"(hookeye_recipe: 1
+seed: 5
+title: large photos
+body:
+  shape: block
+  size: [20, 16, 34]
+  bumps: 0.05
+  facet: 7
+  mesh: {edge: 8}
+  density: 1.07e-9
+  texture: {texel: 0.12, speckle: 1.4}
+material:
+  law: neo-hookean
+  true: {mu: 0.02, kappa_over_mu: 10}
+  told: {mu: 0.017}
+  fit: [mu]
+cameras: {count: 2, size: [400, 520], distance: 6, focal: 1900}
+examples:
+  rest: {}
+  pull: {force: [0, 0, 0.3]}
+  poke: {use: validate, force: [-0.008, 0.01, 0.12]}
+truth: {edge_factor: 1, rays_per_axis: 3, visibility_rays: 64}
+)"});
+  return scene;
+}
+
+std::shared_ptr<const Scene> read_with(double pixels, double keep) {
+  Limits limits;
+  limits.fit.pixels = pixels;
+  limits.fit.pixels_keep = keep;
+  return load_scene(read_capture(large_photos().scene->capture.file), true, limits);
+}
+
+struct Found {
+  double mu, half_width, chi;
+};
+
+Found fitted(std::shared_ptr<const Scene> scene) {
+  Workspace workspace(scene);
+  const Fitted fit = base_fit(workspace);
+  return {value_of(fit, "mu"), (fit.high[0] - fit.low[0]) / 2, fit.evaluation.chi(false)};
+}
+
+TEST(PhotoReading, SmallPhotosAreReadWhole) {
+  EXPECT_TRUE(large_photos().scene->readings.empty());
+  EXPECT_TRUE(read_with(0.0, 0.5)->readings.empty());
+}
+
+TEST(PhotoReading, HalvedPhotosGiveTheSameModelAndFitItAsWell) {
+  const auto scene = read_with(2e4, 0.3);
+  ASSERT_EQ(scene->readings.size(), 2u);
+  for (const auto& [camera, reading] : scene->readings) {
+    EXPECT_GE(reading.halvings, 1);
+    EXPECT_EQ(reading.share, 1.0);
+    EXPECT_EQ(scene->capture.camera(camera).width, 400 >> reading.halvings);
+    EXPECT_EQ(scene->photos[0][0].planes[0]->width, 400 >> reading.halvings);
+  }
+  const Found whole = fitted(large_photos().scene), halved = fitted(scene);
+  EXPECT_NEAR(whole.chi, 1.0, 0.05);
+  // The filter of a halved pixel is that of its four, to the fourth order.
+  EXPECT_NEAR(halved.chi, 1.0, 0.1);
+  EXPECT_NEAR(halved.mu, whole.mu, 1.5 * halved.half_width);
+  EXPECT_LT(halved.half_width, 2.5 * whole.half_width);
+}
+
+TEST(PhotoReading, TilesAreDrawnBesideTheSameModel) {
+  const auto scene = read_with(2e4, 1.0);
+  for (const auto& [camera, reading] : scene->readings) {
+    EXPECT_EQ(reading.halvings, 0);
+    EXPECT_LT(reading.share, 0.7);
+    const auto& valid = *scene->photos[0][0].valid;
+    const double share = std::accumulate(valid.begin(), valid.end(), 0.0) / double(valid.size());
+    EXPECT_NEAR(share, reading.share, 0.25);  // 56 tiles
+  }
+  const Found whole = fitted(large_photos().scene), part = fitted(scene);
+  EXPECT_NEAR(part.chi, whole.chi, 0.05);
+  EXPECT_NEAR(part.mu, whole.mu, 1.5 * part.half_width);
+  EXPECT_GT(part.half_width, whole.half_width);
+}
+
+TEST(PhotoReading, TheDrawIsThePhotosOwn) {
+  const auto scene = read_with(2e4, 1.0);
+  Limits limits;
+  limits.fit.pixels = 2e4;
+  limits.fit.pixels_keep = 1.0;
+  Capture turned = read_capture(large_photos().scene->capture.file);
+  std::reverse(turned.examples.begin(), turned.examples.end());
+  std::reverse(turned.cameras.begin(), turned.cameras.end());
+  const auto other = load_scene(turned, true, limits);
+  EXPECT_EQ(*scene->photos[0][0].valid, *other->photos[turned.examples.size() - 1][0].valid);
+  EXPECT_NE(*scene->photos[0][0].valid, *scene->photos[1][0].valid);
+}
+
+}  // namespace
+}  // namespace hookeye::test
