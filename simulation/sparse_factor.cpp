@@ -2,10 +2,10 @@
 //
 // The order is METIS's nested dissection of the graph of nodes, expanded to unknowns: the same fill
 // as on the unknowns' graph at half the time, and 2-3 times less work than AMD at 30,000 unknowns.
-// Factors have CHOLMOD's long indices: from some 500,000 unknowns on they have more than 2^31
-// values. K and the graph of nodes have less than that, and METIS's own indices are short.
-// CHOLMOD's supernodal loop opens OpenMP threads that fight over the cores, so it runs with OpenMP
-// regions inactive and BLAS at one thread; the cores are used one example each.
+// Factors have CHOLMOD's long indices: 32 bits end at 2^31 values, and a block of 1.5 million
+// unknowns has some 4e9. K and the graph of nodes have less than that, and METIS's own indices are
+// short. CHOLMOD's supernodal loop opens OpenMP threads that fight over the cores, so it runs with
+// OpenMP regions inactive and BLAS at one thread; the cores are used one example each.
 #include "simulation/sparse_factor.h"
 
 #include <cholmod.h>
