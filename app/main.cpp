@@ -15,6 +15,7 @@
 #include "app/progress.h"
 #include "app/validators.h"
 #include "core/input_error.h"
+#include "core/memory_left.h"
 #include "core/scope.h"
 #include "estimation/evaluation/evaluation.h"
 #include "runs/failed.h"
@@ -72,8 +73,9 @@ int report(const Session& session, Exit status, const std::string& kind, const s
 int report_failure(const Session& session, const NumericalFailure& failure) {
   const std::string where =
       failure.example.empty() ? "" : fmt::format("example {}: ", failure.example);
-  return report(session, kNumericalFailure, "numbers failed",
-                failure.load_fraction < 1.0
+  const bool no_memory = out_of_memory(failure.reason);
+  return report(session, kNumericalFailure, no_memory ? "out of memory" : "numbers failed",
+                failure.load_fraction < 1.0 && !no_memory
                     ? fmt::format("{}{}\n  reached {:.4g} of the load", where, failure.reason,
                                   failure.load_fraction)
                     : where + failure.reason,
@@ -113,11 +115,13 @@ int run(const CommandBody& body, Session& session) {
     const InputError told({error.path1().string()}, error.code().message(),
                           "a place that is there and open to you, on a disk with room");
     return report_input(session, told);
-  } catch (const std::bad_alloc&) {
+  } catch (const std::bad_alloc& error) {
     const std::string context = Scope::take_context();
+    const auto* told = dynamic_cast<const OutOfMemory*>(&error);
     return report(session, kNumericalFailure, "out of memory",
-                  fmt::format("out of memory{}{}\n  a coarser mesh (`edge`), fewer or smaller "
+                  fmt::format("out of memory{}{}{}{}\n  a coarser mesh (`edge`), fewer or smaller "
                               "photos, or a machine with more memory",
+                              told ? ": " : "", told ? told->what() : "",
                               context.empty() ? "" : " while working on: ", context));
   } catch (const std::exception& error) {
     const std::string context = Scope::take_context();
@@ -208,7 +212,14 @@ int main(int argc, char** argv) {
   hookeye::keep_freed_memory();
   hookeye::remember_invocation(argc, argv);
   try {
-    return hookeye::run_program(argc, argv);
+    const int status = hookeye::run_program(argc, argv);
+    if (status == hookeye::kNumericalFailure) {
+      // Where memory was out a thread of OpenBLAS asks for its own for ever, and exit() waits for
+      // it.
+      std::fflush(nullptr);
+      std::_Exit(status);
+    }
+    return status;
   } catch (const std::exception& error) {
     fmt::print(stderr, "internal error: {}\n", hookeye::printable(error.what()));
     return 1;

@@ -43,7 +43,7 @@ void newton_iteration(benchmark::State& state) {
   std::vector<int> free;
   for (int a = 0; a < mesh->nodes(); ++a)
     for (int i = 0; i < 3 && mesh->X(2, a) > 1e-6; ++i) free.push_back(3 * a + i);
-  SparseMatrix K = assembly.pattern();
+  SparseMatrix K = assembly.zero_tangent();
   assembly.set_tangent(energy, q, false, K);
   TangentFactor factor(std::make_shared<SymbolicFactor>(K, free));
   const VectorXd b = VectorXd::Ones(static_cast<Eigen::Index>(free.size()));

@@ -8,6 +8,7 @@
 
 #include "core/input_error.h"
 #include "core/interrupted.h"
+#include "core/memory_left.h"
 #include "core/scope.h"
 #include "python/work.h"
 #include "runs/failed.h"
@@ -48,7 +49,10 @@ void translate(std::exception_ptr thrown) {
   } catch (const InputError& error) {
     raise_input(error.what(), error.place(), error.wrong(), error.right());
   } catch (const Failed& failed) {
-    raise_failure(failed.failure);
+    if (out_of_memory(failed.failure.reason))
+      PyErr_SetString(PyExc_MemoryError, failed.failure.reason.c_str());
+    else
+      raise_failure(failed.failure);
   } catch (const Stopped&) {
     raise(error_class("Cancelled")("stopped: `cancel` was set"));
   } catch (const Interrupted&) {  // a helper program had Ctrl-C

@@ -1,8 +1,13 @@
 #include "simulation/assembly.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <limits>
+#include <utility>
 
+#include "core/input_error.h"
+#include "core/memory_left.h"
 #include "simulation/quadrature.h"
 
 namespace hookeye {
@@ -125,7 +130,7 @@ struct Assembly::Kernel {
     for (int b = 0; b < N; ++b)
       for (int i = 0; i < N; ++i) {
         double* v = values + block[i + N * b];
-        const int stride = a.stride_[a.nodes_(b, e)];
+        const int stride = a.column_size(a.nodes_(b, e));
         for (int c = 0; c < 3; ++c)
           for (int r = 0; r < 3; ++r)  // lower triangle of blocks holds K, the upper its mirror
             v[c * stride + r] += i >= b ? K(3 * i + r, 3 * b + c) : K(3 * b + c, 3 * i + r);
@@ -160,7 +165,9 @@ Assembly::Assembly(const TetMesh& mesh)
   const TetRule& rule = stiffness_rule(mesh.order);
   points_ = static_cast<int>(rule.points.size());
   corners_ = mesh.order == 1 ? 0 : 4;
-  gradients_.resize(static_cast<size_t>(elements()) * (points_ + corners_) * npe_ * 3);
+  const size_t gradients = static_cast<size_t>(elements()) * (points_ + corners_) * npe_ * 3;
+  demand_memory(static_cast<double>(gradients) * sizeof(double));
+  gradients_.resize(gradients);
   volume_.resize(static_cast<size_t>(elements()) * points_);
   dispatch([&]<int N>(Kernel<N>) {
     using Gradients = Eigen::Matrix<double, N, 3>;
@@ -250,50 +257,70 @@ MatrixXd Assembly::all_dR_dtheta(const EnergyModel& model, const VectorXd& q, in
   return R;
 }
 
-void Assembly::build_pattern() {
-  std::vector<std::vector<int>> near(n_);
+void Assembly::find_neighbours() {
+  std::vector<int> first(n_ + 1, 0), around(static_cast<size_t>(nodes_.size()));  // elements
+  for (const int a : nodes_.reshaped()) ++first[a + 1];
+  for (int a = 0; a < n_; ++a) first[a + 1] += first[a];
+  std::vector<int> next(first.begin(), first.end() - 1), seen(n_, -1);
   for (int e = 0; e < elements(); ++e)
-    for (int b = 0; b < npe_; ++b)
-      for (int i = 0; i < npe_; ++i) near[nodes_(b, e)].push_back(nodes_(i, e));
-  size_t blocks = 0;
-  stride_.resize(n_);
+    for (const int a : nodes_.col(e)) around[next[a]++] = e;
+  first_near_.assign(1, 0);
+  first_near_.reserve(n_ + 1);
   for (int a = 0; a < n_; ++a) {
-    std::sort(near[a].begin(), near[a].end());
-    near[a].erase(std::unique(near[a].begin(), near[a].end()), near[a].end());
-    stride_[a] = 3 * static_cast<int>(near[a].size());
-    blocks += near[a].size();
+    for (int k = first[a]; k < first[a + 1]; ++k)
+      for (const int b : nodes_.col(around[k]))
+        if (std::exchange(seen[b], a) != a) near_.push_back(b);
+    std::sort(near_.begin() + first_near_.back(), near_.end());
+    if (near_.size() > std::numeric_limits<int>::max() / 9)
+      throw InputError({},
+                       fmt::format("{} unknowns: their tangent has more than 2^31 values", 3 * n_),
+                       "a coarser mesh (`edge`)");
+    first_near_.push_back(static_cast<int>(near_.size()));
   }
-  pattern_.resize(3 * n_, 3 * n_);
-  pattern_.resizeNonZeros(static_cast<Eigen::Index>(9 * blocks));
-  int next = 0, column = 0;
-  for (int a = 0; a < n_; ++a)
-    for (int c = 0; c < 3; ++c) {
-      pattern_.outerIndexPtr()[column++] = next;
-      for (int b : near[a])
-        for (int r = 0; r < 3; ++r) pattern_.innerIndexPtr()[next++] = 3 * b + r;
-    }
-  pattern_.outerIndexPtr()[column] = next;
-  std::fill_n(pattern_.valuePtr(), next, 0.0);
+}
+
+void Assembly::find_pattern() {
+  if (!first_near_.empty()) return;
+  demand_memory(static_cast<double>(nodes_.size()) * npe_ * 2 * sizeof(int));
+  find_neighbours();
   block_.resize(static_cast<size_t>(elements()) * npe_ * npe_);
   for (int e = 0; e < elements(); ++e)
     for (int b = 0; b < npe_; ++b) {
       const int node = nodes_(b, e);
-      for (int i = 0; i < npe_; ++i) {
-        const auto at = std::lower_bound(near[node].begin(), near[node].end(), nodes_(i, e));
+      const auto begin = near_.begin() + first_near_[node];
+      const auto end = near_.begin() + first_near_[node + 1];
+      for (int i = 0; i < npe_; ++i)
         block_[(static_cast<size_t>(e) * npe_ + b) * npe_ + i] =
-            pattern_.outerIndexPtr()[3 * node] + 3 * static_cast<int>(at - near[node].begin());
-      }
+            9 * first_near_[node] +
+            3 * static_cast<int>(std::lower_bound(begin, end, nodes_(i, e)) - begin);
     }
 }
 
-const SparseMatrix& Assembly::pattern() {
-  if (pattern_.cols() == 0) build_pattern();
-  return pattern_;
+SparseMatrix Assembly::zero_tangent() {
+  find_pattern();
+  const auto values = 9 * static_cast<Eigen::Index>(near_.size());
+  demand_memory(static_cast<double>(values) * (sizeof(double) + sizeof(int)));
+  SparseMatrix K(3 * n_, 3 * n_);
+  K.resizeNonZeros(values);
+  int next = 0, column = 0;
+  for (int a = 0; a < n_; ++a)
+    for (int c = 0; c < 3; ++c) {
+      K.outerIndexPtr()[column++] = next;
+      for (int k = first_near_[a]; k < first_near_[a + 1]; ++k)
+        for (int r = 0; r < 3; ++r) K.innerIndexPtr()[next++] = 3 * near_[k] + r;
+    }
+  K.outerIndexPtr()[column] = next;
+  std::fill_n(K.valuePtr(), next, 0.0);
+  return K;
 }
 
 void Assembly::set_tangent(const EnergyModel& model, const VectorXd& q, bool projected,
                            SparseMatrix& K) {
-  if (K.nonZeros() != pattern().nonZeros() || K.cols() != pattern_.cols()) K = pattern_;
+  find_pattern();
+  if (K.nonZeros() != 9 * static_cast<Eigen::Index>(near_.size()) || K.cols() != 3 * n_) {
+    K = {};  // before there is another
+    K = zero_tangent();
+  }
   std::fill_n(K.valuePtr(), K.nonZeros(), 0.0);
   dispatch([&](auto kernel) {
     kernel.tangent(model, q, projected, K.valuePtr());

@@ -8,7 +8,8 @@ namespace hookeye {
 using Eigen::MatrixXd;
 
 /// Shape gradients of one mesh at its quadrature points and corners, and the sparsity pattern of
-/// its tangent. Costs about one assembly; keep it. Holds no reference to the mesh.
+/// its tangent. Costs about one assembly; keep it. Holds no reference to the mesh. Throws
+/// OutOfMemory.
 class Assembly {
  public:
   explicit Assembly(const TetMesh& mesh);
@@ -20,9 +21,10 @@ class Assembly {
   /// All parameters of the part's term in one pass: 3n x size.
   MatrixXd all_dR_dtheta(const EnergyModel& model, const VectorXd& q, int part) const;
 
-  /// Empty matrix with the pattern: full 3x3 blocks of all node pairs that share an element.
-  /// Computed at the first call.
-  const SparseMatrix& pattern();
+  /// Zeros with the pattern of the tangent: full 3x3 blocks of all node pairs that share an
+  /// element. That is looked for at the first call.
+  SparseMatrix zero_tangent();
+  void find_pattern();
   /// Writes the elastic tangent into K, which has the pattern. `projected`: each quadrature
   /// point's dP/dF is made positive semidefinite first (Teran et al. 2005), |eigenvalues|.
   void set_tangent(const EnergyModel& model, const VectorXd& q, bool projected, SparseMatrix& K);
@@ -41,15 +43,17 @@ class Assembly {
   struct Kernel;
   template <class Function>
   auto dispatch(Function&& f) const;
-  void build_pattern();
+  void find_neighbours();
+  /// Nonzeros of one column of a node.
+  int column_size(int node) const { return 3 * (first_near_[node + 1] - first_near_[node]); }
 
   int npe_, points_, corners_, n_;
   Eigen::MatrixXi nodes_;          ///< npe x m
   std::vector<double> gradients_;  ///< dN/dX, npe x 3 column-major; points_ then corners_ a piece
   std::vector<double> volume_;     ///< weight * rest volume, per element and point
-  SparseMatrix pattern_;
-  std::vector<int> block_;   ///< per element, a + npe b: first value of block (a, b)
-  std::vector<int> stride_;  ///< per node: nonzeros of one of its columns
+  /// Nodes that share an element with each, itself among them, ascending: a ninth of the pattern.
+  std::vector<int> first_near_, near_;
+  std::vector<int> block_;  ///< per element, a + npe b: first value of block (a, b)
 };
 
 }  // namespace hookeye

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/work_clock.h"
+#include "simulation/no_memory.h"
 #include "simulation/of_mesh.h"
 #include "simulation/rigid_modes.h"
 
@@ -35,6 +36,10 @@ struct EquilibriumSolver::Impl {
                       double& reached);
   std::variant<Equilibrium, NumericalFailure> finish(const Problem& problem, bool factored,
                                                      VectorXd x);
+  std::variant<Equilibrium, NumericalFailure> solve(const Problem& problem,
+                                                    const EquilibriumOptions& options,
+                                                    const VectorXd* start);
+  void forget();
 };
 
 namespace {
@@ -251,59 +256,70 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(cons
   return e;
 }
 
+std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::solve(
+    const Problem& problem, const EquilibriumOptions& options, const VectorXd* start) {
+  std::string fault;
+  const std::vector<int> pins = pins_of(problem, rest, fault);
+  if (!fault.empty()) return NumericalFailure{problem.loading.name, 0.0, fault};
+  std::vector<int> free = problem.free_unknowns();
+  std::erase_if(free, [&](int u) { return std::binary_search(pins.begin(), pins.end(), u); });
+  if (free != state.free) {
+    state.free = std::move(free);
+    state.symbolic.reset();
+    state.factor.reset();
+  }
+  state.iterations = state.factorizations = 0;
+  VectorXd x = q.size() ? q : start ? *start : rest;
+  if (!q.size() && start && options.expected &&
+      out_of_balance(problem, *options.expected) < out_of_balance(problem, x))
+    x = *options.expected;
+  if (q.size() && warm(problem, options, x)) return finish(problem, options.factored, std::move(x));
+
+  NumericalFailure failure{problem.loading.name, 0.0, ""};
+  EquilibriumOptions own = options;
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    double reached = 0;
+    const bool from_rest = attempt == 1 || (!q.size() && !start);
+    if (from_rest) x = rest;
+    const int before = state.iterations;
+    const NewtonOutcome out = climb(problem, own, x, reached);
+    if (out.converged) return finish(problem, options.factored, std::move(x));
+    failure.load_fraction = reached;
+    failure.reason = out.reason;
+    if (from_rest || out.reason == "cancelled") break;
+    // What the way from elsewhere took is not taken from the one that has always been there.
+    if (own.most_iterations < std::numeric_limits<int>::max() - state.iterations)
+      own.most_iterations += state.iterations - before;
+    if (state.iterations >= own.most_iterations) break;
+  }
+  return failure;
+}
+
+void EquilibriumSolver::Impl::forget() {
+  q.resize(0);
+  state.factor.reset();
+}
+
 EquilibriumSolver::EquilibriumSolver(std::shared_ptr<const TetMesh> mesh)
     : impl_(std::make_unique<Impl>(std::move(mesh))) {}
 EquilibriumSolver::~EquilibriumSolver() = default;
 EquilibriumSolver::EquilibriumSolver(EquilibriumSolver&&) noexcept = default;
 EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = default;
 
-void EquilibriumSolver::forget() {
-  impl_->q.resize(0);
-  impl_->state.factor.reset();
-}
+void EquilibriumSolver::forget() { impl_->forget(); }
 
 std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
     const EnergyModel& energy, const Loading& loading, const EquilibriumOptions& options,
     const VectorXd* start) {
   const Working part(WorkPart::equilibria);
-  Impl& s = *impl_;
-  const Problem problem{*s.mesh, s.assembly, energy, loading};
-  std::string fault;
-  const std::vector<int> pins = pins_of(problem, s.rest, fault);
-  if (!fault.empty()) return NumericalFailure{loading.name, 0.0, fault};
-  std::vector<int> free = problem.free_unknowns();
-  std::erase_if(free, [&](int u) { return std::binary_search(pins.begin(), pins.end(), u); });
-  if (free != s.state.free) {
-    s.state.free = std::move(free);
-    s.state.symbolic.reset();
-    s.state.factor.reset();
+  const Problem problem{*impl_->mesh, impl_->assembly, energy, loading};
+  try {
+    return impl_->solve(problem, options, start);
+  } catch (const std::bad_alloc& error) {
+    impl_->forget();
+    impl_->state.K = {};
+    return no_memory(*impl_->mesh, loading, error, impl_->state.symbolic.get());
   }
-  s.state.iterations = s.state.factorizations = 0;
-  VectorXd x = s.q.size() ? s.q : start ? *start : s.rest;
-  if (!s.q.size() && start && options.expected &&
-      s.out_of_balance(problem, *options.expected) < s.out_of_balance(problem, x))
-    x = *options.expected;
-  if (s.q.size() && s.warm(problem, options, x))
-    return s.finish(problem, options.factored, std::move(x));
-
-  NumericalFailure failure{loading.name, 0.0, ""};
-  EquilibriumOptions own = options;
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    double reached = 0;
-    const bool from_rest = attempt == 1 || (!s.q.size() && !start);
-    if (from_rest) x = s.rest;
-    const int before = s.state.iterations;
-    const NewtonOutcome out = s.climb(problem, own, x, reached);
-    if (out.converged) return s.finish(problem, options.factored, std::move(x));
-    failure.load_fraction = reached;
-    failure.reason = out.reason;
-    if (from_rest || out.reason == "cancelled") break;
-    // What the way from elsewhere took is not taken from the one that has always been there.
-    if (own.most_iterations < std::numeric_limits<int>::max() - s.state.iterations)
-      own.most_iterations += s.state.iterations - before;
-    if (s.state.iterations >= own.most_iterations) break;
-  }
-  return failure;
 }
 
 std::variant<Equilibrium, NumericalFailure> solve_equilibrium(const TetMesh& mesh,

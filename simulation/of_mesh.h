@@ -13,7 +13,7 @@ struct OfMesh {
   Assembly assembly;
   std::shared_ptr<SymbolicFactors> symbolic = std::make_shared<SymbolicFactors>();
   /// With its pattern built, so that nothing changes it any more.
-  explicit OfMesh(const TetMesh& mesh) : assembly(mesh) { assembly.pattern(); }
+  explicit OfMesh(const TetMesh& mesh) : assembly(mesh) { assembly.find_pattern(); }
 };
 
 /// The one that another solver of this mesh has, else a new one. A mesh that its pointer does not

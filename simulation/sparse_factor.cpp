@@ -2,8 +2,10 @@
 //
 // The order is METIS's nested dissection of the graph of nodes, expanded to unknowns: the same fill
 // as on the unknowns' graph at half the time, and 2-3 times less work than AMD at 30,000 unknowns.
-// CHOLMOD's supernodal loop opens OpenMP threads that fight over the cores, so it runs with OpenMP
-// regions inactive and BLAS at one thread; the cores are used one example each.
+// Factors have CHOLMOD's long indices: 32 bits end at 2^31 values, and a block of 1.5 million
+// unknowns has some 4e9. K and the graph of nodes have less than that, and METIS's own indices are
+// short. CHOLMOD's supernodal loop opens OpenMP threads that fight over the cores, so it runs with
+// OpenMP regions inactive and BLAS at one thread; the cores are used one example each.
 #include "simulation/sparse_factor.h"
 
 #include <cholmod.h>
@@ -11,14 +13,19 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
 #include <stdexcept>
+
+#include "core/memory_left.h"
 
 // Weak: another BLAS may stand in for OpenBLAS.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace hookeye {
 namespace {
+
+using Long = SuiteSparse_long;
 
 /// Makes OpenMP regions run on the calling thread while it lives.
 class SerialOpenMp {
@@ -35,7 +42,7 @@ class SerialOpenMp {
 
 struct Common {
   Common() {
-    cholmod_start(&c);
+    cholmod_l_start(&c);
     c.nmethods = 1;
     c.method[0].ordering = CHOLMOD_GIVEN;
     c.postorder = 1;
@@ -43,12 +50,14 @@ struct Common {
     c.final_ll = 1;
     c.print = 0;
   }
-  ~Common() { cholmod_finish(&c); }
+  ~Common() { cholmod_l_finish(&c); }
   Common(const Common&) = delete;
   Common& operator=(const Common&) = delete;
-  /// After a call: it may have failed for want of room, which is no fault of the matrix.
-  void demand_room() const {
-    if (c.status == CHOLMOD_OUT_OF_MEMORY || c.status == CHOLMOD_TOO_LARGE) throw std::bad_alloc();
+  /// After a call that took `bytes`: it may have failed for want of room, which is no fault of the
+  /// matrix.
+  void demand_room(double bytes) const {
+    if (c.status == CHOLMOD_OUT_OF_MEMORY || c.status == CHOLMOD_TOO_LARGE)
+      throw OutOfMemory(bytes, memory_left());
   }
   cholmod_common c;
 };
@@ -67,8 +76,8 @@ int dissect_graph(idx_t n, std::vector<idx_t>& start, std::vector<idx_t>& near, 
 }
 
 /// Nested dissection of the nodes that have free unknowns; order[k] = index in `free`.
-std::vector<int> dissect(const SparseMatrix& K, const std::vector<int>& free,
-                         const std::vector<int>& index) {
+std::vector<Long> dissect(const SparseMatrix& K, const std::vector<int>& free,
+                          const std::vector<int>& index) {
   std::vector<int> nodes, compact(K.cols() / 3, -1);
   for (int u : free)
     if (nodes.empty() || nodes.back() != u / 3) {
@@ -100,7 +109,7 @@ std::vector<int> dissect(const SparseMatrix& K, const std::vector<int>& free,
   } else if (dissect_graph(n, start, near, permutation.data(), inverse.data()) != METIS_OK) {
     throw std::runtime_error("METIS_NodeND failed on the node graph");
   }
-  std::vector<int> order;
+  std::vector<Long> order;
   order.reserve(free.size());
   for (idx_t k = 0; k < n; ++k)
     for (int c = 0; c < 3; ++c)
@@ -112,29 +121,64 @@ std::vector<int> dissect(const SparseMatrix& K, const std::vector<int>& free,
 
 struct SymbolicFactor::Impl {
   Common common;
-  std::vector<int> free, index;             ///< unknown of a free one and back (-1: prescribed)
-  std::vector<int> lower_start, lower_row;  ///< K_ff, lower triangle by columns
-  std::vector<int> gather;                  ///< value of K for each value of the lower triangle
+  std::vector<int> free, index;  ///< unknown of a free one and back (-1: prescribed)
+  std::vector<Long> start, row;  ///< K_ff, upper triangle by columns: CHOLMOD permutes it at once
+  std::vector<int> gather;       ///< value of K for each value of the upper triangle
   Eigen::Index nonzeros = 0, columns = 0;
   size_t fingerprint = 0;
   cholmod_factor* factor = nullptr;
-  ~Impl() { cholmod_free_factor(&factor, &common.c); }
+  ~Impl() { cholmod_l_free_factor(&factor, &common.c); }
+
+  void take_pattern(const SparseMatrix& K);
+  /// Of the upper triangle, from K's lower one: where both halves differ in the last digit it
+  /// counts.
+  std::vector<double> values_of(const SparseMatrix& K, double shift) const;
 
   cholmod_sparse view(double* values) {
     cholmod_sparse A{};
     A.nrow = A.ncol = free.size();
-    A.nzmax = lower_row.size();
-    A.p = lower_start.data();
-    A.i = lower_row.data();
+    A.nzmax = row.size();
+    A.p = start.data();
+    A.i = row.data();
     A.x = values;
-    A.stype = -1;
-    A.itype = CHOLMOD_INT;
+    A.stype = 1;
+    A.itype = CHOLMOD_LONG;
     A.xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN;
     A.dtype = CHOLMOD_DOUBLE;
     A.sorted = A.packed = 1;
     return A;
   }
 };
+
+void SymbolicFactor::Impl::take_pattern(const SparseMatrix& K) {
+  const auto each_below = [&](auto&& told) {  // what lies on and below the diagonal, by columns
+    for (int u : free)
+      for (int k = K.outerIndexPtr()[u]; k < K.outerIndexPtr()[u + 1]; ++k)
+        if (const int below = index[K.innerIndexPtr()[k]]; below >= index[u])
+          told(below, index[u], k);
+  };
+  start.assign(free.size() + 1, 0);
+  each_below([&](int below, int, int) { ++start[below + 1]; });
+  for (size_t u = 0; u < free.size(); ++u) start[u + 1] += start[u];
+  // Each value, its inner indices, and the permuted copies that the analysis makes of these.
+  demand_memory(static_cast<double>(start.back()) * (sizeof(int) + 3 * sizeof(Long)));
+  row.resize(start.back());
+  gather.resize(start.back());
+  std::vector<Long> next(start.begin(), start.end() - 1);
+  each_below([&](int below, int column, int k) {  // rows of a column come in order
+    const Long at = next[below]++;
+    row[at] = column;
+    gather[at] = k;
+  });
+}
+
+std::vector<double> SymbolicFactor::Impl::values_of(const SparseMatrix& K, double shift) const {
+  std::vector<double> values(gather.size());
+  for (size_t i = 0; i < gather.size(); ++i) values[i] = K.valuePtr()[gather[i]];
+  if (shift != 0)  // columns end with their diagonal
+    for (size_t u = 0; u < free.size(); ++u) values[start[u + 1] - 1] += shift;
+  return values;
+}
 
 /// FNV-1a over the row indices: tells patterns of the same size apart.
 static size_t fingerprint_of(const SparseMatrix& K) {
@@ -153,21 +197,12 @@ SymbolicFactor::SymbolicFactor(const SparseMatrix& K, std::vector<int> free)
   s.fingerprint = fingerprint_of(K);
   s.index.assign(K.cols(), -1);
   for (size_t i = 0; i < s.free.size(); ++i) s.index[s.free[i]] = static_cast<int>(i);
-  s.lower_start.push_back(0);
-  for (int u : s.free) {
-    for (int k = K.outerIndexPtr()[u]; k < K.outerIndexPtr()[u + 1]; ++k) {
-      const int row = s.index[K.innerIndexPtr()[k]];
-      if (row < s.index[u]) continue;
-      s.lower_row.push_back(row);
-      s.gather.push_back(k);
-    }
-    s.lower_start.push_back(static_cast<int>(s.lower_row.size()));
-  }
-  std::vector<int> order = dissect(K, s.free, s.index);
+  s.take_pattern(K);
+  std::vector<Long> order = dissect(K, s.free, s.index);
   const SerialOpenMp serial;
   cholmod_sparse A = s.view(nullptr);
-  s.factor = cholmod_analyze_p(&A, order.data(), nullptr, 0, &s.common.c);
-  s.common.demand_room();
+  s.factor = cholmod_l_analyze_p(&A, order.data(), nullptr, 0, &s.common.c);
+  s.common.demand_room(static_cast<double>(2 * sizeof(Long) * s.row.size()));
   if (!s.factor) throw std::runtime_error("CHOLMOD cannot analyse the tangent");
 }
 
@@ -178,18 +213,46 @@ bool SymbolicFactor::fits(const SparseMatrix& K, const std::vector<int>& free) c
          fingerprint_of(K) == impl_->fingerprint;
 }
 
+FactorMemory SymbolicFactor::memory() const {
+  const Impl& s = *impl_;
+  const cholmod_factor& L = *s.factor;
+  const double n = static_cast<double>(s.free.size()), values = static_cast<double>(s.row.size());
+  FactorMemory out;
+  out.factor = sizeof(double) * static_cast<double>(L.xsize) +
+               sizeof(Long) * (static_cast<double>(L.ssize + 3 * L.nsuper) + 2 * n);
+  // The values of K_ff, their permuted copy with its indices, the largest update of a supernode,
+  // and what a solve has of vectors.
+  out.beside = (2 * sizeof(double) + sizeof(Long)) * values +
+               sizeof(double) * static_cast<double>(L.maxcsize) + 8 * sizeof(Long) * n;
+  return out;
+}
+
+namespace {
+std::atomic<int64_t> bytes_of_factors = 0;
+}
+
+double memory_of_factors() { return static_cast<double>(bytes_of_factors); }
+
 struct TangentFactor::Impl {
   Common common;
   cholmod_factor* factor = nullptr;
   cholmod_dense *X = nullptr, *Y = nullptr, *E = nullptr;  ///< workspaces of solve2
-  std::vector<double> values;
   bool positive = false;
-  void drop() { cholmod_free_factor(&factor, &common.c); }
+  int64_t counted = 0;  ///< of this factor, in bytes_of_factors
+
+  void count(double bytes) {
+    bytes_of_factors += static_cast<int64_t>(bytes) - counted;
+    counted = static_cast<int64_t>(bytes);
+  }
+  void drop() {
+    cholmod_l_free_factor(&factor, &common.c);
+    count(0.0);
+  }
   ~Impl() {
     drop();
-    cholmod_free_dense(&X, &common.c);
-    cholmod_free_dense(&Y, &common.c);
-    cholmod_free_dense(&E, &common.c);
+    cholmod_l_free_dense(&X, &common.c);
+    cholmod_l_free_dense(&Y, &common.c);
+    cholmod_l_free_dense(&E, &common.c);
   }
 };
 
@@ -200,43 +263,49 @@ bool TangentFactor::positive() const { return impl_->positive; }
 
 bool TangentFactor::factorize(const SparseMatrix& K, double shift) {
   SymbolicFactor::Impl& s = symbolic_->impl();
-  impl_->values.resize(s.gather.size());
-  for (size_t i = 0; i < s.gather.size(); ++i) impl_->values[i] = K.valuePtr()[s.gather[i]];
-  if (shift != 0)  // columns hold their diagonal first
-    for (size_t u = 0; u < s.free.size(); ++u) impl_->values[s.lower_start[u]] += shift;
-  const SerialOpenMp serial;
   cholmod_common& c = impl_->common.c;
-  if (!impl_->factor || !impl_->factor->is_super) {
-    impl_->drop();
-    impl_->factor = cholmod_copy_factor(s.factor, &c);
-    impl_->common.demand_room();
+  impl_->positive = false;
+  if (impl_->factor && !impl_->factor->is_super) impl_->drop();
+  const FactorMemory memory = symbolic_->memory();
+  const double needed = memory.beside + (impl_->factor ? 0.0 : memory.factor);
+  const MemoryClaim claim(needed);
+  std::vector<double> values = s.values_of(K, shift);
+  const SerialOpenMp serial;
+  if (!impl_->factor) {
+    impl_->factor = cholmod_l_copy_factor(s.factor, &c);
+    impl_->common.demand_room(needed);
+    impl_->count(memory.factor);
   }
-  cholmod_sparse A = s.view(impl_->values.data());
-  const bool done = cholmod_factorize(&A, impl_->factor, &c);
-  impl_->common.demand_room();
+  cholmod_sparse A = s.view(values.data());
+  const bool done = cholmod_l_factorize(&A, impl_->factor, &c);
+  impl_->common.demand_room(needed);
   impl_->positive = done && c.status == CHOLMOD_OK && impl_->factor->minor == s.free.size();
   return impl_->positive;
 }
 
 bool TangentFactor::factorize_indefinite(const SparseMatrix& K) {
   SymbolicFactor::Impl& s = symbolic_->impl();
-  impl_->values.resize(s.gather.size());
-  for (size_t i = 0; i < s.gather.size(); ++i) impl_->values[i] = K.valuePtr()[s.gather[i]];
-  const SerialOpenMp serial;
   cholmod_common& c = impl_->common.c;
   impl_->drop();
   impl_->positive = false;
+  // Values and indices of a factor column by column, with room to grow.
+  const double needed =
+      1.2 * (sizeof(double) + sizeof(Long)) * s.common.c.lnz + symbolic_->memory().beside;
+  const MemoryClaim claim(needed);
+  std::vector<double> values = s.values_of(K, 0.0);
+  const SerialOpenMp serial;
   c.supernodal = CHOLMOD_SIMPLICIAL;
   c.final_ll = 0;
-  cholmod_sparse A = s.view(impl_->values.data());
-  std::vector<int> order(static_cast<int*>(s.factor->Perm),
-                         static_cast<int*>(s.factor->Perm) + s.free.size());
-  impl_->factor = cholmod_analyze_p(&A, order.data(), nullptr, 0, &c);
-  const bool done = impl_->factor && cholmod_factorize(&A, impl_->factor, &c);
+  cholmod_sparse A = s.view(values.data());
+  std::vector<Long> order(static_cast<Long*>(s.factor->Perm),
+                          static_cast<Long*>(s.factor->Perm) + s.free.size());
+  impl_->factor = cholmod_l_analyze_p(&A, order.data(), nullptr, 0, &c);
+  impl_->count(needed);
+  const bool done = impl_->factor && cholmod_l_factorize(&A, impl_->factor, &c);
   const bool regular = done && c.status == CHOLMOD_OK && impl_->factor->minor == s.free.size();
   c.supernodal = CHOLMOD_SUPERNODAL;
   c.final_ll = 1;
-  impl_->common.demand_room();
+  impl_->common.demand_room(needed);
   return regular;
 }
 
@@ -253,7 +322,8 @@ void solve_block(const double* b, double* x, Eigen::Index n, Eigen::Index m, cho
   B.x = const_cast<double*>(b);
   B.xtype = CHOLMOD_REAL;
   B.dtype = CHOLMOD_DOUBLE;
-  if (!cholmod_solve2(CHOLMOD_A, L, &B, nullptr, X, nullptr, Y, E, c)) throw std::bad_alloc();
+  if (!cholmod_l_solve2(CHOLMOD_A, L, &B, nullptr, X, nullptr, Y, E, c))
+    throw OutOfMemory(static_cast<double>(3 * sizeof(double) * n * m), memory_left());
   std::copy_n(static_cast<const double*>((*X)->x), n * m, x);
 }
 }  // namespace

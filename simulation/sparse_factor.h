@@ -9,15 +9,22 @@ namespace hookeye {
 
 using Eigen::MatrixXd;
 
+/// What a numeric factorization takes [bytes]: the factor itself, and beside it while it runs.
+struct FactorMemory {
+  double factor = 0.0, beside = 0.0;
+};
+
 /// Fill-reducing order and symbolic factor for one pattern of K and one set of free unknowns.
-/// Shared by all numeric factors of it.
+/// Shared by all numeric factors of it. Indices of the factor have 64 bits.
 class SymbolicFactor {
  public:
-  /// `K` full symmetric, 3 unknowns a node; `free` ascending.
+  /// `K` full symmetric, 3 unknowns a node; `free` ascending. Throws OutOfMemory.
   SymbolicFactor(const SparseMatrix& K, std::vector<int> free);
   ~SymbolicFactor();
   const std::vector<int>& free() const;
   bool fits(const SparseMatrix& K, const std::vector<int>& free) const;
+  /// Known before anything is factored.
+  FactorMemory memory() const;
 
   struct Impl;
   Impl& impl() const { return *impl_; }
@@ -34,9 +41,9 @@ class TangentFactor {
   ~TangentFactor();
 
   /// Numeric factorization of K_ff (+ shift on the diagonal). Returns false where a pivot is not
-  /// positive (the factor is then unusable).
+  /// positive (the factor is then unusable). Throws OutOfMemory before it takes what is not there.
   bool factorize(const SparseMatrix& K, double shift = 0.0);
-  /// L D L^T of an indefinite matrix. False: a zero pivot, singular.
+  /// L D L^T of an indefinite matrix. False: a zero pivot, singular. Throws OutOfMemory likewise.
   bool factorize_indefinite(const SparseMatrix& K);
   bool positive() const;
 
@@ -52,5 +59,8 @@ class TangentFactor {
   std::shared_ptr<const SymbolicFactor> symbolic_;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Of all numeric factors that are alive [bytes].
+double memory_of_factors();
 
 }  // namespace hookeye

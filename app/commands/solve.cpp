@@ -5,6 +5,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/session.h"
+#include "core/memory_left.h"
 #include "core/scope.h"
 #include "estimation/effects/catalogue.h"
 #include "runs/failed.h"
@@ -28,19 +29,26 @@ std::vector<std::optional<NumericalFailure>> solve_examples(
   EquilibriumOptions options;
   options.cancelled = [] { return interrupted().load(); };
   Progress progress(title, static_cast<int>(examples.size()));
-  tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) {
+  const auto solve = [&](size_t i) {
     const Scope scope("example " + examples[i].name);
     const int e = static_cast<int>(i);
     EquilibriumSolver solver(model.scene->mesh());
     const auto solved = solver.solve(model.energy_of(e), model.examples[i].loading, options);
+    failures[i].reset();
     if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
       failures[i] = *failure;
       failures[i]->example = examples[i].name;
     } else {
       done(e, std::get<Equilibrium>(solved));
     }
+  };
+  tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) {
+    solve(i);
     progress.advance("example " + examples[i].name);
   });
+  // What found no room beside others may find it alone.
+  for (size_t i = 0; i < examples.size() && examples.size() > 1; ++i)
+    if (failures[i] && out_of_memory(failures[i]->reason)) solve(i);
   return failures;
 }
 

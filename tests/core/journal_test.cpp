@@ -8,6 +8,7 @@
 
 #include <random>
 
+#include "core/input_error.h"
 #include "core/text_file.h"
 #include "support/temporary_folder.h"
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <numeric>
 #include <thread>
@@ -36,6 +37,43 @@ VectorXd solved(const SparseMatrix& K) {
   VectorXd x;
   factor.solve(test::noise(K.cols() - 3, 2), x);
   return x;
+}
+
+/// Eigen's factor has other code, another order and indices of 32 bits.
+TEST(SparseFactor, SolvesAsOneOfNarrowIndices) {
+  const SparseMatrix K = springs(test::block(6, 5, 7, {1, 1, 1}, 2, 0.2));
+  const Eigen::Index n = K.cols() - 3;
+  const Eigen::SimplicialLDLT<SparseMatrix> narrow(SparseMatrix(K.bottomRightCorner(n, n)));
+  ASSERT_EQ(narrow.info(), Eigen::Success);
+  const VectorXd x = narrow.solve(test::noise(n, 2));
+  EXPECT_LT((solved(K) - x).norm(), 1e-12 * x.norm());
+}
+
+TEST(SparseFactor, ShiftIsOnTheDiagonal) {
+  const SparseMatrix K = springs(test::block(3, 4, 3, {1, 1, 1}, 1, 0.2));
+  std::vector<int> free(K.cols() - 3);
+  std::iota(free.begin(), free.end(), 3);
+  TangentFactor factor(std::make_shared<SymbolicFactor>(K, free));
+  ASSERT_TRUE(factor.factorize(K, 2.5));
+  const VectorXd b = test::noise(K.cols() - 3, 3);
+  VectorXd x;
+  factor.solve(b, x);
+  const VectorXd back = K.bottomRightCorner(b.size(), b.size()) * x + 2.5 * x;
+  EXPECT_LT((back - b).norm(), 1e-12 * b.norm());
+}
+
+TEST(SparseFactor, IndefiniteIsSolvedToo) {
+  SparseMatrix K = springs(test::block(3, 4, 3, {1, 1, 1}, 1, 0.2));
+  K.diagonal().array() -= 30.0;  // nodes have 1 to 24 elements, 4 on the diagonal each
+  std::vector<int> free(K.cols() - 3);
+  std::iota(free.begin(), free.end(), 3);
+  TangentFactor factor(std::make_shared<SymbolicFactor>(K, free));
+  EXPECT_FALSE(factor.factorize(K));
+  ASSERT_TRUE(factor.factorize_indefinite(K));
+  const VectorXd b = test::noise(K.cols() - 3, 3);
+  VectorXd x;
+  factor.solve(b, x);
+  EXPECT_LT((K.bottomRightCorner(b.size(), b.size()) * x - b).norm(), 1e-9 * b.norm());
 }
 
 /// The orders had come out of one sequence of random numbers that all threads drew from.
