@@ -25,7 +25,7 @@ double since(Clock::time_point begin) {
 
 /// The catalogue's block, meshed as bodies are, before cameras of half a megapixel.
 std::shared_ptr<const Scene> block() {
-  constexpr double kEdge = 4.5;  // some 16,000 unknowns
+  constexpr double kEdge = 4.5;  // 8,000 unknowns
   constexpr int kFiner = 12;
   const ScratchFolder folder("doctor");
   write_example_block(folder.path());
