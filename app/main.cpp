@@ -20,6 +20,7 @@
 #include "estimation/evaluation/evaluation.h"
 #include "runs/failed.h"
 #include "runs/printable.h"
+#include "runs/versions.h"
 
 namespace hookeye {
 namespace {
@@ -178,7 +179,7 @@ int run_program(int argc, char** argv) {
       "Finds the elastic model whose pictures match the photos of a soft object,\n"
       "and names the physical effect that the model lacks."};
   app.name("hookeye");
-  app.set_version_flag("--version", "hookeye " HOOKEYE_VERSION);
+  app.set_version_flag("--version", "hookeye " + version_text());
   app.require_subcommand(1);
   app.footer(
       "\nExit status: 0 done, 1 internal error, 2 bad input, 3 the numbers failed,\n"

@@ -1,6 +1,8 @@
 # The page (studio/) built by Vite and turned into an object that is linked into the program:
 # hookeye_page(TARGET). Without Node.js the program still builds, and `hookeye report` says why it
-# cannot work.
+# cannot work. A source archive (./release) carries the page built, in studio/built: then neither
+# Node.js nor a network is asked.
+set(HOOKEYE_PAGE "" CACHE FILEPATH "A built page (page.html), to be taken as it is")
 find_program(NODE NAMES node nodejs)
 find_program(NPM npm)
 
@@ -30,15 +32,28 @@ function(hookeye_npm)
   set(NPM_COMMAND ${NODE} ${folder}/package/bin/npm-cli.js PARENT_SCOPE)
 endfunction()
 
-function(hookeye_page target)
+# Sets PAGE_FILE in the caller: the page that is given, or that the archive carries; empty: neither.
+function(hookeye_given_page)
+  set(page "${HOOKEYE_PAGE}")
+  if(page AND NOT EXISTS ${page})
+    message(FATAL_ERROR "HOOKEYE_PAGE: there is no file ${page}")
+  elseif(NOT page AND EXISTS ${CMAKE_SOURCE_DIR}/studio/built/page.html)
+    set(page ${CMAKE_SOURCE_DIR}/studio/built/page.html)
+  endif()
+  set(PAGE_FILE "${page}" PARENT_SCOPE)
+endfunction()
+
+# Builds OUT/page.html from studio/; sets PAGE_BUILT in the caller, empty where it cannot be.
+function(hookeye_build_page out)
+  set(PAGE_BUILT "" PARENT_SCOPE)
   hookeye_npm()
   if(NOT NODE OR NOT NPM_COMMAND)
     message(WARNING "node or npm is not there: 'hookeye report' and 'hookeye studio' will not work "
                     "(install the packages of packages.txt and configure again)")
     return()
   endif()
+  set(PAGE_BUILT ON PARENT_SCOPE)
   set(source ${CMAKE_SOURCE_DIR}/studio)
-  set(out ${CMAKE_BINARY_DIR}/page)
   file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${source}/src/*)
   # Types are checked, and a browser is driven, where there are tests.
   set(omit --omit=dev)
@@ -63,6 +78,24 @@ function(hookeye_page target)
             ${fetched}
     WORKING_DIRECTORY ${source}
     COMMENT "Building the page")
+endfunction()
+
+function(hookeye_page target)
+  set(out ${CMAKE_BINARY_DIR}/page)
+  hookeye_given_page()
+  if(PAGE_FILE)
+    add_custom_command(
+      OUTPUT ${out}/page.html
+      COMMAND ${CMAKE_COMMAND} -E copy ${PAGE_FILE} ${out}/page.html
+      DEPENDS ${PAGE_FILE}
+      COMMENT "Taking the page ${PAGE_FILE}")
+  else()
+    hookeye_build_page(${out})
+    if(NOT PAGE_BUILT)
+      return()
+    endif()
+  endif()
+  add_custom_target(built_page DEPENDS ${out}/page.html)  # alone, for ./release
   # The object's symbols are named after the file as it is given: _binary_page_html_start.
   add_custom_command(
     OUTPUT ${out}/page.o

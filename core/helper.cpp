@@ -19,6 +19,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/helper_check.h"
 #include "core/interrupted.h"
 #include "core/message.h"
 #include "core/own_file.h"
@@ -185,14 +186,20 @@ InputError no_memory(const HelperRequest& request) {
           request.right};
 }
 
+InputError not_loaded(const HelperRequest& request) {
+  const std::string missing = check_helper(request.name).missing;
+  return {request.place,
+          fmt::format("the helper '{}', which works on this, cannot be loaded: it lacks {}",
+                      request.name, missing.empty() ? "a library" : missing),
+          "that library installed (`hookeye doctor` names its package)"};
+}
+
 [[noreturn]] void died(Process& process, const HelperRequest& request) {
   const auto ended = process.death();
   const auto [status, seconds] = ended.value_or(Process::Death{});
   if (!ended) process.end(true);
   constexpr int kNotLoaded = 127;  // by the loader, which misses a library
-  if (ended && WIFEXITED(status) && WEXITSTATUS(status) == kNotLoaded)
-    throw std::runtime_error(fmt::format(
-        "the helper {} cannot be loaded: install the libraries that it needs", request.name));
+  if (ended && WIFEXITED(status) && WEXITSTATUS(status) == kNotLoaded) throw not_loaded(request);
   const int signal = ended && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGINT || signal == SIGTERM) throw Interrupted();
   if (signal == SIGKILL) throw HelperDied(no_memory(request), false, seconds);  // by the kernel

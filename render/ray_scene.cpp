@@ -84,6 +84,14 @@ RTCIntersectContext context(bool coherent) {
 
 }  // namespace
 
+RayDevice ray_device() {
+  const auto has = [](RTCDeviceProperty what) { return rtcGetDeviceProperty(device(), what) != 0; };
+  return {has(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? 16
+          : has(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? 8
+                                                           : 4,
+          static_cast<int>(rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION))};
+}
+
 void RayPacket::reset(float near, float far) {
   for (int i = 0; i < 16; ++i) {
     tnear[i] = near;

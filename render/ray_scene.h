@@ -27,6 +27,13 @@ struct alignas(64) RayPacket {
   void set(int lane, const Eigen::Vector3d& from, const Eigen::Vector3d& direction);
 };
 
+/// What Embree uses of this processor.
+struct RayDevice {
+  int rays;     ///< traced at once: 4, 8 or 16
+  int version;  ///< 31305: 3.13.5
+};
+RayDevice ray_device();
+
 /// Triangles that move: built once, refitted for every later set of positions.
 class RayScene {
  public:

@@ -1,11 +1,10 @@
 // hookeye effects: the catalogue, as the effects declare themselves.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "app/commands/commands.h"
+#include "app/scratch_folder.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/declaration.h"
 #include "runs/add_step.h"
@@ -14,7 +13,6 @@ namespace hookeye {
 namespace {
 
 using Json = nlohmann::ordered_json;
-namespace fs = std::filesystem;
 
 struct EffectsCommand {
   std::string name, capture;
@@ -25,24 +23,9 @@ constexpr size_t kRows = 12;
 
 /// The block that the catalogue tells its forms of, where no capture is given.
 std::shared_ptr<const Scene> example_scene() {
-  struct Folder {
-    fs::path path;
-    Folder() {
-      std::string name = (fs::temp_directory_path() / "hookeye-effects-XXXXXX").string();
-      if (!::mkdtemp(name.data()))
-        throw InputError({fs::temp_directory_path().string()}, "no folder can be made here",
-                         "TMPDIR set to a folder that is open to you");
-      path = name;
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    ~Folder() {
-      std::error_code ignored;
-      fs::remove_all(path, ignored);
-    }
-  } const folder;
-  write_example_block(folder.path);
-  return load_scene(read_capture(folder.path), false);
+  const ScratchFolder folder("effects");
+  write_example_block(folder.path());
+  return load_scene(read_capture(folder.path()), false);
 }
 
 Json json_number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }

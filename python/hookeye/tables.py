@@ -52,9 +52,13 @@ class Table:
 
 
 def table(rows: Sequence[Dict[str, Any]], columns: Sequence[str], index: str = "") -> Any:
-    """A DataFrame (indexed by a column, if named) where pandas is there, else a Table."""
+    """A DataFrame (whose rows are named by a column, if told) where pandas is there, else a Table."""
     pandas = pandas_if_there()
     if pandas is None:
         return Table(rows, columns)
     frame = pandas.DataFrame(list(rows), columns=list(columns))
-    return frame.set_index(index, drop=False) if index else frame
+    if not index:
+        return frame
+    from ._frame import named_rows
+
+    return named_rows(frame, index)

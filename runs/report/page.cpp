@@ -27,7 +27,8 @@ std::string_view built_page() {
   throw InputError({"hookeye"},
                    "this program was built without its page, because Node.js or its npm "
                    "was not there",
-                   "install nodejs (packages.txt), be online, and configure and build again");
+                   "install nodejs (packages.txt), be online, and configure and build again; or "
+                   "give a built page: -DHOOKEYE_PAGE=FILE");
 #endif
 }
 
@@ -68,6 +69,14 @@ void collect(const json& value, std::vector<std::string>& names, std::set<std::s
 }
 
 }  // namespace
+
+bool has_page() {
+#ifdef HOOKEYE_HAS_PAGE
+  return true;
+#else
+  return false;
+#endif
+}
 
 std::vector<std::string> blob_names(const json& document) {
   std::vector<std::string> names;

@@ -10,6 +10,9 @@
 
 namespace hookeye {
 
+/// Whether the program was built with it.
+bool has_page();
+
 /// Throws InputError when the program was built without Node.js, hence without its page.
 /// `parts`: elements made by part(), put after the page's script so that they do not delay it.
 std::string make_page(const nlohmann::json& document, const std::string& parts = {});

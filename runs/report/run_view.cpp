@@ -15,6 +15,7 @@
 #include "runs/report/facts.h"
 #include "runs/report/inside.h"
 #include "runs/report/rebuilt_timeline.h"
+#include "runs/versions.h"
 
 namespace hookeye {
 
@@ -274,7 +275,7 @@ json RunView::document(int shrink_old, int shrink_new) {
                                  timeline["steps"].size(), steps.size()));
   json out = {{"hookeye", 1},
               {"page", 1},
-              {"version", HOOKEYE_VERSION},
+              {"version", version_text()},
               {"run", folder_.string()},
               {"timeline", timeline},
               {"steps", std::move(steps)},

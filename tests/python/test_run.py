@@ -255,6 +255,24 @@ def test_without_pandas_tables_are_plain(fitted, monkeypatch):
         table["colour"]
 
 
+def test_with_pandas_a_table_prints_each_name_once_and_hides_no_value(fitted):
+    pandas = pytest.importorskip("pandas")
+    table = fitted.parameters
+    assert isinstance(table, pandas.DataFrame)
+    for width in (80, 40):  # of a terminal
+        with pandas.option_context("display.width", width, "display.max_columns", 0):
+            said = repr(table)
+        assert "..." not in said and max(map(len, said.splitlines())) <= width
+        for one in ("name", "value", "low", "high", "unit", "words", "mu", "kappa"):
+            assert len(re.findall(rf"\b{one}\b", said)) == 1, said
+        for value in table["value"]:
+            assert f"{value:.6g}" in said
+    assert table.loc["mu", "value"] == table["value"].iloc[0] and list(table["name"]) == ["mu", "kappa"]
+    html = table._repr_html_()
+    assert html.count(">mu<") == 1 and html.count(">name<") == 1
+    assert type(table[["low", "high"]]) is pandas.DataFrame
+
+
 def test_a_progress_bar_is_an_on_step(capture, caplog):
     bar = he.ProgressBar()
     bar._tqdm = None  # whether it is installed or not
