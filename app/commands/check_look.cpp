@@ -153,8 +153,8 @@ Json describe_field_motion(const Scene& scene, const FieldMotion& field) {
 std::string times_text(double seen, double expected) {
   const double times = seen / expected, most = InspectionOptions{}.usual_times;
   if (!(std::abs(std::log(times)) > std::log(most)) || !std::isfinite(std::log(times))) return {};
-  return times > 1.0 ? fmt::format("{:.2g} times as far as expected", times)
-                     : fmt::format("1/{:.2g} as far as expected", 1.0 / times);
+  return times > 1.0 ? fmt::format("{:.3g} times as far as expected", times)
+                     : fmt::format("1/{:.3g} as far as expected", 1.0 / times);
 }
 
 std::string remark(const GuessLook& guess) {

@@ -69,7 +69,8 @@ std::string flat_tetrahedra_lines(const TetMesh& mesh, MeshedFrom from,
                 surface.empty() ? "SURFACE" : surface, edge);
   return wrapped(
       fmt::format("{} of {} tetrahedra {} nearly flat (radius ratio below {:g}, or an angle below "
-                  "{:g} degrees), the flattest at {}. A few of them hardly change how the body moves. Strains around them are "
+                  "{:g} degrees), the flattest at {}. A few of them hardly change how the body "
+                  "moves. Strains around them are "
                   "wrong, and a large load may find no equilibrium. {}",
                   flat.count, mesh.size(), flat.count == 1 ? "is" : "are", kFlat, kSharp,
                   vector_text(flat.where, mesh.X.cwiseAbs().maxCoeff()), how),

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "simulation/equilibrium.h"
 
@@ -98,6 +99,12 @@ double largest_strain(const TetMesh& mesh, const Eigen::Ref<const VectorXd>& u) 
 CoarseModel::CoarseModel(const Scene& scene, const InspectionOptions& options) : options_(options) {
   scene_ = coarse_scene(scene, options, &refused_);
   if (!scene_) return;
+  const ModelForm form = base_form(scene_);
+  model_ = form.realise(form.initial());
+}
+
+CoarseModel::CoarseModel(std::shared_ptr<const Scene> scene, const InspectionOptions& options)
+    : options_(options), scene_(std::move(scene)) {
   const ModelForm form = base_form(scene_);
   model_ = form.realise(form.initial());
 }

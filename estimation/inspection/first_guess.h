@@ -30,6 +30,8 @@ struct FirstGuess {
 class CoarseModel {
  public:
   CoarseModel(const Scene& scene, const InspectionOptions& options);
+  /// On the mesh of `scene` itself.
+  CoarseModel(std::shared_ptr<const Scene> scene, const InspectionOptions& options);
   ~CoarseModel();
   const std::string& refused() const { return refused_; }  ///< why there is none; "": there is
   const Scene& scene() const { return *scene_; }

@@ -71,6 +71,8 @@ struct InspectionOptions {
   // The coarse solve.
   int coarse_nodes = 4000;     ///< of linear tetrahedra: half a CPU-second a load case
   double across_thin = 2.0;    ///< fewer linear tetrahedra across a body lock where it bends
+  double most_locked = 2.0;    ///< quadratic ones move it that many times as far: more than linear
+                               ///< ones are too stiff by anyway
   int coarse_iterations = 60;  ///< Newton's, of all load steps: twice what a strain of 1 takes
   double most_strain = 3.0;    ///< to first order: beyond it nobody photographs a soft body
 };

@@ -65,7 +65,7 @@ TEST(ApartFrom, WhatMovesIsNoClamp) {
 TEST(ApartFrom, ALargeClampIsNotTakenForAWrongCamera) {
   InspectedCapture capture;
   capture.change("texture: \\{image[^}]*\\}", "texture: {uniform: 0.5}");
-  put_clamp(capture, 150, 300);
+  put_clamp(capture, 190, 420);
   const Inspection seen = capture.inspect({.first_guess = false});
   EXPECT_LT(cam0(seen).overlap, 0.7);
   EXPECT_EQ(said(seen), "");
