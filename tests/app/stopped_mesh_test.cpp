@@ -15,7 +15,8 @@ class StoppedMesh : public Cli {
   /// a terminal sends it to all of the group. Out: seconds that the program lived on, and how many
   /// helpers did.
   Result stop_meshing(const std::string& signal, const std::string& whom) const {
-    write("stop.sh", fmt::format(R"(cd '{}'
+    write("stop.sh",
+          fmt::format(R"sh(cd '{}'
 setsid sh -c '"{}" mesh cube.obj --edge 0.22 -o body.vtu >out.txt 2>err.txt </dev/null & echo $! >program; wait $!; echo $? >status' &
 until [ -s program ]; do sleep 0.01; done
 program=$(cat program)
@@ -34,17 +35,15 @@ do sleep 0.01; done
 echo $(( ($(date +%s%N) - began) / 1000000 )) >milliseconds
 kill -0 $tetgen 2>/dev/null && echo TetGen goes on >left
 exit 0
-)",
-                                 folder_.string(), HOOKEYE_PROGRAM,
-                                 fmt::format(whom == "all" ? "kill -{0} $program $tetgen"
-                                                           : "kill -{0} $program",
-                                             signal)));
-for (const char* old : {"program", "status", "milliseconds", "left"}) fs::remove(folder_ / old);
-const int status = std::system(fmt::format("sh '{}/stop.sh'", folder_.string()).c_str());
-EXPECT_EQ(status, 0) << "TetGen was never seen at work\n" << read(folder_ / "err.txt");
-return {status == 0 ? std::stoi(read(folder_ / "status")) : -1, read(folder_ / "out.txt"),
-        read(folder_ / "err.txt")};
-}
+)sh",
+                      folder_.string(), HOOKEYE_PROGRAM,
+                      "kill -" + signal + (whom == "all" ? " $program $tetgen" : " $program")));
+    for (const char* old : {"program", "status", "milliseconds", "left"}) fs::remove(folder_ / old);
+    const int status = std::system(fmt::format("sh '{}/stop.sh'", folder_.string()).c_str());
+    EXPECT_EQ(status, 0) << "TetGen was never seen at work\n" << read(folder_ / "err.txt");
+    return {status == 0 ? std::stoi(read(folder_ / "status")) : -1, read(folder_ / "out.txt"),
+            read(folder_ / "err.txt")};
+  }
 };
 
 TEST_F(StoppedMesh, TetGenEndsWithTheProgram) {
