@@ -55,6 +55,9 @@ std::string words_of(const std::string& camera, const PhotoLook& look) {
           "or shape are off.",
           apart.photos > 0 ? " does not stand still" : "", left_out);
   }
+  if (apart.largest == 0.0 && apart.photo_alone > apart.model_alone)
+    out +=
+        " It is a rim, as pixels leave in small photos, or a pose or shape that are a little off.";
   if (apart.model_alone > apart.photo_alone)
     out +=
         " What the model alone has is hidden in the photo, as dark or bright as what is behind "
