@@ -6,6 +6,8 @@
 #include <string_view>
 #include <thread>
 
+#include "core/helper.h"
+
 namespace hookeye {
 namespace {
 
@@ -40,6 +42,7 @@ void on_signal(int signal, const sigset_t& watched) {
       "\nstopping; all that is finished is kept (once more: stop at once)\n";
   // Nothing can be done here when standard error is closed.
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, said.data(), said.size());
+  interrupt_helpers();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "capture_io/left_open.h"
 #include "capture_io/yaml_file.h"
 #include "core/helper.h"
 #include "core/input_error.h"
@@ -68,11 +69,24 @@ bool plain_yaml(const fs::path& file, const std::string& text) {
   return (ending == ".yml" || ending == ".yaml") && !text.starts_with("%YAML");
 }
 
+YamlNode parsed_whole(const std::string& text, const std::string& file, const YamlLimits& limits) {
+  try {
+    return parse_yaml(text, file, limits);
+  } catch (const InputError&) {
+    const auto open = left_open(text);
+    if (!open) throw;
+    throw InputError(
+        {file, open->last_line},
+        fmt::format("the file ends early: {} of line {} is not closed", open->what, open->line),
+        "copy the whole file again");
+  }
+}
+
 Values read_plain(const std::string& text, const std::string& file) {
   YamlLimits limits;
   limits.holds = "calibration";
   limits.begins = "give the file that the calibration program wrote";
-  const YamlNode root = parse_yaml(text, file, limits);
+  const YamlNode root = parsed_whole(text, file, limits);
   if (root.kind != YamlNode::Kind::map)
     throw InputError({file}, "this is not an OpenCV file", kWriteIt);
   Values values;

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -26,9 +27,8 @@ constexpr const char* kArchive = "archive";
 /// process, so a kill leaves no stale lock.
 class Lock {
  public:
-  explicit Lock(const fs::path& folder) {
-    const fs::path file = folder / ".lock";
-    handle_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+  explicit Lock(const fs::path& folder) : file_(folder / ".lock") {
+    handle_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (handle_ < 0)
       throw InputError({folder.string()}, "the run folder cannot be written",
                        "check its permissions or choose another folder");
@@ -42,7 +42,16 @@ class Lock {
   Lock& operator=(const Lock&) = delete;
   ~Lock() { ::close(handle_); }
 
+  /// False: the folder, or what was in it, was removed or moved since.
+  bool still_there() const {
+    struct stat ours {
+    }, there{};
+    return ::fstat(handle_, &ours) == 0 && ::stat(file_.c_str(), &there) == 0 &&
+           ours.st_dev == there.st_dev && ours.st_ino == there.st_ino;
+  }
+
  private:
+  fs::path file_;
   int handle_ = -1;
 };
 
@@ -153,8 +162,14 @@ struct Run::Impl {
     write_text(folder / "run.json", changed.dump(2) + "\n");
     timeline = std::move(changed);
   }
-  void demand_lock() const {
+  /// Nothing is written into a folder that somebody has removed: it would come back with the half
+  /// of a run.
+  void demand_folder() const {
     if (!lock) throw std::logic_error("Run: opened for reading only");
+    if (!lock->still_there())
+      throw InputError({folder.string()},
+                       "the run folder was removed or moved while it was written",
+                       "leave it where it is until the command has ended; start the command again");
   }
 };
 
@@ -237,7 +252,7 @@ std::vector<fs::path> Run::steps() const {
 
 fs::path Run::add_step(const std::string& name, json entry,
                        const std::function<void(const fs::path&)>& write) {
-  impl_->demand_lock();
+  impl_->demand_folder();
   check_name(name);
   const std::string full = fmt::format("{:02}-{}", impl_->timeline["steps"].size(), name);
   const fs::path steps = impl_->folder / "steps";
@@ -250,6 +265,7 @@ fs::path Run::add_step(const std::string& name, json entry,
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(temporary, ignored);
+    impl_->demand_folder();  // the reason, where it was removed meanwhile
     throw;
   }
   // A folder of this number that run.json does not know was renamed just before a kill.
@@ -266,7 +282,7 @@ fs::path Run::add_step(const std::string& name, json entry,
 
 void Run::add_file(const fs::path& step, const std::string& name,
                    const std::function<void(const fs::path&)>& write, bool replace) {
-  impl_->demand_lock();
+  impl_->demand_folder();
   check_name(name);
   // The temporary name keeps the extension: writers choose their format by it.
   const fs::path temporary = step / (temporary_prefix + name), final = step / name;
@@ -288,12 +304,13 @@ void Run::add_file(const fs::path& step, const std::string& name,
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(temporary, ignored);
+    impl_->demand_folder();
     throw;
   }
 }
 
 void Run::update(const std::function<void(json&)>& change) {
-  impl_->demand_lock();
+  impl_->demand_folder();
   json changed = impl_->timeline;
   change(changed);
   impl_->store(std::move(changed));

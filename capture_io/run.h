@@ -33,6 +33,7 @@ class Run {
   std::vector<std::filesystem::path> steps() const;  ///< folders of finished steps, in order
   std::filesystem::path archive() const;  ///< file of what was worked out so far (journal.h)
 
+  /// All that write throw InputError with the folder's name where it was removed or moved since.
   /// `write` fills a temporary folder; it becomes steps/NN-NAME only when `write` returned, then
   /// `entry` is appended to run.json's "steps". Returns the step's folder.
   std::filesystem::path add_step(const std::string& name, nlohmann::json entry,

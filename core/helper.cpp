@@ -17,6 +17,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "core/helper_check.h"
@@ -87,6 +88,17 @@ double seconds_of(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
 
+/// Helpers that Ctrl-C ends. A process leaves the set before its number may be another's.
+struct Interruptible {
+  std::mutex mutex;
+  std::set<pid_t> running;
+  bool interrupted = false;
+};
+Interruptible& interruptible() {
+  static auto& all = *new Interruptible;  // stays: helpers end after all that is static
+  return all;
+}
+
 class Process {
  public:
   explicit Process(const std::string& name) {
@@ -114,18 +126,27 @@ class Process {
     if (channel_.socket >= 0) end(false);
   }
 
-  std::optional<std::string> ask(const std::string& head, const std::string& content,
-                                 double seconds) {
+  std::optional<std::string> ask(const std::string& head, const HelperRequest& request) {
     using namespace std::chrono;
     // It may have to be loaded on a busy machine; but sleep for ever it must not.
-    const auto deadline = steady_clock::now() + duration_cast<steady_clock::duration>(
-                                                    duration<double>(600.0 + 10.0 * seconds));
-    if (!detail::send_message(channel_, {head, content})) return {};
+    const auto deadline =
+        steady_clock::now() + duration_cast<steady_clock::duration>(
+                                  duration<double>(600.0 + 10.0 * request.limits.seconds));
+    if (request.interruptible) {
+      const std::lock_guard lock(interruptible().mutex);
+      if (interruptible().interrupted) throw Interrupted();
+      interruptible().running.insert(process_);
+    }
+    if (!detail::send_message(channel_, {head, request.content})) return {};
     return detail::receive_message(channel_, deadline);
   }
   void end(bool by_force) {
     if (by_force) ::kill(process_, SIGKILL);
     close();
+    {
+      const std::lock_guard lock(interruptible().mutex);
+      interruptible().running.erase(process_);
+    }
     while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
@@ -138,7 +159,7 @@ class Process {
     for (int i = 0; i < 200; ++i) {
       int status = -1;
       rusage used{};
-      const pid_t found = ::wait4(process_, &status, WNOHANG, &used);
+      const pid_t found = reaped(&status, &used);
       if (found != 0) {
         close();
         return Death{found > 0 ? status : -1,
@@ -150,6 +171,12 @@ class Process {
   }
 
  private:
+  pid_t reaped(int* status, rusage* used) {
+    const std::lock_guard lock(interruptible().mutex);
+    const pid_t found = ::wait4(process_, status, WNOHANG, used);
+    if (found != 0) interruptible().running.erase(process_);
+    return found;
+  }
   void close() {
     ::close(channel_.socket);
     ::close(channel_.memory);
@@ -230,6 +257,12 @@ HelperLimits limits_for(const fs::path& file) {
   return limits;
 }
 
+void interrupt_helpers() {
+  const std::lock_guard lock(interruptible().mutex);
+  interruptible().interrupted = true;
+  for (const pid_t process : interruptible().running) ::kill(process, SIGINT);
+}
+
 fs::path helper_folder() {
   if (const char* told = std::getenv("HOOKEYE_LIBEXEC")) return told;
   std::error_code failed;
@@ -255,8 +288,7 @@ std::string detail::ask_helper(const HelperRequest& request) {
   // Only what has answered is asked again.
   auto process = std::move(own.process);
   if (!process) process = std::make_unique<Process>(request.name);
-  std::optional<std::string> answer =
-      process->ask(head.take(), request.content, request.limits.seconds);
+  std::optional<std::string> answer = process->ask(head.take(), request);
   if (!answer) died(*process, request);
   Unpacker in(*answer);
   try {

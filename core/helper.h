@@ -42,6 +42,9 @@ struct HelperRequest {
   std::string content;  ///< of a Packer
   HelperLimits limits;
   bool once = false;  ///< the helper is not asked again: its library does not forget
+  /// It may compute for long and writes nothing that is kept: interrupt_helpers() ends it. Its
+  /// answer() calls die_of_interrupts().
+  bool interruptible = false;
   /// What is told where the helper crashes, answers nonsense or goes beyond its limits.
   Place place;
   std::string right;
@@ -68,6 +71,10 @@ auto ask_helper(const HelperRequest& request, const Unpack& unpack) {
     throw InputError(request.place, request.damaged, request.right);
   }
 }
+
+/// Ends the helpers of requests that are `interruptible`; those asked later throw Interrupted at
+/// once. For Ctrl-C, which reaches the program alone where no terminal sends it to all.
+void interrupt_helpers();
 
 /// The folder of the helpers: $HOOKEYE_LIBEXEC, else libexec/hookeye beside the running program (or
 /// Python's module), or beside one of the folders that it lies in.

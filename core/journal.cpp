@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -24,6 +25,7 @@ std::string framed(const std::string& record) {
 
 struct Piece {
   size_t at = 0, size = 0;  ///< bytes
+  std::string mark;         ///< their fingerprint
 };
 
 /// The whole records of `text`, one behind the other.
@@ -36,10 +38,9 @@ std::vector<Piece> pieces_of(const std::string& text) {
     if (told.empty() || told.size() > 12 ||
         told.find_first_not_of("0123456789") != std::string::npos)
       break;
-    const Piece piece{end + 1, std::stoull(told)};
+    const Piece piece{end + 1, std::stoull(told), text.substr(space + 1, end - space - 1)};
     if (piece.at + piece.size >= text.size() || text[piece.at + piece.size] != '\n') break;
-    const std::string mark = text.substr(space + 1, end - space - 1);
-    if (fingerprint_of(text.substr(piece.at, piece.size)) != mark) break;
+    if (fingerprint_of(text.substr(piece.at, piece.size)) != piece.mark) break;
     out.push_back(piece);
     at = piece.at + piece.size + 1;
   }
@@ -88,6 +89,20 @@ struct Journal::Impl {
     return done;
   }
 
+  /// Throws where the file does not stand under its name any more.
+  void demand_file() const {
+    struct stat ours {
+    }, there{};
+    if (::fstat(handle, &ours) == 0 && ::stat(file.c_str(), &there) == 0 &&
+        ours.st_dev == there.st_dev && ours.st_ino == there.st_ino)
+      return;
+    throw InputError({file.parent_path().string()},
+                     fmt::format("this folder, or the file {} in it, was removed or moved while "
+                                 "it was used",
+                                 file.filename().string()),
+                     "leave it where it is until the command has ended; start the command again");
+  }
+
   void put(const std::string& record) {
     if (!cut && ::ftruncate(handle, static_cast<off_t>(end)) != 0)
       throw cannot_write(file.string(), std::strerror(errno));
@@ -102,7 +117,8 @@ struct Journal::Impl {
       }
       if (n > 0) done += static_cast<size_t>(n);
     }
-    records.push_back({end + text.size() - record.size() - 1, record.size()});
+    records.push_back(
+        {end + text.size() - record.size() - 1, record.size(), fingerprint_of(record)});
     end += text.size();
   }
 };
@@ -120,14 +136,16 @@ size_t Journal::size() const { return impl_->records.size(); }
 std::string Journal::read(size_t record) const {
   const Piece& piece = impl_->records.at(record);
   std::string out(piece.size, '\0');
-  if (impl_->take(out.data(), piece.size, piece.at) != piece.size)
-    throw InputError({impl_->file.string()}, "the file has become shorter while it was used",
-                     "start the command again");
-  return out;
+  const bool whole = impl_->take(out.data(), piece.size, piece.at) == piece.size;
+  if (whole && fingerprint_of(out) == piece.mark) return out;
+  impl_->demand_file();
+  throw InputError({impl_->file.string()}, "the file was changed while it was used",
+                   "start the command again");
 }
 
 size_t Journal::add(const std::string& record) {
   if (impl_->handle < 0) impl_->open(O_RDWR | O_CREAT);
+  impl_->demand_file();
   if (impl_->end == 0) {
     impl_->put(impl_->made_for);
     impl_->records.clear();

@@ -147,6 +147,7 @@ TetGenAnswer tetrahedra(const SurfaceMesh& skin, const TetGenTask& task) {
                         .take();
   request.limits = {unlimited.memory, task.seconds};
   request.once = true;  // its predicates remember the last body
+  request.interruptible = true;
   TetGenAnswer answer;
   Filled out;
   bool well = false;

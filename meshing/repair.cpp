@@ -26,6 +26,7 @@ auto ask_cgal(Packer& what, const Place& place, const Unpack& unpack) {
   return ask_helper({.name = "repair",
                      .content = what.take(),
                      .limits = {4.0 * (1 << 30), 300.0},
+                     .interruptible = true,
                      .place = place,
                      .right = "a surface that is less broken",
                      .damaged = "CGAL gave up on the surface"},

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "meshing/detail.h"
+#include "meshing/flat_tetrahedra.h"
 
 namespace hookeye {
 namespace detail {
@@ -194,6 +195,19 @@ std::pair<double, double> dihedral_range_deg(const Eigen::Matrix<double, 3, 4>& 
 }
 
 }  // namespace
+
+FlatTetrahedra flat_tetrahedra(const TetMesh& mesh, double ratio, double degrees) {
+  FlatTetrahedra out;
+  double least = 0.0;
+  for (int e = 0; e < mesh.size(); ++e) {
+    Eigen::Matrix<double, 3, 4> x;
+    for (int k = 0; k < 4; ++k) x.col(k) = mesh.X.col(mesh.elements(k, e));
+    const double its = radius_ratio(x);
+    if (its >= ratio && dihedral_range_deg(x).first >= degrees) continue;
+    if (out.count++ == 0 || its < least) least = its, out.where = x.rowwise().mean();
+  }
+  return out;
+}
 
 MeshQuality quality(const TetMesh& mesh) {
   MeshQuality q;

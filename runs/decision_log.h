@@ -28,6 +28,10 @@ class DecisionLog {
 /// Which effects the newest step's diagnosis names, and why not the others.
 void log_naming(Run& run, const Diagnosis& diagnosis);
 
+/// The number of a decision, what it is and what it was held against: "log Bayes factor 354.3; a
+/// name takes 5"; "": it was decided by none.
+std::string number_in_words(const Decision& decision);
+
 /// Throws InputError (file, line) where it is damaged; empty where there is none.
 std::vector<Decision> decisions_of(const std::filesystem::path& step);
 

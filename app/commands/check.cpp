@@ -214,7 +214,10 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
   session.say("\nunits: length {}, force {}, stress {}\n", capture.units.length,
               capture.units.force, capture.units.stress());
   session.say("\nbody\n{}", mesh_lines(scene.body->mesh));
-  if (capture.body.volume.empty()) session.say("{}", narrow_triangles_line(scene.body->mesh));
+  session.say("{}", flat_tetrahedra_lines(
+                        scene.body->mesh,
+                        capture.body.volume.empty() ? MeshedFrom::surface : MeshedFrom::volume,
+                        capture.body.surface.filename().string()));
   session.say("  surface of {} triangles, as it is photographed\n",
               scene.body->surface.mesh.triangles.size());
   session.say("  texture: {}\n  light: {}\n", d["texture"].get<std::string>(),

@@ -12,8 +12,12 @@ namespace hookeye {
 
 nlohmann::ordered_json describe_mesh(const TetMesh& mesh);
 std::string mesh_lines(const TetMesh& mesh);
-/// How `hookeye mesh` mends what narrow triangles of a surface make of the mesh; empty: it is well.
-std::string narrow_triangles_line(const TetMesh& mesh);
+/// Where a mesh comes from, which decides how its flat tetrahedra are mended.
+enum class MeshedFrom { surface, remeshed_surface, volume };
+/// Of flat tetrahedra: how many, where, whether they hurt and what mends them; empty: it is well.
+/// `surface`: the file's name, "" where nobody knows it.
+std::string flat_tetrahedra_lines(const TetMesh& mesh, MeshedFrom from,
+                                  const std::string& surface = "");
 nlohmann::ordered_json describe_vector(const Vector3d& v);
 /// "(1, 0, 2.5)"; what is tiny beside `scale` or its largest component reads as zero.
 std::string vector_text(const Vector3d& v, double scale = 0.0);

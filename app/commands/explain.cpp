@@ -9,6 +9,7 @@
 #include "app/commands/run_support.h"
 #include "runs/add_step.h"
 #include "runs/decision_log.h"
+#include "runs/tables.h"
 
 namespace hookeye {
 namespace {
@@ -46,19 +47,37 @@ std::pair<const char*, const char*> words_of(Asked asked) {
   return {"yes", "no"};
 }
 
-/// "refused: ... (0.95, limit 0.9: search.worth_a_name) [estimation/search/contest.cpp:270]".
+/// "refused: ... (log Bayes factor 2.1; to be named it takes 5: diagnosis.nameable)
+/// [estimation/search/contest.cpp:270]".
 std::string in_words(const Decision& one) {
   const auto [yes, no] = words_of(one.asked);
   std::string out = fmt::format("{}: {}", one.accepted ? yes : no, one.why);
-  if (std::isfinite(one.by.value))
-    out += std::isfinite(one.by.limit)
-               ? fmt::format(" ({:.4g} against {:.4g}{})", one.by.value, one.by.limit,
-                             one.by.option.empty() ? "" : ": " + one.by.option)
-               : fmt::format(" ({:.4g})", one.by.value);
+  const std::string number = number_in_words(one);
+  if (!number.empty())
+    out += fmt::format(" ({}{})", number, one.by.option.empty() ? "" : ": " + one.by.option);
   else if (!one.by.option.empty())
     out += fmt::format(" ({})", one.by.option);
   return out + fmt::format(" [{}]", one.where);
 }
+
+/// What the numbers of a step are held against.
+std::string heading(const nlohmann::json& timeline, size_t index, const std::string& step) {
+  const nlohmann::json& told = timeline.at("steps").at(index);
+  const double fitted = number_in(told, "chi_fit"), held_out = number_in(told, "chi_validate");
+  const double floor = number_in(timeline.value("floor", nlohmann::json::object()), "chi");
+  std::string out =
+      fmt::format("beyond the model of step {}: its normalised residual is {} on fitted photos",
+                  step, chi_text(fitted));
+  if (held_out > 0.0) out += fmt::format(", {} on held-out ones", chi_text(held_out));
+  if (floor > 0.0) out += fmt::format("; noise floor {:.3f}", floor);
+  return wrapped(out);
+}
+
+constexpr const char* kHowToRead =
+    "An effect stands out where one linear step tells it from noise. Those that do are screened "
+    "(a step or two on half-size photos), the best refitted to the end, and ranked. The first "
+    "stands if it says enough. In brackets: its number, what that is held against and the option "
+    "behind it; then the line of the sources.";
 
 /// "creep" of "creep as 'levels off'", of "gravity and creep": whom a decision is about.
 bool is_about(const Decision& one, const std::string& effect) {
@@ -114,7 +133,9 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
   const Run run = open_run(arguments.run, false);
   session.document["steps"] = nlohmann::json::array();
   bool any = false, about = false;
-  for (const auto& step : run.steps()) {
+  const auto steps = run.steps();
+  for (size_t index = 0; index < steps.size(); ++index) {
+    const auto& step = steps[index];
     const std::vector<Decision> decisions = decisions_of(step);
     any = any || !decisions.empty();
     nlohmann::ordered_json told = {{"step", step.filename().string()},
@@ -126,8 +147,9 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
     const std::string text =
         arguments.effect.empty() ? ends_of(decisions) : all_of(decisions, arguments.effect);
     if (text.empty()) continue;
+    if (!about) session.say("{}\n", wrapped(kHowToRead));
     about = true;
-    session.say("of the model of step {}\n{}\n", step.filename().string(), text);
+    session.say("{}{}\n", heading(run.timeline(), index, step.filename().string()), text);
   }
   if (!any)
     throw InputError({arguments.run}, "nothing was decided in this run yet",

@@ -63,7 +63,10 @@ void tell_body(const TetMesh& mesh, const MeshOptions& options, Session& session
         "  the mesher was asked for angles of {:g} degrees and more (--min-angle) and reached "
         "{:.1f}\n",
         options.fill.min_dihedral_deg, reached.min_dihedral_deg);
-  if (!(options.repair && options.fill.edge > 0.0)) session.say("{}", narrow_triangles_line(mesh));
+  const bool remeshed = options.repair && options.fill.edge > 0.0;
+  session.say("{}", flat_tetrahedra_lines(
+                        mesh, remeshed ? MeshedFrom::remeshed_surface : MeshedFrom::surface,
+                        options.surface));
 }
 
 void run_mesh(const MeshOptions& options, Session& session) {

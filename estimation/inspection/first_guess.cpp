@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "simulation/equilibrium.h"
 
@@ -18,8 +19,36 @@ int corners(const TetMesh& mesh) {
   return static_cast<int>(std::set<int>(block.reshaped().begin(), block.reshaped().end()).size());
 }
 
+/// Edges across the body: of a sheet, twice its volume over its surface is its thickness.
+double elements_across(const TetMesh& mesh) {
+  double area = 0.0;
+  for (Eigen::Index f = 0; f < mesh.boundary.cols(); ++f) {
+    const Vector3d a = mesh.X.col(mesh.boundary(0, f)), b = mesh.X.col(mesh.boundary(1, f)),
+                   c = mesh.X.col(mesh.boundary(2, f));
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  const MeshQuality q = quality(mesh);
+  return area > 0.0 && q.mean_edge > 0.0 ? 2.0 * q.volume / area / q.mean_edge : 0.0;
+}
+
+/// The same on quadratic tetrahedra, at most `most` nodes of them; null: not to be had.
+std::shared_ptr<const Scene> quadratic_scene(const Scene& scene, int most) {
+  constexpr int kTries = 4;
+  if (scene.body->mesh.order == 2 && scene.body->mesh.nodes() <= most)
+    return scene.shared_from_this();
+  double coarser = 1.0;
+  for (int i = 0; i < kTries; ++i) {
+    if (coarser > 1.0 && scene.capture.body.surface.empty()) break;
+    auto out = remeshed(scene, coarser, 2, false);
+    if (out->body->mesh.nodes() <= most) return out;
+    // Nodes of a sheet go with the square of the edge.
+    coarser *= 1.05 * std::sqrt(double(out->body->mesh.nodes()) / most);
+  }
+  return nullptr;
+}
+
 /// The scene on linear tetrahedra, at most `most` nodes of them; null: not to be had.
-std::shared_ptr<const Scene> coarse_scene(const Scene& scene, int most, std::string* refused) {
+std::shared_ptr<const Scene> linear_scene(const Scene& scene, int most, std::string* refused) {
   const TetMesh& told = scene.body->mesh;
   const int nodes = corners(told);
   const bool has_surface = !scene.capture.body.surface.empty();
@@ -38,7 +67,18 @@ std::shared_ptr<const Scene> coarse_scene(const Scene& scene, int most, std::str
   return nullptr;
 }
 
-/// Largest |sym grad u| of linear tetrahedra.
+std::shared_ptr<const Scene> coarse_scene(const Scene& scene, const InspectionOptions& options,
+                                          std::string* refused) {
+  auto linear = linear_scene(scene, options.coarse_nodes, refused);
+  if (!linear || elements_across(linear->body->mesh) >= options.across_thin) return linear;
+  try {
+    if (auto quadratic = quadratic_scene(scene, options.coarse_nodes)) return quadratic;
+  } catch (const InputError&) {  // the linear one is better than none
+  }
+  return linear;
+}
+
+/// Largest |sym grad u|, of the tetrahedra's corners.
 double largest_strain(const TetMesh& mesh, const Eigen::Ref<const VectorXd>& u) {
   double largest = 0.0;
   for (int e = 0; e < mesh.size(); ++e) {
@@ -57,8 +97,14 @@ double largest_strain(const TetMesh& mesh, const Eigen::Ref<const VectorXd>& u) 
 }  // namespace
 
 CoarseModel::CoarseModel(const Scene& scene, const InspectionOptions& options) : options_(options) {
-  scene_ = coarse_scene(scene, options.coarse_nodes, &refused_);
+  scene_ = coarse_scene(scene, options, &refused_);
   if (!scene_) return;
+  const ModelForm form = base_form(scene_);
+  model_ = form.realise(form.initial());
+}
+
+CoarseModel::CoarseModel(std::shared_ptr<const Scene> scene, const InspectionOptions& options)
+    : options_(options), scene_(std::move(scene)) {
   const ModelForm form = base_form(scene_);
   model_ = form.realise(form.initial());
 }
@@ -72,6 +118,7 @@ FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
   const bool driven = !loading.forces.empty() || !loading.displacement.isZero(0.0);
   if (!driven) {
     guess.linear = Matrix3Xd::Zero(3, body.surface.mesh.X.cols());
+    guess.u = VectorXd::Zero(mesh.X.size());
     return guess;
   }
   const auto free = free_rigid_motions(mesh, loading);
@@ -90,12 +137,12 @@ FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
   }
   const auto& rest = std::get<Equilibrium>(at_rest);
   const VectorXd X = mesh.X.reshaped();
-  const VectorXd u = sensitivities(rest, loading, residual(mesh, energy, loading, X),
-                                   Eigen::MatrixXd(loading.displacement))
-                         .col(0);
-  guess.strain = largest_strain(mesh, u);
+  guess.u = sensitivities(rest, loading, residual(mesh, energy, loading, X),
+                          Eigen::MatrixXd(loading.displacement))
+                .col(0);
+  guess.strain = largest_strain(mesh, guess.u);
   guess.turned = loading.first_step() < 1.0;
-  guess.linear = body.surface.deformed(mesh, X + u) - body.surface.mesh.X;
+  guess.linear = body.surface.deformed(mesh, X + guess.u) - body.surface.mesh.X;
   return guess;
 }
 

@@ -14,6 +14,7 @@ struct FirstGuess {
   /// To first order from rest: displacement of the render surface's vertices, 3 x nv [length]. Zero
   /// where nothing moves the body; empty where nothing holds it.
   Matrix3Xd linear;
+  VectorXd u;           ///< the same of the coarse mesh's nodes, 3n
   double strain = 0.0;  ///< largest of an element, to first order: |sym grad u|
   /// A support turns by more than 30 degrees: nothing is right to first order.
   bool turned = false;
@@ -24,10 +25,13 @@ struct FirstGuess {
 
 /// The told model on a coarse mesh. Linear tetrahedra on the told mesh's corners, or on a coarser
 /// one where those are too many: they are too stiff by up to a half, which neither directions nor
-/// orders of magnitude mind.
+/// orders of magnitude mind. With less than two of them across a thin body they lock: one layer
+/// bends a hundred times too little. Then quadratic ones, as few nodes of them.
 class CoarseModel {
  public:
   CoarseModel(const Scene& scene, const InspectionOptions& options);
+  /// On the mesh of `scene` itself.
+  CoarseModel(std::shared_ptr<const Scene> scene, const InspectionOptions& options);
   ~CoarseModel();
   const std::string& refused() const { return refused_; }  ///< why there is none; "": there is
   const Scene& scene() const { return *scene_; }

@@ -1,6 +1,8 @@
 #include "estimation/inspection/inspection.h"
 
+#include "estimation/inspection/apart.h"
 #include "estimation/inspection/contact_sheet.h"
+#include "estimation/inspection/field_motion.h"
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
 
@@ -103,15 +105,22 @@ Inspection inspect(const Scene& scene, const InspectionOptions& options,
   Inspection out;
   Sight sight(scene, options);
   for (const PhotoIndex& photo : sight.photos()) out.photos.push_back(look_at(sight, photo));
-  for (const PhotoIndex& photo : sight.references()) out.cameras.push_back(look_at(sight, photo));
+  for (const PhotoIndex& photo : sight.references()) {
+    out.cameras.push_back(look_at(sight, photo));
+    if (out.cameras.back().overlap < options.usual_overlap)
+      out.cameras.back().apart = apart(sight, photo);
+  }
   Warnings warnings(scene);
   for (const Question& question : questions()) {
     warnings.question = question.name;
     question.ask(sight, warnings);
   }
   out.warnings = std::move(warnings.all);
-  for (size_t e = 0; sight.coarse() && e < scene.capture.examples.size(); ++e)
+  for (size_t e = 0; sight.coarse() && e < scene.capture.examples.size(); ++e) {
     out.guesses.push_back(look_at_load(sight, static_cast<int>(e)));
+    for (FieldMotion& one : field_motions(sight, static_cast<int>(e)))
+      out.fields.push_back(std::move(one));
+  }
   out.no_guess = sight.no_guess();
   if (!folder.empty()) out.sheet = draw_pictures(sight, folder, &out.photos);
   return out;

@@ -94,7 +94,7 @@ Region whole_face(const TetMesh& mesh, const Region& region, double flat_cosine)
       const Vector3d area = area_vector(mesh, f);
       const int touching =
           static_cast<int>(nodes.count(mesh.boundary(0, f)) + nodes.count(mesh.boundary(1, f)) +
-                           nodes.count(mesh.boundary(2, f)));
+                           nodes.count(mesh.boundary(2, f)));  // corners
       if (taken[static_cast<size_t>(f)] || touching < 2 ||
           area.dot(region.normal) < flat_cosine * area.norm())
         continue;
@@ -102,9 +102,11 @@ Region whole_face(const TetMesh& mesh, const Region& region, double flat_cosine)
       more = true;
       out.area += area.norm();
       out.faces.emplace_back(static_cast<int>(f), 1.0);
-      for (int k = 0; k < 3; ++k) {
+      // Of a quadratic face the middles of its edges carry all.
+      const auto rows = static_cast<int>(mesh.boundary.rows());
+      for (int k = 0; k < rows; ++k) {
         nodes.insert(mesh.boundary(k, f));
-        out.nodal_area[mesh.boundary(k, f)] += area.norm() / 3.0;
+        if (k >= rows - 3) out.nodal_area[mesh.boundary(k, f)] += area.norm() / 3.0;
       }
     }
   }

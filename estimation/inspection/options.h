@@ -12,19 +12,26 @@ struct InspectionOptions {
   // How photos are looked at.
   int look_px = 640;          ///< longest side [px]: a speckle of 3 px in 2500 px still shows
   int patch_px = 33;          ///< side of a patch [px of the small photo]: ten speckles of 10 px
+  int light_px = 17;          ///< window of the light that is taken out: half a patch, so that a
+                              ///< step in the midst of one leaves a half of it to the texture
   int most_patches = 90;      ///< of one photo: their share is known to 5 %
   double still_reach = 0.05;  ///< of the photo's diagonal: how far a patch of the body at rest is
                               ///< sought. A knocked camera moves pictures by 1 %
   double moved_reach = 0.13;  ///< the same for a loaded body: soft bodies move by a tenth
   double alike = 0.6;         ///< least correlation of a found patch (right: 0.8 and more)
-  int least_patches = 8;      ///< fewer say nothing of the whole photo
+  double alike_elsewhere = 0.8;  ///< most likeness of a patch to another place of its own picture:
+                                 ///< an edge has 0.9 and more, which a found patch cannot beat
+  int least_patches = 8;         ///< fewer say nothing of the whole photo
   double least_contrast = 0.08;  ///< deviation over mean within a patch: shading has less
+  double most_light = 0.5;  ///< share of a patch's variance that the means of such windows have:
+                            ///< from half on light and shadow are seen there, and no texture
 
   // Whether a camera sees the body where its photo shows it.
   double lost_share = 0.3;   ///< of patches found: below it camera and photo do not belong together
   double found_share = 0.6;  ///< from it on they do
   double lost_overlap = 0.7;  ///< of silhouettes, where there is no texture
   double found_overlap = 0.85;
+  double usual_overlap = 0.95;  ///< below it is told what parts the silhouettes (right: 0.97)
 
   // Distortion told of straight photos.
   double least_bent_px = 0.06;  ///< shift of the patches at rest [px]: right cameras have half
@@ -57,11 +64,15 @@ struct InspectionOptions {
 
   // How far it moves, against the first guess to first order.
   double most_times_by_force = 30.0;  ///< a modulus that is told ten times wrong is found by a fit;
-                                      ///< measured: 0.73 to 2.0
+                                      ///< measured: 0.65 to 2.0
   double most_times_moved = 3.0;  ///< a prescribed motion is known better; measured: 0.87 to 1.08
+  double usual_times = 3.0;  ///< beyond it, either way, it is remarked: right loads had 0.65 to 2.0
 
   // The coarse solve.
   int coarse_nodes = 4000;     ///< of linear tetrahedra: half a CPU-second a load case
+  double across_thin = 2.0;    ///< fewer linear tetrahedra across a body lock where it bends
+  double most_locked = 2.0;    ///< quadratic ones move it that many times as far: more than linear
+                               ///< ones are too stiff by anyway
   int coarse_iterations = 60;  ///< Newton's, of all load steps: twice what a strain of 1 takes
   double most_strain = 3.0;    ///< to first order: beyond it nobody photographs a soft body
 };

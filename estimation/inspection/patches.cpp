@@ -33,27 +33,97 @@ std::vector<cv::Point> centres(const cv::Mat& body, const InspectionOptions& opt
   return out;
 }
 
+/// A picture as it is, its light (the mean of a window around each pixel), and levelled: (I - m) /
+/// s with that mean m and the window's deviation s. The step between a bright and a dark face is as
+/// high everywhere along their edge, and outweighs the texture of both; levelled it does not.
+struct Picture {
+  cv::Mat I, light, levelled;
+};
+
+/// Means over `body` alone, where it is not empty. What is below the least contrast of a texture
+/// (shading), or below a code of eight bits, is not levelled up to be one.
+Picture picture_of(const cv::Mat& I, const cv::Mat& body, const InspectionOptions& options) {
+  const cv::Size window(options.light_px, options.light_px);
+  const auto average = [&](const cv::Mat& of) {
+    cv::Mat out;
+    cv::boxFilter(of, out, CV_64F, window, {-1, -1}, true, cv::BORDER_REFLECT);
+    return out;
+  };
+  cv::Mat weight = cv::Mat::ones(I.size(), CV_64F), values = I.clone();
+  if (!body.empty()) cv::Mat(body != 0).convertTo(weight, CV_64F, 1.0 / 255.0);
+  cv::patchNaNs(values, 0.0);
+  values.convertTo(values, CV_64F);
+  values = values.mul(weight);
+  const cv::Mat count = cv::max(average(weight), 1e-9);
+  const cv::Mat mean = average(values) / count, squares = average(values.mul(values)) / count;
+  double white = 0.0;
+  cv::minMaxLoc(mean, nullptr, &white);
+  const double code = std::max(white, 1e-6) / 255.0;
+  cv::Mat spread = cv::max(squares - mean.mul(mean), 0.0) +
+                   options.least_contrast * options.least_contrast * mean.mul(mean) + code * code;
+  cv::sqrt(spread, spread);
+  Picture out{I, {}, {}};
+  mean.convertTo(out.light, CV_32F);
+  cv::Mat((values - mean).mul(weight) / spread).convertTo(out.levelled, CV_32F);
+  return out;
+}
+
+double variance(const cv::Mat& of) {
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(of, mean, deviation);
+  return deviation[0] * deviation[0];
+}
+
+/// Most of what is seen in the patch is light and no texture.
+bool needs_levelling(const Picture& picture, const cv::Rect& where,
+                     const InspectionOptions& options) {
+  return variance(picture.light(where)) > options.most_light * variance(picture.I(where));
+}
+
+/// How alike the patch is to another place of its own picture. Along an edge it is (the aperture
+/// problem: it tells motion across it alone), and in a pattern that repeats.
+double likeness_elsewhere(const cv::Mat& picture, const cv::Rect& where,
+                          const InspectionOptions& options) {
+  const int half = options.patch_px / 2;
+  const cv::Rect window = cv::Rect(where.x - 2 * half, where.y - 2 * half, where.width + 4 * half,
+                                   where.height + 4 * half) &
+                          cv::Rect(0, 0, picture.cols, picture.rows);
+  cv::Mat likeness;
+  cv::matchTemplate(picture(window), picture(where), likeness, cv::TM_CCOEFF_NORMED);
+  cv::patchNaNs(likeness, -1.0);
+  // Within half a patch it is the same place.
+  cv::circle(likeness, {where.x - window.x, where.y - window.y}, half, cv::Scalar(-1.0), -1);
+  double best = 0.0;
+  cv::minMaxLoc(likeness, nullptr, &best);
+  return best;
+}
+
 /// Top of the parabola through three neighbours, within half a step.
 double top(double left, double middle, double right) {
   const double bend = left - 2.0 * middle + right;
   return bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
 }
 
-/// False: nothing to see in the patch, or no room to seek it.
-bool seek(const cv::Mat& from, const cv::Mat& to, const cv::Point& at, int reach,
+/// False: nothing to see in the patch that has one place, or no room to seek it.
+bool seek(const Picture& from, const Picture& to, const cv::Point& at, int reach,
           const InspectionOptions& options, Patch* patch) {
   const int half = options.patch_px / 2;
-  const cv::Mat piece = from(cv::Rect(at.x - half, at.y - half, 2 * half + 1, 2 * half + 1));
+  const cv::Rect its(at.x - half, at.y - half, 2 * half + 1, 2 * half + 1);
   cv::Scalar mean, deviation;
-  cv::meanStdDev(piece, mean, deviation);
+  cv::meanStdDev(from.I(its), mean, deviation);
   if (deviation[0] < options.least_contrast * std::abs(mean[0]) || deviation[0] < 1e-4)
     return false;
+  const bool level = needs_levelling(from, its, options);
+  const cv::Mat &sought = level ? from.levelled : from.I, &in = level ? to.levelled : to.I;
+  patch->elsewhere = likeness_elsewhere(sought, its, options);
+  if (patch->elsewhere > options.alike_elsewhere) return false;
+  const cv::Mat piece = sought(its);
   const cv::Rect window = cv::Rect(at.x - half - reach, at.y - half - reach, 2 * (half + reach) + 1,
                                    2 * (half + reach) + 1) &
-                          cv::Rect(0, 0, to.cols, to.rows);
+                          cv::Rect(0, 0, in.cols, in.rows);
   if (window.width < piece.cols || window.height < piece.rows) return false;
   cv::Mat likeness;
-  cv::matchTemplate(to(window), piece, likeness, cv::TM_CCOEFF_NORMED);
+  cv::matchTemplate(in(window), piece, likeness, cv::TM_CCOEFF_NORMED);
   cv::patchNaNs(likeness, -1.0);
   double best = 0.0;
   cv::Point where;
@@ -77,13 +147,17 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+bool alike(const Patch& patch, const InspectionOptions& options) {
+  return patch.likeness >= std::max(options.alike, patch.elsewhere);
+}
+
 /// Whether patch `i` moves as its alike neighbours do.
-bool moves_along(const std::vector<Patch>& patches, size_t i, double alike) {
+bool moves_along(const std::vector<Patch>& patches, size_t i, const InspectionOptions& options) {
   constexpr size_t kNeighbours = 6, kLeast = 3;
   constexpr double kRoom = 2.0, kStrain = 0.25;  // px, and px a px of distance
   std::vector<std::pair<double, size_t>> near;
   for (size_t j = 0; j < patches.size(); ++j)
-    if (j != i && patches[j].likeness >= alike)
+    if (j != i && alike(patches[j], options))
       near.emplace_back((patches[j].at - patches[i].at).norm(), j);
   if (near.size() < kLeast) return false;
   const size_t count = std::min(near.size(), kNeighbours);
@@ -120,14 +194,16 @@ PatchField find_patches(const Image& from, const std::vector<unsigned char>& bod
                         double reach, const InspectionOptions& options) {
   PatchField field;
   const cv::Mat mask(from.height, from.width, CV_8U, const_cast<unsigned char*>(body.data()));
+  const Picture picture = picture_of(wrap(from), mask, options);
+  const Picture other = picture_of(wrap(to), cv::Mat(), options);
   for (const cv::Point& at : centres(mask, options)) {
     Patch patch;
-    if (seek(wrap(from), wrap(to), at, static_cast<int>(std::ceil(reach)), options, &patch))
+    if (seek(picture, other, at, static_cast<int>(std::ceil(reach)), options, &patch))
       field.patches.push_back(patch);
   }
   for (size_t i = 0; i < field.patches.size(); ++i)
     field.patches[i].found =
-        field.patches[i].likeness >= options.alike && moves_along(field.patches, i, options.alike);
+        alike(field.patches[i], options) && moves_along(field.patches, i, options);
   return field;
 }
 

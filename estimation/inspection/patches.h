@@ -13,7 +13,8 @@ struct Patch {
   Eigen::Vector2d at;                               ///< its centre [px]
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< to where it is found best
   double likeness = 0.0;                            ///< normalised cross-correlation there, -1 .. 1
-  bool found = false;                               ///< alike, and moved as its neighbours are
+  double elsewhere = 0.0;  ///< the same with other places of its own picture
+  bool found = false;      ///< alike, and moved as its neighbours are
 };
 
 struct PatchField {
@@ -24,8 +25,12 @@ struct PatchField {
 };
 
 /// Seeks patches that lie within `body` (per pixel of `from`) and have contrast in `to`, each up to
-/// `reach` px away, to a tenth of a pixel. A patch counts as found if its likeness is
-/// options.alike or more and it moves as the median of its neighbours does (the median test of
+/// `reach` px away, to a tenth of a pixel. Where a patch shows light more than texture, as across
+/// the edge of a bright and a dark face, it is sought in levelled pictures: without the mean of the
+/// neighbourhood and over its deviation, in windows of options.light_px. A patch that is as good as
+/// found in its own picture elsewhere is not sought: along an edge it tells motion across it alone
+/// (the aperture problem). A patch counts as found if its likeness is options.alike or more, and no
+/// less than to those places, and it moves as the median of its neighbours does (the median test of
 /// Westerweel and Scarano 2005, with room for strain and rotation).
 /// The only file that touches OpenCV's template matching is patches.cpp.
 PatchField find_patches(const Image& from, const std::vector<unsigned char>& body, const Image& to,

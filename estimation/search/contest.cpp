@@ -79,7 +79,7 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
             racer.effect,
             false,
             {racer.chi(), winner.limits().out_of_reach * winner.chi(), "search.out_of_reach"},
-            "out of reach of " + winner.effect + " after the same steps"});
+            "after as many steps too far behind " + winner.effect});
       continue;
     }
     if (held || places-- > 0 || (may_be_all(racer.effect, diagnosis) && racer.may_tie_with(winner)))
@@ -235,7 +235,7 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
             false,
             {racer.structured(), racer.limits().may_tie * racers.front().structured(),
              "search.may_tie"},
-            refits.front().effect + " is at the floor, and this one is no tie"});
+            refits.front().effect + " is at the noise floor, and this one is no equal"});
       continue;
     }
     FitOptions fit = options.fit;
@@ -256,8 +256,10 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
           true,
           {refits.back().fitted.evaluation.chi(false),
            step.diagnosis.floor.limits->floor.at * step.diagnosis.floor.chi, "floor.at"},
-          fmt::format("refitted in {} iterations: what it leaves of fitted photos",
-                      refits.back().fitted.iterations)});
+          fmt::format("refitted in {} iterations: normalised residual {:.3f} on fitted photos, "
+                      "{:.3f} without it; noise floor {:.3f}",
+                      refits.back().fitted.iterations, refits.back().fitted.evaluation.chi(false),
+                      step.fitted.evaluation.chi(false), step.diagnosis.floor.chi)});
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) {
       rank(out, step);
       return out;

@@ -180,7 +180,7 @@ class Search {
                                   one.effect,
                                   &one == &contest.refits.front(),
                                   {one.score - best, 0.0, ""},
-                                  "penalised log-likelihood over that of the best refit"});
+                                  "penalised log likelihood over that of the best refit"});
   }
 
   void add_two(const Refit& first, Contest& contest, Step second) {
@@ -226,12 +226,12 @@ class Search {
     const double tie = newest().diagnosis.limits().tie;
     std::vector<const Refit*> equals;
     for (const auto& rival : contest.refits)
-      if (&rival != &winner &&
-          tell(options_.fit.decided, {Asked::tied,
-                                      rival.effect,
-                                      rival.score > winner.score - tie,
-                                      {rival.score - winner.score, -tie, "diagnosis.tie"},
-                                      "its score over that of " + winner.effect}))
+      if (&rival != &winner && tell(options_.fit.decided,
+                                    {Asked::tied,
+                                     rival.effect,
+                                     rival.score > winner.score - tie,
+                                     {rival.score - winner.score, -tie, "diagnosis.tie"},
+                                     "its penalised log likelihood over that of " + winner.effect}))
         equals.push_back(&rival);
     next.fitted = std::move(winner.fitted);
     losers_.clear();

@@ -1,5 +1,7 @@
 #include "estimation/search/race.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -94,13 +96,20 @@ bool no_rival(const EffectScore& score, const Diagnosis& diagnosis, const Racer&
          first.limits().out_of_reach * newest(first).chi_fit;
 }
 
+/// 0: there is none.
+std::string residual_in_words(double chi) { return chi > 0.0 ? fmt::format("{:.3g}", chi) : "-"; }
+
 void tell_of_trial(const FitOptions& options, const Racer& racer, const TrialScale& start) {
   tell(options.decided,
        {Asked::screened,
         racer.effect,
         true,
         {racer.chi(), start.chi + start.chi_validate, ""},
-        "what one step leaves at half size, fitted and held out, of what there was"});
+        fmt::format("one step of its refit, on half-size photos: normalised residual {} on fitted "
+                    "photos, {} on held-out ones; without it {} and {}; noise floor {}",
+                    residual_in_words(racer.trial.chi_fit),
+                    residual_in_words(racer.trial.chi_validate), residual_in_words(start.chi),
+                    residual_in_words(start.chi_validate), start.floor > 0.0 ? residual_in_words(start.floor) : "unknown")});
 }
 
 }  // namespace
@@ -152,7 +161,7 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
       if (cancelled(*failure)) break;
       continue;
     }
-    Racer racer{score.effect, std::move(started), std::get<Trial>(std::move(result)), {}};
+    Racer racer{score.effect, std::move(started), std::get<Trial>(std::move(result)), {}, scale};
     auto* other = std::get_if<Racer>(&best);
     if (other)
       for (Racer* one : {other, &racer}) {
@@ -184,7 +193,8 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
             false,
             {score.explains, racers.front().limits().promises * diagnosis.effects.front().explains,
              "search.promises"},
-            racers.front().effect + " explains nearly all, and this promises too little to tie"});
+            racers.front().effect +
+                " explains nearly all, and this promises too little to equal it"});
       continue;
     }
     auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
@@ -218,13 +228,13 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
                            false,
                            {double(i + 1), double(first.limits().second_round),
                             "search.second_round"},
-                           "others got farther in their first step: no second one"}
+                           "other effects got farther in their first step: no second one"}
                 : Decision{Asked::screened,
                            effect,
                            false,
                            {racers[i].chi(), first.limits().out_of_reach * first.chi(),
                             "search.out_of_reach"},
-                           "out of reach of " + first.effect + " after one step"});
+                           "after one step too far behind " + first.effect + ": no second one"});
       continue;
     }
     if (auto stopped = run_on(workspace, racers[i], std::get<TrialScale>(scale), options, tried))
@@ -252,6 +262,7 @@ std::variant<std::vector<Racer>, NumericalFailure> race_beside(
       continue;
     }
     racer.trial = std::get<Trial>(std::move(result));
+    racer.start = std::get<TrialScale>(scale);
     if (tried) tried(racer);
     beside.push_back(std::move(racer));
   }

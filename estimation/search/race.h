@@ -19,6 +19,7 @@ struct Racer {
   ModelForm form;
   Trial trial;
   std::optional<Trial> next;  ///< after one step more: of the first four within reach
+  TrialScale start{};         ///< the model without the effect, in the same pictures
   double chi() const { return trial.chi_fit + trial.chi_validate; }
   /// The part of it that is no noise, on fitted and on held-out photos; at least what
   /// FloorLimits::on times the floor is.

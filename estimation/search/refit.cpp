@@ -100,11 +100,12 @@ std::variant<Fitted, NumericalFailure> fit_plainest(Workspace& workspace, Fitted
   const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
   const double gain =
       refit_score(std::get<Fitted>(second), yardstick) - refit_score(fitted, yardstick);
-  return tell(options.decided, {Asked::widened,
-                                form_in_words(other->first),
-                                gain >= 0.0,
-                                {gain, 0.0, ""},
-                                "plainer: score over that of the form with more numbers"})
+  return tell(options.decided,
+              {Asked::widened,
+               form_in_words(other->first),
+               gain >= 0.0,
+               {gain, 0.0, ""},
+               "reduced: its penalised log likelihood over that of the form with more numbers"})
              ? second
              : fitted;
 }
@@ -126,12 +127,12 @@ std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const 
     return fit_plainest(workspace, std::move(*larger), options);
   }
   Fitted& smaller = std::get<Fitted>(second);
-  const bool as_good =
-      tell(options.decided, {Asked::widened,
-                             form_in_words(other->first),
-                             misfit(smaller) <= misfit(*larger),
-                             {misfit(smaller), misfit(*larger), ""},
-                             "smaller: misfit, fitted and held out, against the larger form's"});
+  const bool as_good = tell(
+      options.decided, {Asked::widened,
+                        form_in_words(other->first),
+                        misfit(smaller) <= misfit(*larger),
+                        {misfit(smaller), misfit(*larger), ""},
+                        "smaller form: its misfit, fitted and held out, against the larger one's"});
   return fit_plainest(workspace, std::move(as_good ? smaller : *larger), options);
 }
 

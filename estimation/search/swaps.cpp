@@ -96,7 +96,7 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
                                    one.name(),
                                    score > full - tie,
                                    {score - full, -tie, "diagnosis.tie"},
-                                   "score without it over that with it"}))
+                                   "penalised log likelihood without it over that with it"}))
       return Refit{one.name(), std::move(*lighter), score};
   }
   return {};
@@ -123,7 +123,7 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
                          at_floor(*lighter, floor),
                          {std::max(lighter->evaluation.chi(false), lighter->evaluation.chi(true)),
                           floor.limits->floor.at * floor.chi, "floor.at"},
-                         "its intervals hold its null; what stays without it"}))
+                         "its intervals hold its null; the normalised residual without it"}))
       return Refit{all[i]->name(), std::move(*lighter), 0.0};
   }
   return {};
@@ -230,7 +230,7 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
                                  score->effect + " in place of " + dropped.name(),
                                  refit->score >= enough,
                                  {refit->score, enough, "diagnosis.nameable"},
-                                 "score with it over that with the other"});
+                                 "penalised log likelihood with it over that with the other"});
       if (refit->score < floor.limits->diagnosis.nameable ||
           same_form(*refit->fitted.form.ingredients.back(), dropped))
         refused.emplace(asked, RefusedSwap{refit->fitted.form, refit->fitted.p});
@@ -328,12 +328,12 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
   for (Refit& refit : refits) {
     refit.score = score_above(refit.fitted, last, floor);
     const double tie_margin = floor.limits->diagnosis.tie;
-    if (tell(options.fit.decided,
-             {Asked::tied,
-              refit.effect,
-              refit.score > -tie_margin,
-              {refit.score, -tie_margin, "diagnosis.tie"},
-              "asked again in place of " + tie.front() + ": its score over that"}))
+    if (tell(options.fit.decided, {Asked::tied,
+                                   refit.effect,
+                                   refit.score > -tie_margin,
+                                   {refit.score, -tie_margin, "diagnosis.tie"},
+                                   "asked again in place of " + tie.front() +
+                                       ": its penalised log likelihood over that one's"}))
       out.tie.push_back(refit.effect);
     if (refit.score > floor.limits->diagnosis.tie &&
         (!out.better || refit.score > out.better->in.score))

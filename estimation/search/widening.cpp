@@ -136,13 +136,16 @@ bool told_paying(const Decided& decided, const std::string& words, const Fitted&
                  const Fitted& narrow, const Floor& floor, bool same_claim) {
   const double before = over_floor(narrow, floor);
   const double leaves = before > 0.0 ? over_floor(wide, floor) / before : 1.0;
-  return tell(decided, {Asked::widened,
-                        words,
-                        pays(wide, narrow, floor, same_claim),
-                        {leaves, same_claim ? 1.0 : floor.limits->search.widening_leaves,
-                         "search.widening_leaves"},
-                        fmt::format("share of what is over the floor that it leaves; score {:+.1f}",
-                                    score_above(wide, narrow, floor))});
+  return tell(
+      decided,
+      {Asked::widened,
+       words,
+       pays(wide, narrow, floor, same_claim),
+       {leaves, same_claim ? 1.0 : floor.limits->search.widening_leaves, "search.widening_leaves"},
+       fmt::format(
+           "enriched: the share of the excess misfit that it leaves; penalised log likelihood "
+           "{:+.1f}",
+           score_above(wide, narrow, floor))});
 }
 
 /// The wide form's plainer one, where it has one that scores as well: all constants of a material
@@ -197,7 +200,7 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
               false,
               {std::numeric_limits<double>::quiet_NaN(),
                narrow.form.scene->limits->search.widening_stalls, "search.widening_stalls"},
-              "its trial at half size stalls with most of what is over the floor"});
+              "its screening on half-size photos stalls with most of the excess misfit"});
         continue;
       }
       FitOptions farther = options;
@@ -303,11 +306,12 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
       auto* lighter = std::get_if<Fitted>(&result);
       if (!lighter) continue;
       const double score = score_above(*lighter, fitted, floor), tie = floor.limits->diagnosis.tie;
-      if (tell(options.decided, {Asked::dropped,
-                                 all[i]->name(),
-                                 at_floor(*lighter, floor) && score > -tie,
-                                 {score, -tie, "diagnosis.tie"},
-                                 "beside a smaller form: score " + words + " over that with it"}))
+      if (tell(options.decided,
+               {Asked::dropped,
+                all[i]->name(),
+                at_floor(*lighter, floor) && score > -tie,
+                {score, -tie, "diagnosis.tie"},
+                "beside a smaller form: penalised log likelihood " + words + " over that with it"}))
         return Refit{all[i]->name(), std::move(*lighter), 0.0};
     }
   }

@@ -94,6 +94,7 @@ void remesh(Unpacker& request, Packer& out) {
 
 std::string answer(Unpacker& request) {
   const auto task = request.take<std::string>();
+  die_of_interrupts();
   Packer out;
   if (task == "orient") orient(request, out);
   if (task == "fill") fill(request, out);

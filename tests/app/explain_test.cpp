@@ -1,6 +1,7 @@
 // What a search decided is on disk, and `explain` tells it with its number and its line.
 #include <gmock/gmock.h>
 
+#include <cctype>
 #include <fstream>
 
 #include "app/fitted_run.h"
@@ -18,15 +19,37 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
   const Result found = hookeye("discover capture -o run");
   ASSERT_EQ(found.status, 0) << found.err;
 
+  // What it says on its way stands for itself, too.
+  EXPECT_THAT(found.err,
+              AllOf(ContainsRegex("screening of gravity on half-size photos: normalised residual "
+                                  "[0-9.]+ on fitted photos \\([0-9.]+ without it\\), [0-9.]+ on "
+                                  "held-out ones \\([0-9.]+\\); noise floor ([0-9.]+|unknown)"),
+                    ContainsRegex("with gravity: normalised residual [0-9.]+ on fitted photos "
+                                  "\\([0-9.]+ without it\\)"),
+                    ContainsRegex("decided: gravity is added: .*penalised log likelihood")));
   const Result all = hookeye("explain run");
   ASSERT_EQ(all.status, 0) << all.err;
-  EXPECT_THAT(all.out, AllOf(HasSubstr("of the model of step 00-base"),
-                             ContainsRegex("gravity \\([0-9.]+ CPU-s\\), stands: "),
-                             HasSubstr("effects do not stand out"), HasSubstr("the search ended")));
+  EXPECT_THAT(all.out,
+              AllOf(HasSubstr("beyond the model of step 00-base: its normalised residual is "),
+                    ContainsRegex("gravity \\([0-9.]+ CPU-s\\), stands: "),
+                    HasSubstr("effects do not stand out"), HasSubstr("the search ended")));
   const Result gravity = hookeye("explain run gravity");
   EXPECT_THAT(gravity.out,
               AllOf(HasSubstr("stands out"), HasSubstr("refitted"), HasSubstr("says most"),
                     HasSubstr("diagnosis.nameable"), Not(HasSubstr("swelling, "))));
+  // Each number has a name, and what it is held against beside it.
+  std::string words;
+  for (const char c : gravity.out)
+    if (!std::isspace(static_cast<unsigned char>(c)) || (!words.empty() && words.back() != ' '))
+      words += std::isspace(static_cast<unsigned char>(c)) ? ' ' : c;
+  EXPECT_THAT(words,
+              AllOf(ContainsRegex("\\(log Bayes factor [0-9.]+; a name takes [0-9.]+: "),
+                    ContainsRegex("one step of its refit, on half-size photos: normalised residual "
+                                  "[0-9.]+ on fitted photos, [0-9.]+ on held-out ones; without it "
+                                  "[0-9.]+ and [0-9.]+; noise floor ([0-9.]+|unknown)"),
+                    ContainsRegex("normalised residual [0-9.]+ on fitted photos, [0-9.]+ without "
+                                  "it; noise floor [0-9.]+"),
+                    ContainsRegex("penalised log likelihood")));
   // The line that it names is in the sources, and tells a decision.
   const std::string text = gravity.out;
   const size_t at = text.rfind("[estimation/"), colon = text.find(':', at);

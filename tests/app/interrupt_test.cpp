@@ -41,7 +41,7 @@ class Interrupted : public Cli {
   }
   /// A search stopped after its first step goes on from there.
   void search() const {
-    const Result stopped = interrupt_at("base: chi", "discover capture -o search");
+    const Result stopped = interrupt_at("step base: normalised", "discover capture -o search");
     ASSERT_EQ(stopped.status, 130) << stopped.out << stopped.err;
     const fs::path model = folder_ / "search/steps/00-base/model.yaml";
     ASSERT_TRUE(fs::exists(model));

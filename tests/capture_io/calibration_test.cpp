@@ -1,4 +1,5 @@
-#include <gtest/gtest.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <opencv2/core.hpp>
 
@@ -122,13 +123,54 @@ TEST(CalibrationTest, DeepNestingIsNoCrash) {
   }
 }
 
+/// A whole file as cv::FileStorage writes it, cut off anywhere: never read, and where a list is cut
+/// the line where the file ends and that where the list begins are told.
+TEST(CalibrationTest, WhatIsCutOffIsToldByItsLine) {
+  const TemporaryFolder folder;
+  const std::string list = "[ 800., 0., 320., 0.,\n       801., 240., 0., 0., 1. ]";
+  const std::string matrix = "   rows: 3\n   cols: 3\n   dt: d\n   data: ";
+  const std::string yml = "%YAML:1.0\n---\nname: \"it's [ a lens\"\nK: !!opencv-matrix\n" + matrix +
+                          list + "\nimage_width: 640\nimage_height: 480\n";
+  const auto complaint = [&](const std::string& name, const std::string& text) -> std::string {
+    write_text(folder / name, text);
+    try {
+      read_opencv_calibration(folder / name);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ASSERT_EQ(complaint("whole.yml", yml), "");
+  const size_t begin = yml.find("[ 800"), end = yml.find(" ]\n");
+  const std::string file = (folder / "cut.yml").string();
+  for (size_t at = begin + 1; at <= end; at += 5) {
+    const std::string told = complaint("cut.yml", yml.substr(0, at));
+    const int line = at <= yml.find("\n       801") + 8 ? 8 : 9;
+    EXPECT_EQ(told,
+              fmt::format("{}:{}: the file ends early: `[` of line 8 is not closed\n  copy the "
+                          "whole file again, or write it anew with cv::FileStorage",
+                          file, line))
+        << at;
+  }
+  for (size_t at = 12; at < end; at += 3)
+    EXPECT_NE(complaint("cut.yml", yml.substr(0, at)), "") << at;
+  EXPECT_THAT(complaint("cut.yml", yml.substr(0, yml.find("   data"))),
+              testing::HasSubstr("`K` has rows but no data"));
+  EXPECT_THAT(complaint("ros.yaml", "image_width: 640\nK: [800., 0., 320.,\n  0., 80"),
+              testing::HasSubstr("ros.yaml:3: the file ends early: `[` of line 2 is not closed"));
+  EXPECT_THAT(complaint("cut.json", "{\n  \"K\": [800.0, 0.0,\n    320.0"),
+              testing::HasSubstr("cut.json:3: the file ends early: `[` of line 2 is not closed"));
+  EXPECT_THAT(complaint("cut.xml", "<?xml version=\"1.0\"?>\n<opencv_storage>\n<K>800. 0. 320.\n"),
+              testing::HasSubstr("cut.xml:3: the file ends early: `<opencv_storage>` of line 2"));
+}
+
 /// Broken calibrations and what is said about them.
 TEST(CalibrationTest, FaultsAreNamed) {
   const TemporaryFolder folder;
   const std::string k = "K: [100., 0., 5., 0., 100., 5., 0., 0., 1.]\n";
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "there is no camera matrix"},
-      {"K: [100., 0.", "this is not an OpenCV file"},
+      {"K: [100., 0.", "the file ends early: `[` of line 3 is not closed"},
       {"K: hello\n", "`K` is not a matrix"},
       {"K: [100., 0., 5.]\n", "`K` has 3 numbers"},
       {"K: [0., 0., 5., 0., 100., 5., 0., 0., 1.]\n", "the focal lengths are 0 and 100 px"},

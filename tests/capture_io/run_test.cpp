@@ -249,6 +249,38 @@ TEST(RunTest, FilesOfAStepAreNeverChanged) {
   EXPECT_EQ(entries, 3u) << "no temporary file is left";
 }
 
+TEST(RunTest, AFolderThatIsRemovedMeanwhileDoesNotComeBack) {
+  const TemporaryFolder folder;
+  const fs::path where = folder / "run";
+  RunFolder run = RunFolder::create(where, folder / "capture.yaml");
+  const fs::path step = run.add_step("base", {}, write_model);
+  fs::remove_all(where);
+  const auto write = [](const fs::path& file) { write_text(file, "{}"); };
+  const std::function<void()> ways[] = {
+      [&] { run.add_step("gravity", {}, write_model); },
+      [&] { run.add_file(step, "diagnosis.json", write); },
+      [&] { run.update([](nlohmann::json& timeline) { timeline["verdict"] = "explained"; }); }};
+  for (const auto& way : ways)
+    EXPECT_EQ(complaint(way), "the run folder was removed or moved while it was written");
+  EXPECT_FALSE(fs::exists(where));
+  // Nor does another run in its place get a step of this one.
+  const RunFolder other = RunFolder::create(where, folder / "capture.yaml");
+  EXPECT_NE(complaint(ways[0]), "");
+  EXPECT_TRUE(fs::is_empty(where / "steps"));
+}
+
+TEST(RunTest, AFolderThatIsRemovedWhileAStepIsWrittenIsToldAsThat) {
+  const TemporaryFolder folder;
+  const fs::path where = folder / "run";
+  RunFolder run = RunFolder::create(where, folder / "capture.yaml");
+  const auto remove_and_write = [&](const fs::path& temporary) {
+    fs::remove_all(where);
+    write_model(temporary);
+  };
+  EXPECT_EQ(complaint([&] { run.add_step("base", {}, remove_and_write); }),
+            "the run folder was removed or moved while it was written");
+}
+
 TEST(RunTest, ReadersCannotWrite) {
   const TemporaryFolder folder;
   RunFolder::create(folder / "run", folder / "capture.yaml").add_step("base", {}, write_model);

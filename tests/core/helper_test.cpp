@@ -152,6 +152,24 @@ TEST_F(Helpers, ThreadsMayAskAtOnce) {
   EXPECT_EQ(right, 160);
 }
 
+/// Ctrl-C that reaches the program alone, as by `kill -INT`.
+TEST_F(Helpers, AnInterruptEndsThoseThatComputeForLong) {
+  HelperRequest wanted = request("compute");
+  wanted.limits = unlimited;
+  wanted.interruptible = true;
+  const auto ask_it = [&] { ask_helper(wanted, [](Unpacker& from) { return from.take<int>(); }); };
+  std::thread ctrl_c([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    interrupt_helpers();
+  });
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_THROW(ask_it(), Interrupted);
+  ctrl_c.join();
+  EXPECT_THROW(ask_it(), Interrupted) << "nothing long is begun any more";
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(5));
+  EXPECT_EQ(ask("echo"), "echo") << "what writes goes on";
+}
+
 /// 160 MB there and back: neither side waits for the other to read.
 TEST_F(Helpers, LargeMessagesPass) {
   HelperRequest wanted = request("echo");

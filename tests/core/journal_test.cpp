@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <random>
 
 #include "core/input_error.h"
@@ -75,6 +76,30 @@ TEST_F(JournalTest, WhatADamagedRecordLeavesBeforeItStays) {
     write_text(file(), other);
     EXPECT_EQ(Journal(file(), "this").size(), 0U);
   }
+}
+
+TEST_F(JournalTest, AFileThatIsRemovedMeanwhileIsToldByItsFolder) {
+  Journal journal(file(), "this");
+  journal.add("first");
+  fs::remove(file());
+  try {
+    journal.add("second");
+    FAIL() << "written to a file without a name";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().file, folder_.path().string());
+    EXPECT_THAT(error.wrong(), testing::HasSubstr("archive in it, was removed"));
+  }
+  write_text(file(), "another one");
+  EXPECT_THROW(journal.add("third"), InputError);
+  EXPECT_EQ(read_text(file()), "another one");
+}
+
+TEST_F(JournalTest, WhatIsOverwrittenMeanwhileIsNotTakenForARecord) {
+  Journal journal(file(), "this");
+  journal.add("first");
+  const auto size = fs::file_size(file());
+  std::ofstream(file(), std::ios::binary | std::ios::trunc) << std::string(size, '\0');
+  EXPECT_THROW(journal.read(0), InputError);
 }
 
 TEST_F(JournalTest, RecordsForSomethingElseAreNotRead) {

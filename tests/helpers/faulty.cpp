@@ -33,6 +33,10 @@ std::string answer(Unpacker& request) {
     die_of_interrupts();
     std::raise(SIGINT);  // as Ctrl-C does to all that runs in a terminal
   }
+  if (task == "compute") {
+    die_of_interrupts();
+    spin();
+  }
   if (task == "kill") std::raise(SIGKILL);  // as the kernel does when memory is out
   if (task == "refuse") throw InputError({"a.vtu", 3, 4}, "it is wrong", "be right");
   if (task == "throw") throw std::runtime_error("something else");

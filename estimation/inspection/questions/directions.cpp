@@ -109,8 +109,7 @@ void ask_for_signs(Sight& sight, const LoadCase& seen, Warnings& warnings) {
         sight.example(e).place, what,
         "look at the directions of the loads, which are the world's and not the part's, "
         "at supports and at regions (`check -o DIR` draws them); where the drawing moves as "
-        "the photo does the loads may be right, and texture was found at wrong places along an "
-        "edge between a bright and a dark side");
+        "the photo does the loads may be right");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/inspection/apart.h"
 #include "estimation/inspection/question.h"
 
 namespace hookeye::inspection {
@@ -23,9 +24,14 @@ double score(const Agreement& a) {
   return (std::isnan(a.share) ? 0.0 : 2.0 * a.share) + (std::isnan(a.overlap) ? 0.0 : a.overlap);
 }
 
-bool astray(const Agreement& a, bool told_background, const InspectionOptions& options) {
+/// A clamp or a table in view lowers the overlap, but says nothing of the camera.
+bool astray(Sight& sight, PhotoIndex photo) {
+  const InspectionOptions& options = sight.options();
+  const Agreement& a = sight.agreement(photo);
   if (!std::isnan(a.share)) return a.share < options.lost_share;
-  return told_background && !std::isnan(a.overlap) && a.overlap < options.lost_overlap;
+  if (!sight.small(photo).foreground.told || !(a.overlap < options.lost_overlap)) return false;
+  const auto parted = apart(sight, photo);
+  return !parted || parted->without_still < options.lost_overlap;
 }
 
 bool fits(const Agreement& a, const Agreement& as_told, const InspectionOptions& options) {
@@ -116,7 +122,7 @@ void ask_flips(Sight& sight, Warnings& warnings) {
   if (sight.scene().capture.body.fit_placement) return;  // nobody knows yet where the body stands
   for (const PhotoIndex& photo : sight.references()) {
     const Agreement& told = sight.agreement(photo);
-    if (!astray(told, sight.small(photo).foreground.told, sight.options())) continue;
+    if (!astray(sight, photo)) continue;
     const auto all = explanations(sight, photo);
     const std::string camera = sight.spec(photo).camera;
     sight.doubt(camera);

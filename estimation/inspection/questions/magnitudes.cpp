@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimation/inspection/field_motion.h"
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
 
@@ -93,6 +94,44 @@ void say_of_forces(const Sight& sight, const std::vector<Times>& off, size_t ask
   }
 }
 
+/// Fields of displacements against the first guess: their size, and whether it is the whole body
+/// that moves otherwise.
+void ask_of_fields(Sight& sight, Warnings& warnings) {
+  const InspectionOptions& options = sight.options();
+  const std::string& length = sight.scene().capture.units.length;
+  const auto off = [](double times, double most) {
+    return times > 0.0 && std::abs(std::log(times)) > std::log(most);
+  };
+  for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
+    const int e = static_cast<int>(i);
+    if (sight.load_doubted(e) || sight.guess(e)->turned) continue;
+    for (const FieldMotion& field : field_motions(sight, e)) {
+      if (field.expected == 0.0 || field.seen == 0.0) continue;
+      const double times = field.seen / field.expected;
+      const double bent = field.expected_bent > 0.0 ? field.seen_bent / field.expected_bent : 0.0;
+      const std::string seen =
+          fmt::format("the points of {} move by {:.3g} {}, {} the first guess ({:.2g} {})",
+                      field.file, field.seen, length, more_or_less(times), field.expected, length);
+      if (off(times, options.usual_times) && bent > 0.0 && !off(bent, options.usual_times) &&
+          field.cosine_bent >= options.astray_cosine)
+        warnings.say(field.place,
+                     fmt::format("{}, but by {:.2g} and {:.2g} {} once a rigid motion is out of "
+                                 "both",
+                                 seen, field.seen_bent, field.expected_bent, length),
+                     "a motion of the whole body that no support specifies: a grip or a machine "
+                     "that gives way (`rigid: fit` on the support), or a field in a frame that "
+                     "moves");
+      else if (off(times,
+                   by_forces(sight, e) ? options.most_times_by_force : options.most_times_moved))
+        warnings.say(field.place, seen,
+                     fmt::format("the field's `unit` or `scale`, or loads and moduli in another "
+                                 "unit: forces in {}, stresses in {}, motions in {}",
+                                 sight.scene().capture.units.force,
+                                 sight.scene().capture.units.stress(), length));
+    }
+  }
+}
+
 /// Where no photo tells, the strain to first order does.
 void ask_of_strains(Sight& sight, Warnings& warnings) {
   const InspectionOptions& options = sight.options();
@@ -140,6 +179,7 @@ void ask_magnitudes(Sight& sight, Warnings& warnings) {
                       sight.scene().capture.units.length));
   }
   say_of_forces(sight, off, asked, warnings);
+  ask_of_fields(sight, warnings);
   ask_of_strains(sight, warnings);
 }
 

@@ -1,0 +1,79 @@
+#include "estimation/inspection/field_motion.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "estimation/model/field_points.h"
+#include "meshing/extent.h"
+
+namespace hookeye::inspection {
+
+namespace {
+
+/// Measured components of the points' displacements, point by point, from those in space (3 x n).
+VectorXd components_of(const FieldSpec& field, const Matrix3Xd& u) {
+  return (field.axes.leftCols(field.components).transpose() * u).reshaped();
+}
+
+/// Columns: what each rigid motion to first order, three shifts and three turns, does to them.
+Eigen::MatrixXd rigid_motions(const FieldSpec& field) {
+  Eigen::MatrixXd out(field.components * field.X.cols(), 6);
+  const Vector3d middle = field.X.rowwise().mean();
+  const double size = std::max(extent(field.X), 1e-300);
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d axis = Vector3d::Unit(k);
+    Matrix3Xd turned(3, field.X.cols());
+    for (Eigen::Index i = 0; i < field.X.cols(); ++i)
+      turned.col(i) = axis.cross(field.X.col(i) - middle) / size;
+    out.col(k) = components_of(field, axis.replicate(1, field.X.cols()));
+    out.col(3 + k) = components_of(field, turned);
+  }
+  return out;
+}
+
+/// Root mean square length of a point's motion.
+double length_of(const VectorXd& components, const FieldSpec& field) {
+  return std::sqrt(components.squaredNorm() / double(field.X.cols()));
+}
+
+double cosine_of(const VectorXd& a, const VectorXd& b) {
+  const double size = a.norm() * b.norm();
+  return size > 0.0 ? a.dot(b) / size : 0.0;
+}
+
+FieldMotion motion_of(const MeasuredSpec& measured, const TetMesh& mesh, const VectorXd& u) {
+  const FieldSpec& field = *measured.field;
+  const Matrix3Xd nodal = u.reshaped(3, mesh.nodes());
+  const Matrix3Xd at_points = (field_points(mesh, field).N * nodal.transpose()).transpose();
+  const VectorXd expected = components_of(field, at_points);
+  const VectorXd& seen = measured.value;
+  FieldMotion out;
+  out.file = field.told;
+  out.place = measured.place;
+  out.seen = length_of(seen, field), out.expected = length_of(expected, field);
+  out.cosine = cosine_of(seen, expected);
+  // Turns about an axis in the plane that two components do not show leave a column of zeros.
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> rigid(rigid_motions(field));
+  const auto bent = [&](const VectorXd& of) -> VectorXd {
+    return of - rigid_motions(field) * rigid.solve(of);
+  };
+  const VectorXd seen_bent = bent(seen), expected_bent = bent(expected);
+  out.seen_bent = length_of(seen_bent, field), out.expected_bent = length_of(expected_bent, field);
+  out.cosine_bent = cosine_of(seen_bent, expected_bent);
+  return out;
+}
+
+}  // namespace
+
+std::vector<FieldMotion> field_motions(Sight& sight, int e) {
+  std::vector<FieldMotion> out;
+  const FirstGuess* guess = sight.guess(e);
+  if (!guess || guess->u.size() == 0) return out;
+  for (const MeasuredSpec& measured : sight.example(e).measured)
+    if (measured.field)
+      out.push_back(motion_of(measured, sight.coarse()->scene().body->mesh, guess->u));
+  for (FieldMotion& one : out) one.example = e;
+  return out;
+}
+
+}  // namespace hookeye::inspection
