@@ -31,17 +31,17 @@ cv::Mat still(Sight& sight, PhotoIndex photo, const std::vector<PhotoIndex>& oth
   constexpr double kSigmas = 5.0;    // of one of two photos
   const SmallPhoto& here = sight.small(photo);
   const NoiseModel& noise = sight.scene().photos[size_t(photo.first)][size_t(photo.second)].noise;
-  std::vector<float> sorted = here.I.values;
+  std::vector<float> sorted = here.I->values;
   const auto bright = sorted.begin() + static_cast<long>(0.99 * double(sorted.size() - 1));
   std::nth_element(sorted.begin(), bright, sorted.end());
   const double least = kOfWhite * double(*bright);
-  Pixels out(here.I.pixels(), 255);
+  Pixels out(here.I->pixels(), 255);
   for (const PhotoIndex& other : others) {
     const SmallPhoto& there = sight.small(other);
-    if (there.I.pixels() != out.size()) continue;
+    if (there.I->pixels() != out.size()) continue;
     for (size_t i = 0; i < out.size(); ++i) {
-      const double sigma = noise.sigma(double(here.I.values[i])) / here.px();
-      if (std::abs(there.I.values[i] - here.I.values[i]) > std::max(kSigmas * sigma, least))
+      const double sigma = noise.sigma(double(here.I->values[i])) / here.px();
+      if (std::abs(there.I->values[i] - here.I->values[i]) > std::max(kSigmas * sigma, least))
         out[i] = 0;
     }
   }
@@ -84,7 +84,7 @@ std::optional<Apart> apart(Sight& sight, PhotoIndex photo) {
   if (seen.foreground.inside.empty()) return {};
   const Pixels outline = sight.outline(photo, sight.shown(photo.first));
   cv::Mat in_photo = as_mat(seen.foreground.inside, seen.I), in_model = as_mat(outline, seen.I);
-  if (!seen.valid.empty()) {
+  if (!seen.valid->empty()) {
     const cv::Mat valid = as_mat(seen.valid, seen.I);
     in_photo &= valid, in_model &= valid;
   }

@@ -36,10 +36,11 @@ std::vector<Vector2d> motion_between(const Sight& sight, const Motion& motion,
                                      const Matrix3Xd& from, const Matrix3Xd& to) {
   const SurfaceMesh& surface = sight.scene().body->surface.mesh;
   const Camera camera = sight.camera(motion.reference);
+  const double px = std::exp2(sight.scene().halvings_of(camera.name));  // of the file
   std::vector<Vector2d> out;
   for (size_t i = 0; i < motion.triangle.size(); ++i)
-    out.push_back(place_of(camera, surface, to, motion.triangle[i], motion.uv[i]) -
-                  place_of(camera, surface, from, motion.triangle[i], motion.uv[i]));
+    out.push_back(px * (place_of(camera, surface, to, motion.triangle[i], motion.uv[i]) -
+                        place_of(camera, surface, from, motion.triangle[i], motion.uv[i])));
   return out;
 }
 

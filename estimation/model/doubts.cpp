@@ -113,8 +113,11 @@ void look_at_photos(const Scene& scene, Sentences* out) {
                                    scene.capture.examples[e].name, photo.camera));
     }
   if (scene.capture.body.fit_placement) return;
-  for (const Camera& camera : scene.capture.cameras) {
-    if (!used.count(camera.name)) continue;
+  for (const Camera& as_read : scene.capture.cameras) {
+    if (!used.count(as_read.name)) continue;
+    const int halvings = scene.halvings_of(as_read.name);
+    Camera camera = as_read.resized(std::exp2(halvings));  // users know the photo that they took
+    camera.width <<= halvings, camera.height <<= halvings;
     const std::string where = beside_the_picture(camera, scene.body->surface.mesh.X);
     if (where.empty()) continue;
     out->push_back(fmt::format(
