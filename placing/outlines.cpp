@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "placing/outline_match.h"
 
@@ -68,7 +69,9 @@ class Search {
     for (const int px : options.look_px) {
       std::vector<Outline> outlines = outlines_of(scene, px, why_not);
       why_not = nullptr;  // the same photos at each size
-      if (!outlines.empty())
+      if (outlines.empty()) continue;
+      // Small photos are not drawn twice.
+      if (levels_.empty() || levels_.back()->outlines().front().px != outlines.front().px)
         levels_.push_back(std::make_unique<OutlineMatch>(scene, body, std::move(outlines)));
     }
   }

@@ -69,7 +69,7 @@ struct Match {
   Vector3d on_body, normal;  ///< of the body, before the motion
 };
 
-struct Settled {
+struct Laid {
   Isometry3d motion = Isometry3d::Identity();
   double misfit = INFINITY;  ///< of the nearest share of the points [length]
 };
@@ -135,8 +135,8 @@ class Laying {
     return std::max(kReach * quantile(std::move(distances), 0.5), floor_);
   }
 
-  Settled settle(const Cloud& cloud, const Isometry3d& start, int rounds) const {
-    Settled best{start, INFINITY};
+  Laid settle(const Cloud& cloud, const Isometry3d& start, int rounds) const {
+    Laid best{start, INFINITY};
     Isometry3d now = start;
     int worse = 0;
     for (int round = 0; round <= rounds; ++round) {
@@ -193,7 +193,7 @@ void check_size(const Cloud& cloud, const PlacedBody& body, const Place& place) 
                    "for the capture's. A scan with much around the body is cut to the body first");
 }
 
-std::vector<Isometry3d> starts(const Cloud& cloud, const PlacedBody& body) {
+std::vector<Isometry3d> laying_starts(const Cloud& cloud, const PlacedBody& body) {
   std::vector<Isometry3d> all{Isometry3d::Identity()};
   // Principal axes of both, and the told turn, each with all ways to lay a cube's axes.
   const Vector3d mean = cloud.middle;
@@ -211,14 +211,14 @@ std::vector<Isometry3d> starts(const Cloud& cloud, const PlacedBody& body) {
   return all;
 }
 
-void sort_out(const PlacedBody& body, std::vector<Settled>* found) {
+void sort_laid(const PlacedBody& body, std::vector<Laid>* found) {
   constexpr double kSameTurn = 0.05, kSameShift = 0.02;
-  std::erase_if(*found, [](const Settled& one) { return !std::isfinite(one.misfit); });
+  std::erase_if(*found, [](const Laid& one) { return !std::isfinite(one.misfit); });
   std::stable_sort(found->begin(), found->end(),
-                   [](const Settled& a, const Settled& b) { return a.misfit < b.misfit; });
-  std::vector<Settled> kept;
-  for (const Settled& one : *found)
-    if (std::none_of(kept.begin(), kept.end(), [&](const Settled& other) {
+                   [](const Laid& a, const Laid& b) { return a.misfit < b.misfit; });
+  std::vector<Laid> kept;
+  for (const Laid& one : *found)
+    if (std::none_of(kept.begin(), kept.end(), [&](const Laid& other) {
           return !apart(one.motion, other.motion, body.middle, kSameTurn, kSameShift * body.extent);
         }))
       kept.push_back(one);
@@ -269,29 +269,29 @@ ScanFit place_by_scan(const SurfaceMesh& scan, const Place& place, const ToldPla
   const Cloud cloud = cloud_of(scan, told, options.scale, options.most_points);
   check_size(cloud, body, place);
   const Laying laying(body, 1e-4 * body.extent);
-  std::vector<Settled> found;
-  const std::vector<Isometry3d> all = starts(cloud, body);
+  std::vector<Laid> found;
+  const std::vector<Isometry3d> all = laying_starts(cloud, body);
   const Cloud few = cloud.thinned(kFewPoints), some = cloud.thinned(kSomePoints);
   for (size_t i = 0; i < all.size(); ++i) {
     found.push_back(laying.settle(few, all[i], 30));
     if (options.progress) options.progress(i + 1, all.size());
   }
-  sort_out(body, &found);
+  sort_laid(body, &found);
   if (found.size() > 2 * kKept) found.resize(2 * kKept);
-  for (Settled& one : found) one = laying.settle(some, one.motion, 40);
-  sort_out(body, &found);
+  for (Laid& one : found) one = laying.settle(some, one.motion, 40);
+  sort_laid(body, &found);
   if (found.size() > kKept) found.resize(kKept);
-  for (Settled& one : found) one = laying.settle(cloud, one.motion, 30);
-  sort_out(body, &found);
-  std::vector<Settled> fitting;
-  for (const Settled& one : found) {
-    const bool other = std::all_of(fitting.begin(), fitting.end(), [&](const Settled& known) {
+  for (Laid& one : found) one = laying.settle(cloud, one.motion, 30);
+  sort_laid(body, &found);
+  std::vector<Laid> fitting;
+  for (const Laid& one : found) {
+    const bool other = std::all_of(fitting.begin(), fitting.end(), [&](const Laid& known) {
       return apart(one.motion, known.motion, body.middle, kOtherTurn, kOtherShift * body.extent);
     });
     if (other && one.misfit <= kAsWell * found.front().misfit + 1e-4 * body.extent)
       fitting.push_back(one);
   }
-  std::stable_sort(fitting.begin(), fitting.end(), [](const Settled& a, const Settled& b) {
+  std::stable_sort(fitting.begin(), fitting.end(), [](const Laid& a, const Laid& b) {
     return angle_of(a.motion) < angle_of(b.motion);
   });
   ScanFit out;

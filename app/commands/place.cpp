@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegree = EIGEN_PI / 180.0;
+constexpr double kRadians = EIGEN_PI / 180.0;  // in a degree
 
 struct PlaceCommand {
   std::string capture, pairs_file, scan, scan_unit, out;
@@ -32,7 +32,7 @@ struct PlaceCommand {
   bool fit = false, dry = false;
 };
 
-InputError usage(const std::string& wrong, const std::string& right) {
+InputError misused(const std::string& wrong, const std::string& right) {
   return {{"hookeye place"}, wrong, right};
 }
 
@@ -153,25 +153,26 @@ std::pair<Vector3d, Vector3d> errors_of(const Placing& placing, const ToldPlacem
   const auto in_frame = [&](const Eigen::Matrix3d& block) -> Vector3d {
     return (told.R * block * told.R.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
   };
-  return {in_frame(C.topLeftCorner<3, 3>()) / kDegree, in_frame(C.bottomRightCorner<3, 3>())};
+  return {in_frame(C.topLeftCorner<3, 3>()) / kRadians, in_frame(C.bottomRightCorner<3, 3>())};
 }
 
-Json rows_of(const Eigen::Matrix3d& R) {
+Json rotation_rows(const Eigen::Matrix3d& R) {
   Json rows = Json::array();
   for (int i = 0; i < 3; ++i) rows.push_back(describe_vector(R.row(i).transpose()));
   return rows;
 }
 
-void tell(const Placing& placing, const ToldPlacement& told, const ToldPlacement& now,
-          const PlacedBody& body, Session& session) {
+void tell_place(const Placing& placing, const ToldPlacement& told, const ToldPlacement& now,
+                const PlacedBody& body, Session& session) {
   const auto [turn, shift] = errors_of(placing, told);
   const Vector3d middle = now.R * body.middle + now.t;
-  const Eigen::AngleAxisd moved(told.R * placing.motion.linear() * told.R.transpose());
+  const Eigen::AngleAxisd turned(told.R * placing.motion.linear() * told.R.transpose());
   const double by = shift_of(placing.motion, body.middle);
-  session.document["placement"] = {
-      {"rotation", rows_of(now.R)}, {"translation", describe_vector(now.t)}, {"fit", now.fit}};
+  session.document["placement"] = {{"rotation", rotation_rows(now.R)},
+                                   {"translation", describe_vector(now.t)},
+                                   {"fit", now.fit}};
   session.document["middle"] = describe_vector(middle);
-  session.document["turned_degrees"] = moved.angle() / kDegree;
+  session.document["turned_degrees"] = turned.angle() / kRadians;
   session.document["moved"] = by;
   session.document["standard_errors"] = {{"turn_degrees", describe_vector(turn)},
                                          {"shift", describe_vector(shift)}};
@@ -179,7 +180,7 @@ void tell(const Placing& placing, const ToldPlacement& told, const ToldPlacement
   session.document["others"] = Json::array();
   for (const OtherPlace& other : placing.others) {
     const ToldPlacement there = placed(told, other.motion);
-    session.document["others"].push_back({{"rotation", rows_of(there.R)},
+    session.document["others"].push_back({{"rotation", rotation_rows(there.R)},
                                           {"translation", describe_vector(there.t)},
                                           {"rms", other.misfit}});
   }
@@ -189,7 +190,7 @@ void tell(const Placing& placing, const ToldPlacement& told, const ToldPlacement
       table({{"in the cameras' frame", "", "+- along x, y, z", ""},
              {"middle of the body", vector_text(middle, size),
               fmt::format("{:.2g}, {:.2g}, {:.2g}", shift.x(), shift.y(), shift.z()), body.length},
-             {"turned since told", fmt::format("{:.2f}", moved.angle() / kDegree),
+             {"turned since told", fmt::format("{:.2f}", turned.angle() / kRadians),
               fmt::format("{:.2g}, {:.2g}, {:.2g}", turn.x(), turn.y(), turn.z()), "degrees"},
              {"moved since told", fmt::format("{:.4g}", by), "", body.length}}));
   for (const std::string& sentence : placing.said) session.say("{}", wrapped(sentence));
@@ -199,9 +200,9 @@ void tell(const Placing& placing, const ToldPlacement& told, const ToldPlacement
 void run_place(const PlaceCommand& options, Session& session) {
   const bool pairs = !options.pairs.empty() || !options.pairs_file.empty();
   if (pairs && !options.scan.empty())
-    throw usage("both pairs and a scan are given", "place the body by one of them");
+    throw misused("both pairs and a scan are given", "place the body by one of them");
   if (!options.scan_unit.empty() && options.scan.empty())
-    throw usage("--scan-unit stands without --scan", "--scan FILE --scan-unit mm");
+    throw misused("--scan-unit stands without --scan", "--scan FILE --scan-unit mm");
   const Capture whole = read_capture(options.capture);
   const Scope scope(whole.file.string());
   if (whole.cameras.empty() && options.scan.empty())
@@ -217,7 +218,7 @@ void run_place(const PlaceCommand& options, Session& session) {
                                                  : by_scan(options, whole, told, body, session);
   ToldPlacement now = placed(told, placing.motion);
   now.fit = told.fit || options.fit;
-  tell(placing, told, now, body, session);
+  tell_place(placing, told, now, body, session);
   look_before_and_after(*scene, placing.motion, options.out, session);
   store_placed(whole.file, now, options.dry);
   session.document["written"] = !options.dry;

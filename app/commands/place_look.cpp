@@ -13,11 +13,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isnan(value) ? Json() : Json(value); }
+Json share_json(double value) { return std::isnan(value) ? Json() : Json(value); }
 
-std::string text(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3f}", value); }
+std::string share_text(double value) {
+  return std::isnan(value) ? "-" : fmt::format("{:.3f}", value);
+}
 
-std::shared_ptr<Scene> moved(const Scene& scene, const Eigen::Isometry3d& motion) {
+std::shared_ptr<Scene> with_body_moved(const Scene& scene, const Eigen::Isometry3d& motion) {
   auto out = std::make_shared<Scene>(scene);
   ToldPlacement placement;
   placement.R = motion.linear(), placement.t = motion.translation();
@@ -33,7 +35,7 @@ void look_before_and_after(const Scene& scene, const Eigen::Isometry3d& motion,
   InspectionOptions options;
   options.first_guess = false;
   inspection::Sight before(scene, options);
-  const auto after = moved(scene, motion);
+  const auto after = with_body_moved(scene, motion);
   const Inspection seen = inspect(*after, options, out);
   Json& looks = session.document["looks"] = Json::array();
   std::vector<std::vector<std::string>> rows{
@@ -44,12 +46,12 @@ void look_before_and_after(const Scene& scene, const Eigen::Isometry3d& motion,
     const std::string& camera = example.photos[static_cast<size_t>(look.photo)].camera;
     looks.push_back({{"camera", camera},
                      {"example", example.name},
-                     {"overlap_before", number(then.overlap)},
-                     {"overlap_after", number(look.overlap)},
-                     {"texture_found_before", number(then.share)},
-                     {"texture_found_after", number(look.share)}});
-    rows.push_back({camera, example.name, text(then.overlap), text(look.overlap), text(then.share),
-                    text(look.share)});
+                     {"overlap_before", share_json(then.overlap)},
+                     {"overlap_after", share_json(look.overlap)},
+                     {"texture_found_before", share_json(then.share)},
+                     {"texture_found_after", share_json(look.share)}});
+    rows.push_back({camera, example.name, share_text(then.overlap), share_text(look.overlap),
+                    share_text(then.share), share_text(look.share)});
     if (look.overlap < then.overlap - kWorse)
       session.warn(
           fmt::format("the model's outline fits the photo of camera `{}` worse than before "
@@ -58,7 +60,7 @@ void look_before_and_after(const Scene& scene, const Eigen::Isometry3d& motion,
   }
   if (rows.size() > 1) session.say("\n{}", table(rows));
   for (const CaptureWarning& warning : seen.warnings)
-    if (warning.question == "flips") session.warn(warning.text());
+    if (warning.question == "flips") session.warn(warning.share_text());
   if (!out.empty() && !seen.sheet.empty())
     session.say("\n{}\n{}\n", seen.sheet.string(),
                 write_inspection_page(*after, seen, out).string());
