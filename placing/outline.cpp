@@ -35,6 +35,31 @@ Mask well_inside(const Mask& counts, int width, int height) {
   return out;
 }
 
+/// What stands out from the background reaches out to where a pixel is covered by a little. Here
+/// pixels near the outline are inside from half of the step between what lies within and without.
+void set_at_half(const Image& I, Mask* inside) {
+  constexpr double kBand = 1.6;  // px about the outline whose pixels are asked
+  constexpr int kReach = 4;      // px in which within and without are looked at
+  const SignedDistance distance(*inside, I.width, I.height);
+  Mask out = *inside;
+  for (int y = kReach; y + kReach < I.height; ++y)
+    for (int x = kReach; x + kReach < I.width; ++x) {
+      if (std::abs(distance.at(Vector2d(x, y))) > kBand) continue;
+      double sums[2] = {0, 0}, counts[2] = {0, 0};
+      for (int v = y - kReach; v <= y + kReach; ++v)
+        for (int u = x - kReach; u <= x + kReach; ++u) {
+          const double s = distance.at(Vector2d(u, v));
+          if (std::abs(s) < kBand) continue;
+          sums[s > 0] += I.at(u, v), counts[s > 0] += 1;
+        }
+      if (counts[0] == 0 || counts[1] == 0) continue;
+      const double within = sums[0] / counts[0], without = sums[1] / counts[1];
+      out[static_cast<size_t>(y) * static_cast<size_t>(I.width) + static_cast<size_t>(x)] =
+          std::abs(I.at(x, y) - without) > 0.5 * std::abs(within - without);
+    }
+  if (std::find(out.begin(), out.end(), 1) != out.end()) *inside = std::move(out);
+}
+
 void measure(Outline* outline) {
   double count = 0.0;
   Vector2d sum = Vector2d::Zero();
@@ -132,6 +157,7 @@ std::vector<Outline> outlines_of(const Scene& scene, int look_px,
       one.view = camera_at_level(scene.capture.camera(camera), small.level);
       one.px = small.px();
       one.inside = std::move(small.foreground.inside);
+      if (example.photos[k].kind == PhotoSpec::Kind::image) set_at_half(small.I, &one.inside);
       one.counts = well_inside(small.valid, one.view.width, one.view.height);
       one.distance = SignedDistance(one.inside, one.view.width, one.view.height);
       one.rim = rim_of(one.inside, one.view.width, one.view.height, one.counts);

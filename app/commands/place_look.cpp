@@ -60,7 +60,7 @@ void look_before_and_after(const Scene& scene, const Eigen::Isometry3d& motion,
   }
   if (rows.size() > 1) session.say("\n{}", table(rows));
   for (const CaptureWarning& warning : seen.warnings)
-    if (warning.question == "flips") session.warn(warning.share_text());
+    if (warning.question == "flips") session.warn(warning.text());
   if (!out.empty() && !seen.sheet.empty())
     session.say("\n{}\n{}\n", seen.sheet.string(),
                 write_inspection_page(*after, seen, out).string());

@@ -79,8 +79,9 @@ TEST(Outlines, SymmetricBodiesAreToldAsAmbiguous) {
   EXPECT_THAT(joined(found.placing.warnings), HasSubstr("ambiguous"));
   setup.shape = Shape::cone;
   const PlacedCapture cone(setup, random_motion(middle_of(Shape::cone), 10, 6, random));
-  EXPECT_THAT(joined(place_by_outlines(cone.scene(), cone.body(), {}).placing.warnings),
-              HasSubstr("a turn about"));
+  const OutlineFit round = place_by_outlines(cone.scene(), cone.body(), {});
+  EXPECT_THAT(joined(round.placing.warnings),
+              testing::AnyOf(HasSubstr("ambiguous"), HasSubstr("a turn about")));
 }
 
 TEST(Outlines, WhatShowsNoneIsRefused) {
