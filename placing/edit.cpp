@@ -133,7 +133,7 @@ std::string edited(const Text& text, const YamlNode::Entry& body, const std::str
 std::string placement_text(const ToldPlacement& placement) {
   std::string rows;
   for (int i = 0; i < 3; ++i) rows += (i ? ", " : "") + list(placement.R.row(i).transpose(), 1.0);
-  const double size = std::max(placement.t.norm(), 1e-300);
+  const double size = std::max(placement.t.norm(), 1e-3);  // what is left of zero is zero
   return fmt::format("{{rotation: [{}], translation: {}{}}}", rows, list(placement.t, size),
                      placement.fit ? ", fit: true" : "");
 }
@@ -148,7 +148,7 @@ std::string placed_text(const std::string& text, const std::string& file,
       const std::string out = edited(Text(text), *body, value);
       const YamlNode after = parse_yaml(out, file);
       const ToldPlacement got = placement_of_capture(after);
-      const double size = std::max(placement.t.norm(), 1e-300);
+      const double size = std::max(placement.t.norm(), 1e-3);
       if (same(others_of(before), others_of(after)) && got.fit == placement.fit &&
           (got.R - placement.R).norm() < 1e-8 && (got.t - placement.t).norm() <= 1e-8 * size)
         return out;

@@ -157,7 +157,8 @@ std::vector<Outline> outlines_of(const Scene& scene, int look_px,
       one.view = camera_at_level(scene.capture.camera(camera), small.level);
       one.px = small.px();
       one.inside = std::move(small.foreground.inside);
-      if (example.photos[k].kind == PhotoSpec::Kind::image) set_at_half(small.I, &one.inside);
+      one.image = example.photos[k].kind == PhotoSpec::Kind::image;
+      if (one.image) set_at_half(small.I, &one.inside);
       one.counts = well_inside(small.valid, one.view.width, one.view.height);
       one.distance = SignedDistance(one.inside, one.view.width, one.view.height);
       one.rim = rim_of(one.inside, one.view.width, one.view.height, one.counts);

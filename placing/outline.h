@@ -36,8 +36,9 @@ std::vector<int> nearest_of(const std::vector<int>& pixels, int width, int heigh
 /// What a photo of the body at rest shows of its outline, at one size.
 struct Outline {
   std::string camera, example;
-  Camera view;      ///< at this size, in the body's frame as told
-  double px = 1.0;  ///< px of the photo in one of these
+  bool image = false;  ///< told by brightness; false: a silhouette
+  Camera view;         ///< at this size, in the body's frame as told
+  double px = 1.0;     ///< px of the photo in one of these
   std::vector<unsigned char> inside, counts;
   SignedDistance distance;
   std::vector<int> rim;

@@ -107,21 +107,20 @@ class Search {
 };
 
 void set_outline_errors(OutlineMatch& match, const PlacedBody& body, Placing* placing) {
-  // Neighbours on a rim err alike: over some pixels the same triangle, the same shading.
-  constexpr double kAlikePx =
-      12.0;  // of the small photo, measured: tests/placing/outlines_test.cpp
+  // Neighbours on a rim err alike [px of the small photo]. In photos shading and speckle pull whole
+  // edges: measured on sample_scenes/sample.yaml, where errors were seven times those of 12 px.
+  constexpr double kAlikePx = 12.0, kAlikeInPhotosPx = 500.0;
   const std::vector<RimPull> pulls = match.pulls(placing->motion);
   double px = 0.0;
-  size_t rims = 0;
+  double count = 0.0;
   for (const Outline& outline : match.outlines()) {
     px = std::max(px, outline.px);
-    rims += outline.rim.size();
+    // Both ways tell the same rims.
+    count += double(outline.rim.size()) / (outline.image ? kAlikeInPhotosPx : kAlikePx);
   }
-  // Both ways tell the same rims.
-  const double count = std::max(6.0, double(rims) / kAlikePx);
   const double least = 0.25 * px;  // pixels of a mask are known no better
   const double sigma = std::max(placing->misfit, least);
-  const double share = count / double(pulls.size());
+  const double share = std::max(count, 6.0) / double(pulls.size());
   set_errors(
       information_of(placing->motion, match.terms(pulls), 2.0 * sigma) * share / (sigma * sigma),
       body, placing);
