@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "capture_io/capture_reader.h"
+#include "capture_io/placement.h"
 #include "capture_io/yaml_file.h"
 
 namespace hookeye {
@@ -143,6 +144,7 @@ Capture read_capture(const fs::path& path) {
       capture);
   if (const YamlNode* cameras = top.find("cameras"))
     capture.cameras = read_cameras(section_in_place(*cameras, "cameras", folder), folder);
+  take_to_body(placement_of_capture(root), capture.cameras);
   if (const YamlNode* light = top.find("light")) capture.light = read_light(*light);
   PhotoDefaults defaults;
   if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "capture_io/capture_reader.h"
+#include "capture_io/placement.h"
 
 namespace hookeye {
 namespace {
@@ -185,7 +186,7 @@ BodySpec read_body(const YamlNode& node, const CaptureFolder& folder) {
   if (const YamlNode* shading = section.find("shading"))
     body.flat_shading = read_choice(*shading, "the shading", {"smooth", "flat"}) == "flat";
   if (const YamlNode* placement = section.find("placement"))
-    body.fit_placement = read_choice(*placement, "the placement", {"fit", "given"}) == "fit";
+    body.fit_placement = read_placement(*placement).fit;
   return body;
 }
 

@@ -2,13 +2,14 @@
 #   core <- capture_io <- meshing <- simulation, render <- estimation <- runs <- app
 #                 meshing <- importers <- proposal <- app      runs, importers <- python
 #   capture_io <- calibration <- app      estimation/model <- exporters <- app
+#   estimation/inspection <- placing <- app
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
 # and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
 # that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
-set(layers core capture_io meshing simulation render estimation importers proposal calibration exporters runs app python)
+set(layers core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs app python)
 set(below_core "")
 set(below_capture_io core)
 set(below_meshing core capture_io)
@@ -18,9 +19,10 @@ set(below_estimation core capture_io meshing simulation render)
 set(below_importers core capture_io meshing)
 set(below_proposal core capture_io meshing importers)
 set(below_calibration core capture_io)
+set(below_placing core capture_io meshing render estimation)
 set(below_exporters core capture_io meshing simulation estimation)
 set(below_runs core capture_io meshing simulation render estimation)
-set(below_app core capture_io meshing simulation render estimation importers proposal calibration exporters runs)
+set(below_app core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs)
 set(below_python core capture_io meshing simulation render estimation importers runs)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
@@ -37,7 +39,7 @@ set(below_output images model evaluation effects fit diagnosis plan search)
 # First part of the header's path, as a regular expression.
 set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL pugixml zlib embree3 ceres httplib
     boost xxhash)
-set(layers_of_ceres estimation calibration)  # one .cpp in each; other libraries: in one of all
+set(layers_of_ceres estimation calibration placing)  # one .cpp in each; other libraries: in one of all
 
 set(faults "")
 function(fault text)
@@ -58,6 +60,9 @@ foreach(layer IN LISTS layers)
         fault("${source} includes ${path}: ${layer} stands on (${below_${layer}})")
       elseif(layer STREQUAL "exporters" AND path MATCHES "^estimation/" AND NOT path MATCHES "^estimation/model/")
         fault("${source} includes ${path}: of estimation exporters stands on (model)")
+      elseif(layer STREQUAL "placing" AND path MATCHES "^estimation/" AND
+             NOT path MATCHES "^estimation/(images|model|evaluation|inspection)/")
+        fault("${source} includes ${path}: of estimation placing stands on (inspection) and what is below it")
       elseif(layer STREQUAL "estimation" AND first STREQUAL layer)
         string(REGEX REPLACE "^estimation/([a-z_]*).*$" "\\1" room "${source}")
         string(REGEX REPLACE "^estimation/([a-z_]*).*$" "\\1" other "${path}")

@@ -331,6 +331,22 @@ const BrokenCase broken_cases[] = {
      },
      "capture.yaml:5:1: body is empty\n"
      "  write a map with the keys surface, mesh, volume, density, texture, placement, shading"},
+    {"PlacementOfTwoRows",
+     swap("placement: fit",
+          "placement: {rotation: [[1, 0, 0], [0, 1, 0]], translation: [0, 0, 1]}"),
+     "capture.yaml:9:26: rotation of the placement is a list of 2\n"
+     "  three rows of three numbers are expected"},
+    {"PlacementOfNoRotation",
+     swap("placement: fit",
+          "placement: {rotation: [[1, 0, 0], [0, 1, 0], [0, 1, 1]], translation: [0, 0, 1]}"),
+     "capture.yaml:9:26: rotation of the placement is not orthonormal\n"
+     "  a rotation has orthonormal rows and determinant +1 (within 1e-4)"},
+    {"PlacementWithoutTranslation",
+     swap("placement: fit", "placement: {rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}"),
+     "capture.yaml:9:14: the placement lacks `translation`\n"
+     "  write `placement: {rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], translation: [0, 0, "
+     "300]}`; "
+     "`hookeye place` finds it"},
     {"MaskMissing", swap("mask: photos/mask.png", "mask: mask.png"),
      "capture.yaml:56:43: mask is `mask.png`\n"
      "  there is no such file"},

@@ -49,6 +49,25 @@ TEST(CaptureTest, FlatShading) {
   EXPECT_TRUE(read_fixture(fixture).body.flat_shading);
 }
 
+/// Cameras are told in their own frame, and read into the body's.
+TEST(CaptureTest, PlacementTakesTheCamerasToTheBody) {
+  CaptureFixture fixture;
+  const Camera before = read_fixture(fixture).camera("front");
+  fixture.replace(
+      "  placement: fit",
+      "  placement: {rotation: [[0, -1, 0], [1, 0, 0], [0, 0, 1]], translation: [1, 2, 3]}");
+  const Capture c = read_fixture(fixture);
+  EXPECT_FALSE(c.body.fit_placement);
+  const Vector3d in_body(0.5, 0.25, 1), in_cameras(-0.25 + 1, 0.5 + 2, 1 + 3);
+  EXPECT_LT(
+      (c.camera("front").R * in_body + c.camera("front").t - (before.R * in_cameras + before.t))
+          .norm(),
+      1e-12);
+  EXPECT_EQ(*c.gravity, Vector3d(0, 0, -9810));
+  fixture.replace("translation: [1, 2, 3]}", "translation: [1, 2, 3], fit: true}");
+  EXPECT_TRUE(read_fixture(fixture).body.fit_placement);
+}
+
 TEST(CaptureTest, CamerasAndLight) {
   const CaptureFixture fixture;
   const Capture c = read_fixture(fixture);

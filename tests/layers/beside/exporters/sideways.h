@@ -1,0 +1,1 @@
+#include "placing/placing.h"
