@@ -85,8 +85,7 @@ std::string residuals_in_words(const Residuals& now, const std::optional<Residua
     out += fmt::format(", {} on held-out ones", chi_text(now.held_out));
     if (without) out += fmt::format(" ({})", chi_text(without->held_out));
   }
-  return out + (floor > 0.0 ? fmt::format("; noise floor {:.3f}", floor)
-                            : "; noise floor unknown");
+  return out + (floor > 0.0 ? fmt::format("; noise floor {:.3f}", floor) : "; noise floor unknown");
 }
 
 Residuals residuals_of(const Evaluation& evaluation) {

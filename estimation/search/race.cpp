@@ -109,7 +109,8 @@ void tell_of_trial(const FitOptions& options, const Racer& racer, const TrialSca
                     "photos, {} on held-out ones; without it {} and {}; noise floor {}",
                     residual_in_words(racer.trial.chi_fit),
                     residual_in_words(racer.trial.chi_validate), residual_in_words(start.chi),
-                    residual_in_words(start.chi_validate), start.floor > 0.0 ? residual_in_words(start.floor) : "unknown")});
+                    residual_in_words(start.chi_validate),
+                    start.floor > 0.0 ? residual_in_words(start.floor) : "unknown")});
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include "core/input_error.h"
 #include "core/journal.h"
 
 #include <gmock/gmock.h>
