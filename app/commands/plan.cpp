@@ -112,6 +112,11 @@ void run_plan(const PlanArguments& arguments, Session& session) {
     throw InputError({arguments.run}, "the run has no finished step",
                      "run 'hookeye fit CAPTURE -o RUN' first");
   Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
+  if (bench.scene->capture.cameras.empty())
+    throw InputError(
+        {run.capture().string()},
+        "the capture has no camera, and further photos are what `plan` rates",
+        "add the cameras that could look (`cameras:`), also where no photo is there yet");
   PlannedStep step = open_step(run, bench, run.steps().size() - 1);
   const Question question =
       question_of(run.timeline(), step.diagnosis, arguments, *bench.scene->limits);
