@@ -64,6 +64,32 @@ void halve(PhotoPlane* plane) {
   plane->sigma = halved_sigma(plane->sigma);
 }
 
+template <class T>
+std::vector<T> cut(const std::vector<T>& values, int width, const PhotoWindow& window) {
+  std::vector<T> out;
+  out.reserve(static_cast<size_t>(window.width) * window.height);
+  for (int y = window.y; y < window.y + window.height; ++y) {
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(y) * width + window.x;
+    out.insert(out.end(), row, row + window.width);
+  }
+  return out;
+}
+
+Image cut(const Image& image, const PhotoWindow& window) {
+  return {window.width, window.height, 1, cut(image.values, image.width, window)};
+}
+
+void cut_photo(Photo& photo, const PhotoWindow& window) {
+  const int width = photo.planes.front()->width, height = photo.planes.front()->height;
+  if (window.empty() || window.x < 0 || window.y < 0 || window.x + window.width > width ||
+      window.y + window.height > height)
+    return;
+  photo.valid = cut(*photo.valid, width, window);
+  for (auto& plane : photo.planes) plane = cut(plane, window);
+  for (auto& sigma : photo.sigma) sigma = cut(sigma, window);
+  for (auto& backdrop : photo.backdrop) backdrop = cut(backdrop, window);
+}
+
 /// 0 to 1, the same whatever the processor and whichever other tiles there are.
 double drawn(const std::string& name, int column, int row) {
   const std::string mark = fingerprint_of(fmt::format("{} {} {}", name, column, row));
@@ -118,10 +144,71 @@ PhotoReading reading_of(const Photo& photo, const Camera& camera, const SurfaceM
   return out;
 }
 
+PhotoWindow PhotoWindow::with(const PhotoWindow& other) const {
+  if (empty()) return other;
+  if (other.empty()) return *this;
+  const int x0 = std::min(x, other.x), y0 = std::min(y, other.y);
+  return {x0, y0, std::max(x + width, other.x + other.width) - x0,
+          std::max(y + height, other.y + other.height) - y0};
+}
+
+PhotoWindow window_of_body(const Camera& camera, const SurfaceMesh& surface, int halvings) {
+  const Camera small = as_read(camera, {.halvings = halvings});
+  Eigen::Vector2d low(1e30, 1e30), high = -low;
+  for (Eigen::Index v = 0; v < surface.X.cols(); ++v) {
+    const Eigen::Vector2d px = small.project(surface.X.col(v));
+    if (!px.allFinite()) return {0, 0, small.width, small.height};  // behind the camera
+    low = low.cwiseMin(px), high = high.cwiseMax(px);
+  }
+  const auto within = [](double at, int size) {
+    return static_cast<int>(std::clamp(std::floor(at), 0.0, double(size)));
+  };
+  const int x = within(low.x(), small.width), y = within(low.y(), small.height);
+  return {x, y, within(high.x() + 1.0, small.width) - x, within(high.y() + 1.0, small.height) - y};
+}
+
+PhotoWindow changed_between(const Photo& one, const Photo& other) {
+  constexpr int kCoarser = 2;      // halvings: single pixels are noise
+  constexpr double kSigmas = 8.0;  // of the difference: no pixel of a thousand photos by chance
+  PhotoWindow out;
+  for (size_t plane = 0; plane < one.planes.size() && plane < other.planes.size(); ++plane) {
+    Image a = one.planes[plane], b = other.planes[plane];
+    Image sigma_a = one.sigma[plane], sigma_b = other.sigma[plane];
+    for (int i = 0; i < kCoarser; ++i) {
+      a = halved(a), b = halved(b);
+      sigma_a = halved_sigma(sigma_a), sigma_b = halved_sigma(sigma_b);
+    }
+    const int size = 1 << kCoarser;
+    for (int y = 0; y < a.height; ++y)
+      for (int x = 0; x < a.width; ++x)
+        if (std::abs(a.at(x, y) - b.at(x, y)) >
+            kSigmas * std::hypot(sigma_a.at(x, y), sigma_b.at(x, y)))
+          out = out.with({x * size, y * size, size, size});
+  }
+  return out;
+}
+
+PhotoWindow with_margin(const PhotoWindow& window, int width, int height) {
+  constexpr double kMargin = 0.06;  // of the window's longer side
+  constexpr int kStep = 16;         // px: cells of motions lie as in the whole photo
+  constexpr double kWorth = 0.8;    // of the photo
+  const auto margin =
+      static_cast<int>(std::lround(kMargin * std::max(window.width, window.height))) + kStep;
+  const int x0 = std::max(0, (window.x - margin) / kStep * kStep);
+  const int y0 = std::max(0, (window.y - margin) / kStep * kStep);
+  const int x1 = std::min(width, window.x + window.width + margin);
+  const int y1 = std::min(height, window.y + window.height + margin);
+  if (double(x1 - x0) * (y1 - y0) > kWorth * width * height) return {};
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
 Camera as_read(const Camera& camera, const PhotoReading& reading) {
   Camera out = camera.resized(std::pow(0.5, reading.halvings));
   out.width = camera.width >> reading.halvings;
   out.height = camera.height >> reading.halvings;
+  if (reading.window.empty()) return out;
+  out.cx -= reading.window.x, out.cy -= reading.window.y;
+  out.width = reading.window.width, out.height = reading.window.height;
   return out;
 }
 
@@ -133,6 +220,7 @@ Photo as_read(Photo photo, const PhotoReading& reading, const std::string& name)
     for (auto& sigma : photo.sigma) sigma = halved_sigma(sigma);
     for (auto& backdrop : photo.backdrop) backdrop = halved(backdrop);
   }
+  cut_photo(photo, reading.window);
   if (reading.share < 1.0) keep_tiles(photo, reading.share, name);
   return photo;
 }
@@ -145,6 +233,9 @@ std::string described(const std::string& camera, const PhotoReading& reading) {
   if (reading.share < 1.0)
     how += fmt::format("{}in {:.0f} % of their tiles", how.empty() ? "" : ", and ",
                        100.0 * reading.share);
+  if (!reading.window.empty())
+    how += fmt::format("{}in the {} x {} pixels where the body is or anything changes",
+                       how.empty() ? "" : ", ", reading.window.width, reading.window.height);
   return fmt::format(
       "photos of camera {} are compared {}: {:.2g} million pixels of the body a "
       "photo (--set fit.pixels=0 takes all)",

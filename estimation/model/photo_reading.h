@@ -11,13 +11,24 @@
 
 namespace hookeye {
 
+/// A rectangle of pixels. Empty: nothing.
+struct PhotoWindow {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool empty() const { return width <= 0 || height <= 0; }
+  /// The smallest that holds both.
+  PhotoWindow with(const PhotoWindow& other) const;
+};
+
 /// How the photos of one camera are read.
 struct PhotoReading {
   int halvings = 0;    ///< each takes the mean of two by two pixels
   double share = 1.0;  ///< of the tiles (kTile) of a photo that count, drawn at random
   double kept = 1.0;   ///< of what its photos tell of motion (Fisher information), by the halvings
   double body_px = 0;  ///< pixels of the body at rest that count in a photo then
-  bool whole() const { return halvings == 0 && share == 1.0; }
+  /// Of the halved photo; empty: all of it. What lies beyond stands still in all photos of the
+  /// camera and is not the body.
+  PhotoWindow window;
+  bool whole() const { return halvings == 0 && share == 1.0 && window.empty(); }
 };
 
 /// By camera; those whose photos are read as they are have none.
@@ -34,6 +45,14 @@ PhotoReading reading_of(const Photo& photo, const Camera& camera, const SurfaceM
 /// pixel of the whole photo: sums of squared slope over variance, less what noise adds to the
 /// slope.
 double told_of_motion(const Photo& photo, int plane, int halvings);
+
+/// Where the body at rest is, in px of the halved photo.
+PhotoWindow window_of_body(const Camera& camera, const SurfaceMesh& surface, int halvings);
+/// Where two halved photos of one camera differ by more than noise.
+PhotoWindow changed_between(const Photo& one, const Photo& other);
+/// With room for what moves next and for filters, within the picture; empty where little is left
+/// out.
+PhotoWindow with_margin(const PhotoWindow& window, int width, int height);
 
 Camera as_read(const Camera& camera, const PhotoReading& reading);
 /// `name`: the draw of tiles, another for each photo.

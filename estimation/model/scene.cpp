@@ -121,29 +121,62 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
   return out;
 }
 
-PhotoReadings readings_of(const std::vector<Wanted>& all, const Capture& capture, const Body& body,
-                          const FitLimits& limits) {
-  PhotoReadings out;
-  for (const auto& [name, spec] : deciding_photos(all)) {
-    const Camera& camera = capture.camera(name);
-    if (limits.pixels <= 0.0 || double(camera.width) * camera.height <= limits.pixels) continue;
-    const PhotoReading reading =
-        reading_of(read_photo(*spec, camera), camera, body.surface.mesh, limits);
-    if (!reading.whole()) out[name] = reading;
+/// Photos in the order of wanted_photos(), by example.
+std::vector<std::vector<Photo>> by_example(std::vector<Photo> all, const Capture& capture) {
+  std::vector<std::vector<Photo>> out;
+  size_t next = 0;
+  for (const ExampleSpec& example : capture.examples) {
+    out.emplace_back();
+    for (size_t k = 0; k < example.photos.size(); ++k) out.back().push_back(std::move(all[next++]));
   }
   return out;
 }
 
 /// Photos of the capture's examples, by example.
 std::vector<std::vector<Photo>> photos_of(const Capture& capture, const PhotoReadings& readings) {
+  return by_example(read_all(wanted_photos(capture), capture, readings), capture);
+}
+
+/// What of the halved photos of one camera may show the body: where it lies at rest, and where any
+/// photo differs from `deciding`. A fitted placement may begin far off.
+PhotoWindow window_of(const std::vector<Photo>& photos, size_t deciding, const Camera& camera,
+                      int halvings, const Body& body, const Capture& capture) {
+  if (capture.body.fit_placement) return {};
+  PhotoWindow window = window_of_body(camera, body.surface.mesh, halvings);
+  for (const Photo& photo : photos) window = window.with(changed_between(photo, photos[deciding]));
+  return with_margin(window, camera.width >> halvings, camera.height >> halvings);
+}
+
+/// Reads the photos of large cameras, one camera after the other, and all others as they are.
+struct ReadPhotos {
+  std::vector<Photo> photos;  ///< in the order of wanted_photos()
+  PhotoReadings readings;
+};
+ReadPhotos read_as_needed(const Capture& capture, const Body& body, const FitLimits& limits) {
   const std::vector<Wanted> all = wanted_photos(capture);
-  std::vector<Photo> read = read_all(all, capture, readings);
-  std::vector<std::vector<Photo>> out;
-  size_t next = 0;
-  for (const ExampleSpec& example : capture.examples) {
-    out.emplace_back();
-    for (size_t k = 0; k < example.photos.size(); ++k)
-      out.back().push_back(std::move(read[next++]));
+  ReadPhotos out{std::vector<Photo>(all.size()), {}};
+  for (const auto& [name, deciding] : deciding_photos(all)) {
+    const Camera& camera = capture.camera(name);
+    const bool large = limits.pixels > 0.0 && double(camera.width) * camera.height > limits.pixels;
+    PhotoReading reading;
+    if (large)
+      reading = reading_of(read_photo(*deciding, camera), camera, body.surface.mesh, limits);
+    std::vector<Wanted> own;
+    std::vector<size_t> place;
+    size_t first = 0;
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (all[i].spec->camera != name) continue;
+      if (all[i].spec == deciding) first = own.size();
+      own.push_back(all[i]), place.push_back(i);
+    }
+    std::vector<Photo> photos =
+        read_all(own, capture, {{name, PhotoReading{.halvings = reading.halvings}}});
+    if (large) reading.window = window_of(photos, first, camera, reading.halvings, body, capture);
+    PhotoReading rest = reading;
+    rest.halvings = 0;
+    for (size_t k = 0; k < own.size(); ++k)
+      out.photos[place[k]] = as_read(std::move(photos[k]), rest, own[k].example->name + "/" + name);
+    if (!reading.whole()) out.readings[name] = reading;
   }
   return out;
 }
@@ -190,11 +223,10 @@ std::shared_ptr<Scene> bare_scene(const Capture& capture, const Limits& limits) 
   return scene;
 }
 
-void take_photos(const PhotoReadings& readings, Scene* scene) {
-  scene->readings = readings;
-  scene->photos = photos_of(scene->capture, readings);
+void take_readings(PhotoReadings readings, Scene* scene) {
+  scene->readings = std::move(readings);
   for (Camera& camera : scene->capture.cameras)
-    if (const auto reading = readings.find(camera.name); reading != readings.end())
+    if (const auto reading = scene->readings.find(camera.name); reading != scene->readings.end())
       camera = as_read(camera, reading->second);
 }
 
@@ -203,9 +235,10 @@ void take_photos(const PhotoReadings& readings, Scene* scene) {
 std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos,
                                         const Limits& limits) {
   auto scene = bare_scene(capture, limits);
-  if (with_photos)
-    take_photos(readings_of(wanted_photos(capture), capture, *scene->body, limits.fit),
-                scene.get());
+  if (!with_photos) return scene;
+  ReadPhotos read = read_as_needed(capture, *scene->body, limits.fit);
+  scene->photos = by_example(std::move(read.photos), capture);
+  take_readings(std::move(read.readings), scene.get());
   return scene;
 }
 
@@ -218,7 +251,8 @@ std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int l
       ++reading.halvings;
     if (reading.halvings > 0) readings[camera.name] = reading;
   }
-  take_photos(readings, scene.get());
+  scene->photos = photos_of(capture, readings);
+  take_readings(std::move(readings), scene.get());
   // Nobody weighs the residuals of what is looked at.
   for (auto& photos : scene->photos)
     for (Photo& photo : photos) photo.sigma.clear();

@@ -153,11 +153,14 @@ void tell_material(const Scene& scene, const Fitted& fitted, json& out) {
 
 json readings_json(const PhotoReadings& readings) {
   json out = json::object();
-  for (const auto& [camera, reading] : readings)
+  for (const auto& [camera, reading] : readings) {
+    const PhotoWindow& window = reading.window;
     out[camera] = {{"width_over", 1 << reading.halvings},
                    {"motion_kept", reading.kept},
                    {"tiles", reading.share},
                    {"body_px", reading.body_px}};
+    if (!window.empty()) out[camera]["window"] = {window.x, window.y, window.width, window.height};
+  }
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -107,6 +108,9 @@ PhotoReadings readings_in(const fs::path& run) {
       const int over = one.at("width_over").get<int>();
       while (out[camera].halvings < 8 && 1 << (out[camera].halvings + 1) <= over)
         ++out[camera].halvings;
+      if (!one.contains("window")) continue;
+      const auto window = one.at("window").get<std::array<int, 4>>();
+      out[camera].window = {window[0], window[1], window[2], window[3]};
     }
   } catch (const std::exception&) {  // the step's own fault is told where the step is
     return {};
@@ -178,8 +182,8 @@ json RunView::photos_json(json& faults, int factor) {
                     {"example", example.name},
                     {"camera", spec.camera},
                     {"use", example.use()},
-                    {"width", plane.camera.width >> plane.reading.halvings},
-                    {"height", plane.camera.height >> plane.reading.halvings},
+                    {"width", as_read(plane.camera, plane.reading).width},
+                    {"height", as_read(plane.camera, plane.reading).height},
                     {"file", spec.file.filename().string()}};
         one["photo"] = {{"blob", at_factor("photo/" + name, factor)},
                         {"shrink", factor},
