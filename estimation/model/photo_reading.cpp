@@ -153,7 +153,9 @@ PhotoWindow PhotoWindow::with(const PhotoWindow& other) const {
 }
 
 PhotoWindow window_of_body(const Camera& camera, const SurfaceMesh& surface, int halvings) {
-  const Camera small = as_read(camera, {.halvings = halvings});
+  PhotoReading halved_only;
+  halved_only.halvings = halvings;
+  const Camera small = as_read(camera, halved_only);
   Eigen::Vector2d low(1e30, 1e30), high = -low;
   for (Eigen::Index v = 0; v < surface.X.cols(); ++v) {
     const Eigen::Vector2d px = small.project(surface.X.col(v));

@@ -161,6 +161,8 @@ ReadPhotos read_as_needed(const Capture& capture, const Body& body, const FitLim
     PhotoReading reading;
     if (large)
       reading = reading_of(read_photo(*deciding, camera), camera, body.surface.mesh, limits);
+    PhotoReading halved_only;
+    halved_only.halvings = reading.halvings;
     std::vector<Wanted> own;
     std::vector<size_t> place;
     size_t first = 0;
@@ -169,8 +171,7 @@ ReadPhotos read_as_needed(const Capture& capture, const Body& body, const FitLim
       if (all[i].spec == deciding) first = own.size();
       own.push_back(all[i]), place.push_back(i);
     }
-    std::vector<Photo> photos =
-        read_all(own, capture, {{name, PhotoReading{.halvings = reading.halvings}}});
+    std::vector<Photo> photos = read_all(own, capture, {{name, halved_only}});
     if (large) reading.window = window_of(photos, first, camera, reading.halvings, body, capture);
     PhotoReading rest = reading;
     rest.halvings = 0;

@@ -111,8 +111,10 @@ TEST(PhotoReading, HalvedPhotosGiveTheSameModelAndFitItAsWell) {
     EXPECT_EQ(reading.share, 1.0);
     const Camera& seen = scene->capture.camera(camera);
     EXPECT_LE(seen.width, 400 >> reading.halvings);
-    for (const Photo& photo : scene->photos[0])
-      if (photo.camera == camera) EXPECT_EQ(photo.planes[0]->width, seen.width);
+    for (const Photo& photo : scene->photos[0]) {
+      if (photo.camera != camera) continue;
+      EXPECT_EQ(photo.planes[0]->width, seen.width);
+    }
   }
   const Found whole = fitted(large_photos().scene), halved = fitted(scene);
   EXPECT_NEAR(whole.chi, 1.0, 0.05);
