@@ -17,6 +17,10 @@ RenderOptions render_options(const Scene& scene) {
 
 namespace {
 
+/// The mean of four pixels has half their noise, and shows the more what rays see of a rim: off by
+/// 1/n^1.5 of a pixel where n are along an axis.
+constexpr int kRaysOfHalved = 4;
+
 /// Photos of coarse levels are means over squares of pixels: a wider filter with rays enough to see
 /// every speckle once (a box has 2.5 times the variance of the 1.5 px window). A texture that is a
 /// photo went through the camera's aperture once already: one ray a pixel, or the model would be
@@ -25,8 +29,8 @@ RenderOptions at_level(RenderOptions options, int level, int halvings, const Tex
                        bool single_rays = false) {
   if (level == 0 && (single_rays || texture.source == Texture::Source::photo))
     options.rays_per_axis = 1, options.filter_width_px = 1.0;
-  else if (level == 0)
-    options.halvings = halvings;
+  else if (level == 0 && halvings > 0)
+    options.halvings = halvings, options.rays_per_axis = kRaysOfHalved;
   if (level == 0) return options;
   options.rays_per_axis = std::min(1 + 3 * level, 15);
   options.filter_width_px = 2.4;
@@ -109,8 +113,11 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
     const auto& sizes = scene.albedo[by_channel && scene.albedo.size() > 1 ? plane : 0];
     // Texels as large as the rays are apart, in pixels of the photo as it was taken.
     const std::string& camera = scene.capture.examples[example].photos[photo].camera;
-    const int rays = level == 0 ? RenderOptions{}.rays_per_axis : std::min(1 + 3 * level, 15);
-    const double apart = std::exp2(level + scene.halvings_of(camera)) / rays;
+    const int halvings = scene.halvings_of(camera);
+    const int rays = level > 0      ? std::min(1 + 3 * level, 15)
+                     : halvings > 0 ? kRaysOfHalved
+                                    : RenderOptions{}.rays_per_axis;
+    const double apart = std::exp2(level + halvings) / rays;
     texture.image = sizes[std::min<size_t>(apart > 1.4   ? 2
                                            : apart > 0.7 ? 1
                                                          : 0,
