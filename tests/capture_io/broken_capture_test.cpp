@@ -334,12 +334,12 @@ const BrokenCase broken_cases[] = {
     {"PlacementOfTwoRows",
      swap("placement: fit",
           "placement: {rotation: [[1, 0, 0], [0, 1, 0]], translation: [0, 0, 1]}"),
-     "capture.yaml:9:26: rotation of the placement is a list of 2\n"
+     "capture.yaml:9:25: rotation of the placement is a list of 2\n"
      "  three rows of three numbers are expected"},
     {"PlacementOfNoRotation",
      swap("placement: fit",
           "placement: {rotation: [[1, 0, 0], [0, 1, 0], [0, 1, 1]], translation: [0, 0, 1]}"),
-     "capture.yaml:9:26: rotation of the placement is not orthonormal\n"
+     "capture.yaml:9:25: rotation of the placement is not orthonormal\n"
      "  a rotation has orthonormal rows and determinant +1 (within 1e-4)"},
     {"PlacementWithoutTranslation",
      swap("placement: fit", "placement: {rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}"),

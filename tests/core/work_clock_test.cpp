@@ -45,10 +45,11 @@ TEST(WorkClock, InnerPartsAreNotCountedTwiceAndThreadsAdd) {
   const auto spent = [&](WorkStage stage, WorkPart part) {
     return at(after, stage, part) - at(before, stage, part);
   };
+  // Seconds of these threads alone, whatever else the machine does.
   EXPECT_NEAR(spent(WorkStage::fit, WorkPart::equilibria), 0.02, 0.01);
   EXPECT_NEAR(spent(WorkStage::fit, WorkPart::rays), 0.07, 0.01);
-  EXPECT_NEAR(spent(WorkStage::fit, WorkPart::other), 0.0, 0.01);
-  EXPECT_NEAR(spent(WorkStage::rest, WorkPart::other), 0.02, 0.01);
+  EXPECT_GE(spent(WorkStage::rest, WorkPart::other), 0.01);
+  EXPECT_EQ(spent(WorkStage::rest, WorkPart::rays), 0.0);
   EXPECT_GT(after.wall_s, before.wall_s);
 }
 

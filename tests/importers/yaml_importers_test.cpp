@@ -75,8 +75,8 @@ TEST(RosImport, AFisheyeAndFaults) {
             "a.yaml:14: `rectification_matrix` is not orthonormal\n"
             "  a rotation has orthonormal rows and determinant +1 (within 1e-4)");
   EXPECT_EQ(told("image_width: [640\n"),
-            "a.yaml:2:1: not yaml: end of sequence flow not found\n"
-            "  look at the indentation, brackets and quotes here and just before");
+            "a.yaml:1: the file ends early: `[` of line 1 is not closed\n"
+            "  copy the whole file again");
   write_text(folder / "b.yaml", fisheye);
   write_text(folder / "c.yaml", fisheye);
   EXPECT_EQ(complaint(folder.path(),
