@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <climits>
+#include <vector>
 
 #include "capture_io/capture_reader.h"
 #include "core/input_error.h"

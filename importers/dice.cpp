@@ -10,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <map>
+#include <vector>
 
 #include "core/input_error.h"
 #include "core/text_file.h"

@@ -8,6 +8,9 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"

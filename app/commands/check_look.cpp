@@ -1,6 +1,9 @@
 #include "app/commands/check_look.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "core/base64.h"
 #include "core/text_file.h"

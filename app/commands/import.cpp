@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"

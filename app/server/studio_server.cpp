@@ -22,6 +22,8 @@
 // Last: it includes resolv.h, whose macro _res breaks Eigen's headers.
 #include <httplib.h>
 
+#include <nlohmann/json.hpp>
+
 namespace hookeye {
 
 namespace fs = std::filesystem;

@@ -8,7 +8,9 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <vector>
 
 #include "bench/blind/draw.h"
 #include "bench/blind/score.h"

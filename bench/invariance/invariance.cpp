@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <vector>
 
 #include "bench/blind/draw.h"
 #include "core/text_file.h"

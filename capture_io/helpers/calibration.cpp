@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <opencv2/core.hpp>
 
 #include "capture_io/file_storage.h"

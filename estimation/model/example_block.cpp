@@ -1,4 +1,5 @@
 #include <cmath>
+#include <vector>
 
 #include "capture_io/image.h"
 #include "core/text_file.h"

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include "core/base64.h"
 #include "core/text_file.h"

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <nlohmann/json.hpp>
+#include <vector>
 
 #include "core/base64.h"
 #include "core/text_file.h"

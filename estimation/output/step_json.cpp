@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"

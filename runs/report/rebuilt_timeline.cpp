@@ -1,5 +1,6 @@
 #include "runs/report/rebuilt_timeline.h"
 
+#include <optional>
 #include <sstream>
 #include <string>
 

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "capture_io/camera.h"
 #include "capture_io/capture_folder.h"

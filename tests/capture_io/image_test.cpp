@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "capture_io/capture_folder.h"
 #include "core/input_error.h"

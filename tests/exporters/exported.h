@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <sstream>
+#include <vector>
 
 #include "estimation/model/declaration.h"
 #include "exporters/exporter.h"

@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <opencv2/calib3d.hpp>
+#include <vector>
 
 #include "core/text_file.h"
 #include "importers/published.h"

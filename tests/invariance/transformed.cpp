@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "core/text_file.h"
 #include "meshing/body.h"

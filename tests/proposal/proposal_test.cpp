@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "capture_io/capture.h"
 #include "core/input_error.h"
 #include "core/text_file.h"

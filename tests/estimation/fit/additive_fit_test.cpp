@@ -3,6 +3,9 @@
 
 #include <Eigen/Dense>
 #include <fstream>
+#include <map>
+#include <memory>
+#include <optional>
 #include <set>
 
 #include "core/distributions.h"
