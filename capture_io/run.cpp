@@ -309,6 +309,14 @@ void Run::add_file(const fs::path& step, const std::string& name,
   }
 }
 
+void Run::append_line(const std::string& name, const std::string& line) const {
+  impl_->demand_folder();
+  check_name(name);
+  std::ofstream file(impl_->folder / name, std::ios::app);
+  if (!(file << line << '\n' << std::flush))
+    throw cannot_write((impl_->folder / name).string(), "the disk may be full");
+}
+
 void Run::update(const std::function<void(json&)>& change) {
   impl_->demand_folder();
   json changed = impl_->timeline;

@@ -43,6 +43,8 @@ class Run {
   void add_file(const std::filesystem::path& step, const std::string& name,
                 const std::function<void(const std::filesystem::path&)>& write,
                 bool replace = false);
+  /// A line behind those of RUN/NAME, which is no result: where it breaks off is for its reader.
+  void append_line(const std::string& name, const std::string& line) const;
   /// Changes fields of run.json (verdict, floor, a step's diagnosis); written whole.
   void update(const std::function<void(nlohmann::json&)>& change);
 

@@ -46,9 +46,13 @@ nlohmann::json to_json(const CommandWork& work) {
           {"cpu_s", std::move(cpu)}};
 }
 
-/// Behind what is there. What it costs to know is not worth a command's end: a full disk is silent.
+/// To know it is not worth a command's end: a full disk or a folder that has gone is silent.
 void append_work(const Run& run, const CommandWork& work) {
-  std::ofstream(run.folder() / kWorkFile, std::ios::app) << to_json(work).dump() + "\n";
+  try {
+    run.append_line(kWorkFile, to_json(work).dump());
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
 }
 
 }  // namespace

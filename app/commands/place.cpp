@@ -232,8 +232,8 @@ void run_place(const PlaceCommand& options, Session& session) {
 }  // namespace
 
 void add_place(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "place", "Where the body lies for the cameras: by its outline, by pairs or by a scan");
+  CLI::App* command =
+      app.add_subcommand("place", "Where the body lies for the cameras: by outline, pairs or scan");
   const auto options = std::make_shared<PlaceCommand>();
   command->add_option("CAPTURE", options->capture, "capture.yaml or its folder")->required();
   command
