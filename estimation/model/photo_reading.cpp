@@ -194,12 +194,15 @@ PhotoWindow with_margin(const PhotoWindow& window, int width, int height) {
   constexpr double kMargin = 0.06;  // of the window's longer side
   constexpr int kStep = 16;         // px: cells of motions lie as in the whole photo
   constexpr double kWorth = 0.8;    // of the photo
+  constexpr int kLeast = 128;       // px: coarse pictures are a 32nd of it
+  if (window.empty()) return {};    // the camera looks past the body, and nothing moves
   const auto margin =
       static_cast<int>(std::lround(kMargin * std::max(window.width, window.height))) + kStep;
   const int x0 = std::max(0, (window.x - margin) / kStep * kStep);
   const int y0 = std::max(0, (window.y - margin) / kStep * kStep);
-  const int x1 = std::min(width, window.x + window.width + margin);
-  const int y1 = std::min(height, window.y + window.height + margin);
+  const int x1 = std::min(width, std::max(window.x + window.width + margin, x0 + kLeast));
+  const int y1 = std::min(height, std::max(window.y + window.height + margin, y0 + kLeast));
+  if (x1 - x0 < kLeast || y1 - y0 < kLeast) return {};  // at the far border
   if (double(x1 - x0) * (y1 - y0) > kWorth * width * height) return {};
   return {x0, y0, x1 - x0, y1 - y0};
 }

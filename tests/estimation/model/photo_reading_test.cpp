@@ -195,6 +195,13 @@ TEST(PhotoReading, TheWindowHoldsWhatMovesAndNothingElse) {
   EXPECT_GE(room.x + room.width, moved.x + moved.width + 16);
   EXPECT_EQ(room.x % 16, 0);
   EXPECT_TRUE(with_margin({5, 5, 380, 380}, 400, 400).empty()) << "not worth a cut";
+  // Coarse pictures need some pixels, wherever the window is.
+  EXPECT_TRUE(with_margin({}, 4000, 3000).empty()) << "nothing to see";
+  for (const PhotoWindow& small : {PhotoWindow{0, 0, 5, 5}, PhotoWindow{2000, 1000, 5, 5}}) {
+    EXPECT_GE(with_margin(small, 4000, 3000).width, 128);
+    EXPECT_GE(with_margin(small, 4000, 3000).height, 128);
+  }
+  EXPECT_TRUE(with_margin({3990, 100, 5, 5}, 4000, 3000).empty()) << "at the far border";
 }
 
 /// A point of the body stands where it stood in the whole photo.
