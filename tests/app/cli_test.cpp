@@ -31,12 +31,6 @@ TEST_F(Cli, HelpListsTheCommandsAndFitsAHundredColumns) {
   while (std::getline(all, line)) EXPECT_LE(line.size(), 100U) << line;
 }
 
-TEST_F(Cli, VersionGoesToStandardOutput) {
-  const Result version = hookeye("--version");
-  EXPECT_EQ(version.status, 0);
-  EXPECT_THAT(version.out, ContainsRegex("^hookeye [0-9]+\\.[0-9]+\\.[0-9]+\n$"));
-}
-
 TEST_F(Cli, UsageErrorsAreBadInput) {
   EXPECT_EQ(hookeye("").status, 2);
   const Result command = hookeye("simulat x");
