@@ -254,7 +254,7 @@ TetMesh make_mesh(const BodySpec& spec, const MendedSurface* surface, double edg
     FillOptions options;
     options.edge = edge_factor * quality(mesh).mean_edge;
     options.order = order ? order : mesh.order;
-    return fill(surface->surface, options, spec.surface_place);
+    return fill(surface->surface, options, spec.surface_place, &said);
   }
   if (surface == nullptr) {
     throw InputError(
@@ -269,7 +269,7 @@ TetMesh make_mesh(const BodySpec& spec, const MendedSurface* surface, double edg
         fmt::format("no `mesh:` given: edge {:.3g}, order {}", options.edge, options.order));
   }
   options.edge *= edge_factor;
-  return fill(surface->surface, options, spec.surface_place);
+  return fill(surface->surface, options, spec.surface_place, &said);
 }
 
 Body make(const Capture& capture, double edge_factor, int order, const RenderSurface* seen) {

@@ -67,7 +67,12 @@ TetGenAnswer tetrahedra(const SurfaceMesh& skin, const TetGenTask& task);
 
 /// fill(), whose attempts take `seconds` of computing together.
 TetMesh fill_within(const SurfaceMesh& surface, const FillOptions& options, const Place& place,
-                    double seconds);
+                    double seconds, std::vector<std::string>* said = nullptr);
+
+/// How far the surfaces leave each other: corners of both, and the middles of the old edges. A hole
+/// that is remeshed with fewer corners keeps those on the old surface, and cuts across between
+/// them. What closes a gap was nowhere before: the middles of the new edges are not asked for.
+double apart(const SurfaceMesh& before, const SurfaceMesh& now);
 
 /// Where a surface is hardest to fill, in words: where two of its parts that share no corner come
 /// nearest to each other, where it folds onto itself, or its thinnest triangle, whichever is

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "meshing/coarsen.h"
 #include "meshing/detail.h"
 #include "meshing/skin.h"
 #include "meshing/tet_mesh.h"
@@ -90,19 +91,39 @@ void refuse_too_fine(const SurfaceMesh& surface, double edge, const Place& place
       fmt::format("an edge of at least {:.2g}", 1.05 * edge * std::cbrt(count / kMostTetrahedra)));
 }
 
+/// Three times the triangles that equilateral ones of the edge would be: the mesh would follow the
+/// surface's, and have unknowns that nobody asked for.
+bool finer_than(const SurfaceMesh& surface, double edge) {
+  const double wanted = detail::area(surface) / (std::sqrt(3.0) / 4.0 * edge * edge);
+  return static_cast<double>(surface.triangles.size()) > 3.0 * wanted;
+}
+
+std::string coarser(const SurfaceMesh& surface, const SurfaceMesh& skin, bool taken, double edge) {
+  if (!taken)
+    return fmt::format(
+        "the surface's {} triangles are much finer than the mesh's edge of {:.3g}, and could not "
+        "be made coarser: the mesh is as fine as they are",
+        surface.triangles.size(), edge);
+  return fmt::format(
+      "the surface's {} triangles are finer than the mesh's edge of {:.3g}: the mesh has {} in "
+      "their place, within {:.2g} of them",
+      surface.triangles.size(), edge, skin.triangles.size(), detail::apart(surface, skin));
+}
+
 /// What the attempts may take together [s of computing]: most bodies take less than one.
 constexpr double kSeconds = 120.0, kSecondsEach = 1e-4;  ///< the second for each tetrahedron
 
 }  // namespace
 
-TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place) {
+TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place,
+             std::vector<std::string>* said) {
   const double edge = options.edge > 0 ? options.edge : detail::diagonal(surface.X) / 12.0;
   const double count = surface.triangles.empty() ? 0.0 : expected(surface, edge);
-  return detail::fill_within(surface, options, place, kSeconds + kSecondsEach * count);
+  return detail::fill_within(surface, options, place, kSeconds + kSecondsEach * count, said);
 }
 
 TetMesh detail::fill_within(const SurfaceMesh& surface, const FillOptions& options,
-                            const Place& place, double seconds) {
+                            const Place& place, double seconds, std::vector<std::string>* said) {
   if (surface.triangles.empty()) {
     throw InputError(place, "the surface has no triangles", "a closed surface");
   }
@@ -128,7 +149,11 @@ TetMesh detail::fill_within(const SurfaceMesh& surface, const FillOptions& optio
   const double thickness = six_volume(surface) / 3.0 / area(surface);
   double tolerance = std::min(0.002 * edge, 0.01 * thickness);
   if (crosses) tolerance = std::max(tolerance, rounding(surface));
-  Subdivided skin = skin_of(surface, 1.4 * edge, tolerance), plain;
+  const bool too_fine = finer_than(surface, edge);
+  Subdivided skin = too_fine ? skin_of(coarsened(surface, edge, 0.05 * std::min(edge, thickness)),
+                                       1.4 * edge, tolerance)
+                             : skin_of(surface, 1.4 * edge, tolerance);
+  Subdivided plain;
   const bool sound = inspect(skin.mesh).clean();
   if (crosses && !sound) throw no_body(surface, faults, place);
   if (!sound) skin = {};
@@ -136,7 +161,11 @@ TetMesh detail::fill_within(const SurfaceMesh& surface, const FillOptions& optio
   Attempts attempts(task, seconds);
   for (const bool keep_surface : {true, false}) {
     for (const Subdivided* one : {&skin, &plain}) {
-      if (auto mesh = attempts.at(*one, keep_surface)) return with_order(*mesh, options.order);
+      auto mesh = attempts.at(*one, keep_surface);
+      if (!mesh) continue;
+      if (too_fine && said && skin.mesh.triangles.size() < surface.triangles.size())
+        said->push_back(coarser(surface, skin.mesh, one == &skin, edge));
+      return with_order(*mesh, options.order);
     }
   }
   throw InputError(place,

@@ -256,10 +256,12 @@ void refuse_unless_most_is_left(const SurfaceMesh& before, const SurfaceMesh& no
       "the surface of a body, or a larger --tolerance where its triangles do not meet");
 }
 
+}  // namespace
+
 /// How far the surfaces leave each other: corners of both, and the middles of the old edges. A hole
 /// that is remeshed with fewer corners keeps those on the old surface, and cuts across between
 /// them. What closes a gap was nowhere before: the middles of the new edges are not asked for.
-double moved(const SurfaceMesh& before, const SurfaceMesh& now) {
+double detail::apart(const SurfaceMesh& before, const SurfaceMesh& now) {
   if (before.X == now.X && before.triangles == now.triangles) return 0.0;
   double farthest = 0.0;
   const auto measure = [&](const SurfaceMesh& from, const SurfaceMesh& to, bool middles) {
@@ -268,10 +270,10 @@ double moved(const SurfaceMesh& before, const SurfaceMesh& now) {
       farthest = std::max(farthest, tree.nearest(x).distance);
     };
     std::set<int> used;
-    for (const Triangle& t : from.triangles) used.insert(t.begin(), t.end());
+    for (const std::array<int, 3>& t : from.triangles) used.insert(t.begin(), t.end());
     for (const int v : used) ask(from.X.col(v));
     if (!middles) return;
-    for (const Triangle& t : from.triangles)
+    for (const std::array<int, 3>& t : from.triangles)
       for (size_t k = 0; k < 3; ++k) {
         const int a = t[k], b = t[(k + 1) % 3];
         if (a < b) ask(0.5 * (from.X.col(a) + from.X.col(b)));  // the neighbour has it as (b, a)
@@ -281,8 +283,6 @@ double moved(const SurfaceMesh& before, const SurfaceMesh& now) {
   measure(now, before, false);
   return farthest;
 }
-
-}  // namespace
 
 RepairedSurface repair(const SurfaceMesh& surface, const RepairOptions& options,
                        const Place& place) {
@@ -305,7 +305,7 @@ RepairedSurface repair(const SurfaceMesh& surface, const RepairOptions& options,
     repair.finish(fmt::format(", as remeshed to an edge of {:.4g}", options.edge),
                   "a smaller --edge, or none for the triangles as they are");
   }
-  return {repair.surface(), repair.said, moved(surface, repair.surface())};
+  return {repair.surface(), repair.said, detail::apart(surface, repair.surface())};
 }
 
 }  // namespace hookeye

@@ -11,5 +11,7 @@ namespace hookeye::detail {
 /// skin, and so far from each other do an edge and the one that it is turned to pass. Without
 /// texture.
 Subdivided skin_of(const SurfaceMesh& surface, double longest, double tolerance);
+/// The same of a surface that was changed before.
+Subdivided skin_of(Subdivided skin, double longest, double tolerance);
 
 }  // namespace hookeye::detail

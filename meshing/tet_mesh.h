@@ -54,8 +54,10 @@ struct FillOptions {
 };
 /// Fills a closed surface (TetGen). The boundary of the result lies on the surface, within a few
 /// thousandths of the edge where triangles of a bad shape had to go, and boundary_parent says on
-/// which triangle. Throws InputError (place) with the place of the fault.
-TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place);
+/// which triangle. A surface much finer than the edge is made coarser first, within a tenth of the
+/// edge, and `said` tells so. Throws InputError (place) with the place of the fault.
+TetMesh fill(const SurfaceMesh& surface, const FillOptions& options, const Place& place,
+             std::vector<std::string>* said = nullptr);
 
 /// msh 2.2 / 4.1, vtu, inp (C3D4, C3D10), mesh (medit, and "nnodes ntets nodes_per_tet" text).
 /// Inverted elements are refused with their number. Nodes in no element are dropped and `said`

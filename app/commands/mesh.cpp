@@ -83,9 +83,11 @@ void run_mesh(const MeshOptions& options, Session& session) {
     make_room();
     write_surface_obj(out, surface);
   } else {
-    const TetMesh mesh = fill(surface, options.fill, {options.surface});
+    std::vector<std::string> said;
+    const TetMesh mesh = fill(surface, options.fill, {options.surface}, &said);
     make_room();
     write_vtu(out, mesh, {});
+    for (const std::string& remark : said) session.say("  {}\n", remark);
     tell_body(mesh, options, session);
   }
   session.say("written to {}\n", out.string());
