@@ -6,6 +6,7 @@
 #include <set>
 
 #include "capture_io/capture_reader.h"
+#include "capture_io/travel.h"
 
 namespace hookeye {
 namespace {
@@ -19,7 +20,8 @@ class ExampleReader {
         capture_(capture),
         folder_(folder) {}
 
-  SupportSpec support(const YamlNode& node);
+  /// A travel with a `sigma` is measured, too: `measured` gets it.
+  SupportSpec support(const YamlNode& node, std::vector<MeasuredSpec>& measured);
   LoadSpec load(const YamlNode& node) const;
   MeasuredSpec measured(const YamlNode& node) const;
 
@@ -27,6 +29,8 @@ class ExampleReader {
   std::string region(const YamlNode& node, const std::string& what) const;
   RigidMotion rigid(const YamlNode& node) const;
   void components(const YamlSection& section, SupportSpec& support);
+  void read_travel_sigma(const YamlNode& node, const SupportSpec& support,
+                         std::vector<MeasuredSpec>& measured) const;
   void claim(const Place& place, const std::string& region, int component);
 
   std::string of_;
@@ -96,8 +100,27 @@ RigidMotion ExampleReader::rigid(const YamlNode& node) const {
   return motion;
 }
 
-SupportSpec ExampleReader::support(const YamlNode& node) {
-  const YamlSection section(node, "a support" + of_, {"region", "fix", "move", "rigid"});
+void ExampleReader::read_travel_sigma(const YamlNode& node, const SupportSpec& support,
+                                      std::vector<MeasuredSpec>& measured) const {
+  const double sigma = read_positive(node, "sigma of a support");
+  const Vector3d travel = prescribed_travel(support);
+  if (travel.isZero(0.0) || support.rigid.degrees != 0.0)
+    throw InputError(node.place,
+                     fmt::format("`sigma` is of a travel, and region `{}` {}", support.region,
+                                 travel.isZero(0.0) ? "has none" : "turns as well"),
+                     "beside `move` alone: `{region: grip, move: {z: 5}, sigma: 0.02}`");
+  MeasuredSpec of_it;
+  of_it.kind = MeasuredSpec::Kind::travel_of;
+  of_it.place = node.place;
+  of_it.region = support.region;
+  of_it.direction = travel.normalized();
+  of_it.value = Eigen::VectorXd::Constant(1, travel.norm());
+  of_it.sigma = Eigen::VectorXd::Constant(1, sigma);
+  measured.push_back(std::move(of_it));
+}
+
+SupportSpec ExampleReader::support(const YamlNode& node, std::vector<MeasuredSpec>& measured) {
+  const YamlSection section(node, "a support" + of_, {"region", "fix", "move", "rigid", "sigma"});
   SupportSpec support;
   support.place = node.place;
   support.region =
@@ -106,20 +129,21 @@ SupportSpec ExampleReader::support(const YamlNode& node) {
   if (!rigid_motion) {
     if (!section.has("fix") && !section.has("move")) section.one_of({"fix", "move", "rigid"});
     components(section, support);
-    return support;
-  }
-  for (const char* other : {"fix", "move"})
-    if (const YamlNode::Entry* entry = section.entry(other))
-      throw InputError(entry->place,
-                       fmt::format("{} has both `rigid` and `{}`", section.what(), other),
-                       "keep one of the two");
-  for (int i = 0; i < 3; ++i) claim(rigid_motion->place, support.region, i);
-  if (rigid_motion->kind == YamlNode::Kind::scalar && rigid_motion->text == "fit") {
-    support.kind = SupportSpec::Kind::rigid_fit;
   } else {
-    support.kind = SupportSpec::Kind::rigid;
-    support.rigid = rigid(*rigid_motion);
+    for (const char* other : {"fix", "move"})
+      if (const YamlNode::Entry* entry = section.entry(other))
+        throw InputError(entry->place,
+                         fmt::format("{} has both `rigid` and `{}`", section.what(), other),
+                         "keep one of the two");
+    for (int i = 0; i < 3; ++i) claim(rigid_motion->place, support.region, i);
+    if (rigid_motion->kind == YamlNode::Kind::scalar && rigid_motion->text == "fit") {
+      support.kind = SupportSpec::Kind::rigid_fit;
+    } else {
+      support.kind = SupportSpec::Kind::rigid;
+      support.rigid = rigid(*rigid_motion);
+    }
   }
+  if (const YamlNode* sigma = section.find("sigma")) read_travel_sigma(*sigma, support, measured);
   return support;
 }
 
@@ -246,7 +270,7 @@ ExampleSpec read_example(const YamlNode::Entry& entry, const Capture& capture,
   if (const YamlNode* supports = section.find("supports"))
     for (const YamlNode& item :
          read_list(*supports, "supports of " + what, "write `- {region: base, fix: [x, y, z]}`"))
-      example.supports.push_back(reader.support(item));
+      example.supports.push_back(reader.support(item, example.measured));
   if (const YamlNode* loads = section.find("loads"))
     for (const YamlNode& item :
          read_list(*loads, "loads of " + what, "write `- {region: grip, force: [0, 0, 2.5]}`"))

@@ -12,6 +12,9 @@ namespace {
 
 /// A load cell of class 1 (ISO 7500-1) reads within 1 % of the force: two deviations.
 constexpr double kLoadCell = 0.005;
+/// An extensometer of class 1 (ISO 9513) reads within 3 um where it moves little: two deviations.
+/// [mm]
+constexpr double kLeastTravelSigma = 0.0015;
 
 std::string vector_yaml(const Vector3d& v) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
@@ -115,8 +118,10 @@ std::string loading_text(const MachineLoading& loading, const MachineRecord& rec
     return out + fmt::format("    loads:\n      - {{region: pulled, force: {}}}\n",
                              vector_yaml(photo.force * d));
   }
-  out += fmt::format("      - {{region: pulled, rigid: {{move: {}}}}}\n",
-                     vector_yaml(photo.travel / mm * d));
+  const double sigma =
+      std::max(std::hypot(record.travel_noise, photo.travel_rate * clock_error), kLeastTravelSigma);
+  out += fmt::format("      - {{region: pulled, rigid: {{move: {}}}, sigma: {:.2g}}}\n",
+                     vector_yaml(photo.travel / mm * d), sigma / mm);
   if (record.force.empty()) return out;
   double most = 0;
   for (const double force : record.force) most = std::max(most, std::abs(force));

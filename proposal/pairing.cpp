@@ -41,11 +41,12 @@ PairedPhoto photo_at(const MachineRecord& record, long number, double row) {
   photo.line = record.lines[std::min(static_cast<size_t>(std::lround(row)), record.size() - 1)];
   const double low = std::max(0.0, row - 2),
                high = std::min(static_cast<double>(record.size() - 1), row + 2);
-  if (!record.force.empty() && !record.time.empty()) {
-    const double span = at_row(record.time, high) - at_row(record.time, low);
-    if (span > 0)
-      photo.force_rate = (at_row(record.force, high) - at_row(record.force, low)) / span;
-  }
+  if (record.time.empty()) return photo;
+  const double span = at_row(record.time, high) - at_row(record.time, low);
+  const auto rate = [&](const std::vector<double>& column) {
+    return column.empty() || span <= 0 ? 0.0 : (at_row(column, high) - at_row(column, low)) / span;
+  };
+  photo.force_rate = rate(record.force), photo.travel_rate = rate(record.travel);
   return photo;
 }
 

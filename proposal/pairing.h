@@ -14,8 +14,8 @@ struct PairedPhoto {
   long number = 0;
   double time = 0;               ///< [s] of the table; the row's index where it has no time
   double force = 0, travel = 0;  ///< [N], [mm]; 0 where the table has none
-  double force_rate = 0;         ///< [N/s]
-  int line = 0;                  ///< of the nearest row
+  double force_rate = 0, travel_rate = 0;  ///< [N/s], [mm/s]
+  int line = 0;                            ///< of the nearest row
 };
 
 struct Pairing {

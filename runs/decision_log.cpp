@@ -73,6 +73,7 @@ constexpr Meaning kMeanings[] = {
      "squared residual falls by {0}; renderers and meshes err by {1}"},
     {Asked::stands, "search.worth_a_name", "share of the excess misfit left: {0}; at most {1}"},
     {Asked::widened, "search.widening_leaves", "share left: {0}; at most {1}"},
+    {Asked::widened, "", "difference {0}; it takes {1}"},
     {Asked::dropped, "floor.at", "residual {0}; explained from {1} down"},
     {Asked::dropped, "*", "difference {0}; at least {1}"},
     {Asked::swapped, "*", "difference {0}; it takes {1}"},

@@ -42,7 +42,7 @@ std::set<int> decided_nodes(const Scene& scene, const Moved& moved) {
   return own;
 }
 
-/// The support follows only these shares of its told motion.
+/// The support lacks the rest of these shares of its told motion. (What else moves it stays.)
 void follow(Model& model, const Moved& moved, double of_turn, double of_shift) {
   const Scene& scene = *model.scene;
   const SupportSpec& support = scene.capture.examples[moved.example].supports[moved.support];
@@ -56,9 +56,9 @@ void follow(Model& model, const Moved& moved, double of_turn, double of_shift) {
     if (!own.count(node)) continue;
     const Vector3d X = scene.body->mesh.X.col(node);
     if (support.kind == SupportSpec::Kind::rigid)
-      loading.displacement[i] = (motion.apply(X) - X)[component];
+      loading.displacement[i] += (motion.apply(X) - support.rigid.apply(X))[component];
     else if (support.displacement[component])
-      loading.displacement[i] = of_shift * *support.displacement[component];
+      loading.displacement[i] += (of_shift - 1.0) * *support.displacement[component];
   }
 }
 

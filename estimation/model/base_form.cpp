@@ -6,6 +6,7 @@
 #include "estimation/model/additive_material.h"
 #include "estimation/model/base_ingredients.h"
 #include "estimation/model/model.h"
+#include "estimation/model/travels.h"
 
 namespace hookeye {
 
@@ -108,6 +109,7 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
   form.start = told_model(scene);
   form.ingredients = material_ingredients(*scene, form.start.energy);
   if (auto rigid = rigid_support_ingredient(*scene)) form.ingredients.push_back(rigid);
+  if (auto travels = travel_ingredient(*scene)) form.ingredients.push_back(travels);
   const bool shaded = any_image(capture) && (capture.body.texture == BodySpec::Texture::image ||
                                              capture.body.texture == BodySpec::Texture::uniform);
   if (shaded && !capture.light.given)

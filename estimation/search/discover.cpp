@@ -145,6 +145,12 @@ class Search {
     tell_ranks(contest);
     refused_ = why_refused(step, contest.before, contest.refits.front());
     if (!told_standing(options_.fit.decided, refused_)) return add_pair(contest, room);
+    auto wider = wider_.instead_of(contest.refits.front(), step.fitted, out_.floor);
+    if (auto* failure = std::get_if<NumericalFailure>(&wider)) return *failure;
+    if (auto& wide = std::get<std::optional<Fitted>>(wider)) {
+      stand_in(wider_step(step.fitted, std::move(*wide)));
+      return true;
+    }
     add_winner(contest);
     return true;
   }
@@ -171,6 +177,14 @@ class Search {
       return true;
     }
     return false;
+  }
+
+  /// `now` with one of its effects in another form.
+  static Step wider_step(const Fitted& now, Fitted wide) {
+    size_t at = 0;
+    while (form_of(*now.form.ingredients[at]) == form_of(*wide.form.ingredients[at])) ++at;
+    const std::string name = wide.form.ingredients[at]->name();
+    return step_with(name, std::move(wide), {name});
   }
 
   void tell_ranks(const Contest& contest) const {

@@ -120,16 +120,21 @@ bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale&
                                      over({{}, now.chi, now.chi_validate, now.floor});
 }
 
-/// Most of what was left goes with the form; where another effect is missing, a little more than
-/// its values cost goes with any. Held-out photos speak against it with what they are missed by
-/// beyond what renderers leave: by likelihood they tell less than that, as a modulus that moves
-/// within its interval changes.
+/// It says more than its parameters cost. Held-out photos speak against it with what they are
+/// missed by beyond what renderers leave: by likelihood they tell less than that, as a modulus that
+/// moves within its interval changes.
+bool worth_its_parameters(const Fitted& wide, const Fitted& narrow, const Floor& floor) {
+  return score_above(wide, narrow, floor) > floor.limits->diagnosis.tie &&
+         (wide.evaluation.chi(true) <= floor.limits->floor.on * floor.chi ||
+          held_out_allows(wide, narrow, floor));
+}
+
+/// Most of what was left goes with the form, too: where another effect is missing, a little more
+/// than its values cost goes with any.
 bool pays(const Fitted& wide, const Fitted& narrow, const Floor& floor, bool same_claim) {
   return (same_claim || over_floor(wide, floor) <
                             floor.limits->search.widening_leaves * over_floor(narrow, floor)) &&
-         score_above(wide, narrow, floor) > floor.limits->diagnosis.tie &&
-         (wide.evaluation.chi(true) <= floor.limits->floor.on * floor.chi ||
-          held_out_allows(wide, narrow, floor));
+         worth_its_parameters(wide, narrow, floor);
 }
 
 bool told_paying(const Decided& decided, const std::string& words, const Fitted& wide,
@@ -175,7 +180,8 @@ std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wid
 
 std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
                                                const Floor& floor, const FitOptions& options,
-                                               const DiscoverEvents& events) {
+                                               const DiscoverEvents& events,
+                                               std::optional<Fitted>* left_much) {
   const std::string first = narrow.form.ingredients[at]->variant();
   std::set<std::string> tried = {first};
   for (bool better = true; better && !on_floor(narrow, floor);) {
@@ -214,7 +220,14 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
         continue;
       }
       Fitted& wide = std::get<Fitted>(result);
-      if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) continue;
+      if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) {
+        if (left_much && worth_its_parameters(wide, best, floor) &&
+            (!*left_much || score_above(wide, **left_much, floor) > 0.0)) {
+          drop_pictures(wide);
+          *left_much = std::move(wide);
+        }
+        continue;
+      }
       best = std::move(wide);
       better = true;
     }
@@ -229,13 +242,42 @@ std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitt
                                                                       const Floor& floor) {
   const std::string narrow = form_of(*fitted.form.ingredients[at]);
   if (!asked_.insert({forms_of(fitted.form), at}).second) return std::nullopt;
-  auto result = widened(workspace_, fitted, at, floor, options_, events_);
+  std::optional<Fitted> left_much;
+  auto result = widened(workspace_, fitted, at, floor, options_, events_, &left_much);
   if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (left_much) left_much_.push_back({forms_of(fitted.form), at, std::move(*left_much)});
   Fitted& wide = std::get<Fitted>(result);
   const std::string form = form_of(*wide.form.ingredients[at]);
   if (form == narrow && wide.p == fitted.p) return std::nullopt;
   came_to_.insert(form);
   return std::move(wide);
+}
+
+std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::instead_of(const Refit& winner,
+                                                                             const Fitted& now,
+                                                                             const Floor& floor) {
+  std::optional<Fitted> best;
+  size_t at = 0;
+  for (LeftMuch& one : left_much_)
+    if (one.forms == forms_of(now.form) && (!best || score_above(one.fitted, *best, floor) > 0.0))
+      best = one.fitted, at = one.at;
+  std::erase_if(left_much_, [&](const LeftMuch& one) { return one.forms == forms_of(now.form); });
+  if (!best || numerical(winner.effect)) return std::nullopt;
+  const double ahead = score_above(*best, winner.fitted, floor);
+  const Ingredient& form = *best->form.ingredients[at];
+  if (!tell(options_.decided,
+            {Asked::widened,
+             form.name() + " as '" + form.variant() + "'",
+             ahead > 0.0,
+             {ahead, 0.0, ""},
+             "enriched, in place of " + winner.effect + ": penalised log likelihood over that"}))
+    return std::nullopt;
+  auto result = plainest(workspace_, std::move(*best), at, floor, options_, events_);
+  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  const Fitted& wide = std::get<Fitted>(result);
+  if (forms_of(wide.form) == forms_of(now.form)) return std::nullopt;
+  came_to_.insert(form_of(*wide.form.ingredients[at]));
+  return std::get<Fitted>(std::move(result));
 }
 
 std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& step,

@@ -18,10 +18,12 @@ namespace hookeye {
 /// is over the floor (or says the same in another shape), where fitted and held-out photos together
 /// pay for its parameters by more than a tie, and where the held-out ones do not speak against it:
 /// else it is another effect that is missing. Of what a wide form says a plainer one
-/// (Effect::plainer_form) stays where it scores as well.
+/// (Effect::plainer_form) stays where it scores as well. `left_much`: of those that pay and leave
+/// too much for that, the one that says most, without its pictures.
 std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
                                                const Floor& floor, const FitOptions& options,
-                                               const DiscoverEvents& events = {});
+                                               const DiscoverEvents& events = {},
+                                               std::optional<Fitted>* left_much = nullptr);
 
 /// An effect that only the larger form of another makes room for: without it, and with that other
 /// in its smaller form (Effect::smaller_form), the photos stay at the floor and the score falls by
@@ -40,6 +42,11 @@ class WiderForms {
   /// Empty: none is better, or it was asked before.
   std::variant<std::optional<Fitted>, NumericalFailure> ask(const Fitted& fitted, size_t at,
                                                             const Floor& floor);
+  /// A form that was asked of `now` and left much over the floor, where it says more than `winner`,
+  /// which is `now` and another effect: what a named effect accounts for needs no second name.
+  std::variant<std::optional<Fitted>, NumericalFailure> instead_of(const Refit& winner,
+                                                                   const Fitted& now,
+                                                                   const Floor& floor);
   /// The best refit explains the fitted photos and misses the held-out ones, and none explains
   /// both: before what stands is doubted for it, it is asked for a wider form, and the contest is
   /// ranked anew. (Creep that levels off is growing creep to the first loads.)
@@ -52,9 +59,15 @@ class WiderForms {
   bool came_to(const Ingredient& form) const;
 
  private:
+  struct LeftMuch {
+    std::string forms;  ///< of the model that was asked
+    size_t at;
+    Fitted fitted;
+  };
   Workspace& workspace_;
   const FitOptions& options_;
   const DiscoverEvents& events_;
+  std::vector<LeftMuch> left_much_;
   std::set<std::pair<std::string, size_t>> asked_;  ///< all forms, and which of them was asked
   std::set<std::string> came_to_;
 };

@@ -88,6 +88,53 @@ TEST(MeasuredFit, ARotationAlone) {
   expect_found("pull", turn);
 }
 
+/// The block drawn by 2 mm, known within 0.05; a force and a position tell how far it went.
+std::shared_ptr<const Scene> drawn_block(double travel, double mu, bool known_within) {
+  auto scene = std::make_shared<Scene>(*block_scene());
+  for (size_t i = 0; i < scene->capture.examples.size(); ++i) {
+    ExampleSpec& example = scene->capture.examples[i];
+    example.photos.clear(), example.measured.clear(), scene->photos[i].clear();
+    if (example.name != "pull") continue;
+    SupportSpec jaw;
+    jaw.region = "grip";
+    jaw.displacement = {0.0, 0.0, 2.0};
+    example.supports.push_back(jaw);
+    example.loads.clear();
+    MeasuredSpec along = measured(Kind::travel_of, 0.05);
+    along.direction = Vector3d::UnitZ(), along.value[0] = 2.0;
+    MeasuredSpec middle = measured(Kind::position_of, 0.002);
+    middle.point = {0.0, 0.0, 20.0};
+    example.measured = {measured(Kind::force_on, 1e-4), middle, along};
+  }
+  // What is measured: the truth's, by a model that went as far as it did.
+  const ModelForm form = base_form(scene);
+  const int at = scene->example_index("pull");
+  Workspace workspace(scene);
+  const auto seen = std::get<Evaluation>(
+      workspace.evaluate(form, Eigen::Vector2d(mu, travel - 2.0), EvaluationOptions{}));
+  auto known = std::make_shared<Scene>(*scene);
+  auto& rows = known->capture.examples[static_cast<size_t>(at)].measured;
+  for (size_t k = 0; k < 2; ++k) rows[k].value = seen.find(at)->measured.at(k).predicted;
+  if (!known_within) rows.pop_back();
+  return known;
+}
+
+/// A jaw that went 1.5 standard deviations too far: the travel takes that, not the stiffness.
+TEST(MeasuredFit, ATravelKnownWithinItsSigmaIsFittedBesideTheMaterial) {
+  const auto fitted_from = [](bool known_within) {
+    const auto scene = drawn_block(2.075, 0.065, known_within);
+    Workspace workspace(scene);
+    const ModelForm form = base_form(scene);
+    EXPECT_EQ(form.size(), known_within ? 2 : 1);
+    return std::get<Fitted>(fit(workspace, form, form.initial()));
+  };
+  const Fitted free = fitted_from(true), exact = fitted_from(false);
+  EXPECT_NEAR(free.p[1], 0.075, 0.005);
+  EXPECT_NEAR(free.p[0], 0.065, 1e-4);
+  EXPECT_EQ(free.form.parameters()[1].name, "pull.grip.travel");
+  EXPECT_GT(std::abs(exact.p[0] - 0.065), 1e-3) << "taken as exact the modulus is wrong";
+}
+
 /// What is known well across and badly along the view is a covariance, not a mean of both.
 TEST(MeasuredFit, ACovarianceWeighsEachDirectionByItself) {
   MeasuredSpec one = measured(Kind::position_of, 0.1), same = one, other = one;
