@@ -30,6 +30,13 @@ class Exposure final : public Effect {
   Ingredients candidates(const Model& model, std::string* why_not) const override {
     const Scene& scene = *model.scene;
     const auto& examples = scene.capture.examples;
+    if (scene.capture.body.texture == BodySpec::Texture::rest &&
+        scene.limits->fit.brightness_cell > 0.0) {
+      if (why_not)
+        *why_not =
+            "with a texture from photos the model's picture follows the brightness of each photo";
+      return {};
+    }
     Ingredients all =
         per_camera(scene, why_not, [&](const Camera& camera, const FirstExample& first) {
           return one_gain(

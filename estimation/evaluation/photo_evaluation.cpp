@@ -259,7 +259,16 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       const auto moves = [&](PhotoColumn column) {
         return columns != nullptr && !columns->dphoto[k].row(column).isZero(0.0);
       };
-      render_options.photo_derivative = columns != nullptr && !columns->dphoto[k].isZero(0.0);
+      // The texture is divided by the gain of the photo that it is from.
+      const bool texture_gain =
+          columns != nullptr && reference.columns && texture.source == Texture::Source::photo &&
+          !reference.columns
+               ->dphoto[reference_photo(scene, reference.example,
+                                        model.examples[e].photos[k].camera.name)]
+               .row(kLogGain)
+               .isZero(0.0);
+      render_options.photo_derivative =
+          columns != nullptr && (texture_gain || !columns->dphoto[k].isZero(0.0));
       render_options.gloss_derivative = moves(kSpecular);
       render_options.blur_derivative = moves(kBlur);
       render_options.centres = options.pictures || texture.source == Texture::Source::photo;
