@@ -43,11 +43,16 @@ TEST(Proposal, WritesACaptureThatIsRead) {
   EXPECT_EQ(last.photos[1].file.filename(), "cam1_0015.tif");
   ASSERT_EQ(last.supports.size(), 2u);
   EXPECT_LT((last.supports[1].rigid.move - Vector3d(0, 0, 2.2)).norm(), 1e-6);
-  ASSERT_EQ(last.measured.size(), 1u);
-  EXPECT_NEAR(last.measured[0].value[2], 4.4, 0.01);  // the zero of 0.3 N is off
-  EXPECT_EQ(last.measured[0].value[0], 0);
-  EXPECT_NEAR(last.measured[0].sigma[2], 0.022, 0.004);
-  EXPECT_GT(last.measured[0].sigma[0], 4);
+  ASSERT_EQ(last.measured.size(), 2u);
+  EXPECT_EQ(last.measured[0].kind, MeasuredSpec::Kind::travel_of);
+  EXPECT_NEAR(last.measured[0].value[0], 2.2, 1e-6);
+  EXPECT_GE(last.measured[0].sigma[0], 0.0015) << "an extensometer's class at least";
+  EXPECT_LT(last.measured[0].sigma[0], 0.05);
+  const MeasuredSpec& force = last.measured[1];
+  EXPECT_NEAR(force.value[2], 4.4, 0.01);  // the zero of 0.3 N is off
+  EXPECT_EQ(force.value[0], 0);
+  EXPECT_NEAR(force.sigma[2], 0.022, 0.004);
+  EXPECT_GT(force.sigma[0], 4);
 }
 
 TEST(Proposal, LoadsAreSpreadEvenly) {
