@@ -89,6 +89,16 @@ def full_capture():
     }
 
 
+def plain_capture():
+    """The same without pictures and calibrations, which cost a program of their own at each start."""
+    out = full_capture()
+    out["body"]["texture"] = {"uniform": "fit"}
+    del out["photos"]["background"], out["cameras"]["left"]
+    for example in out["examples"].values():
+        example.pop("photos", None)
+    return out
+
+
 def full_recipes():
     """A drawn shape, and a surface of one's own: together every key."""
     cameras = {"count": 1, "size": [60, 80], "distance": 6, "focal": 300, "projection": ["perspective"], "distortion": [],
