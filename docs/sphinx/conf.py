@@ -1,9 +1,14 @@
 """Sphinx's settings for docs/site. Sources are staged by pages.py."""
 import importlib
+import importlib.machinery
+import importlib.util
 import os
 import re
 import sys
+import types
 from pathlib import Path
+
+from sphinx.ext.autodoc.mock import mock
 
 root = Path(__file__).resolve().parents[2]
 project = "Hookeye"
@@ -33,7 +38,7 @@ mathjax_path = "../mathjax/MathJax.js?config=TeX-AMS_CHTML"
 myst_update_mathjax = False
 mathjax2_config = {"showMathMenu": False, "messageStyle": "none", "tex2jax": {"inlineMath": [["\\(", "\\)"]]}}
 
-# The module as it was built; else its Python files, with the extension beneath them left open.
+# The module as it was built; else its Python files, over the stub of the extension beneath them.
 built = Path(os.environ.get("HOOKEYE_PYTHON", root / "build" / "release" / "python"))
 sys.path.insert(0, str(built))
 try:
@@ -41,7 +46,17 @@ try:
 except ImportError:
     sys.modules.pop("hookeye", None)
     sys.path[0] = str(root / "python")
-    autodoc_mock_imports = ["hookeye._hookeye", "numpy"]
+    loader = importlib.machinery.SourceFileLoader("hookeye._hookeye", str(root / "python" / "hookeye" / "_hookeye.pyi"))
+    stub = importlib.util.module_from_spec(importlib.util.spec_from_loader(loader.name, loader))
+    stub.__version__ = version
+    sys.dont_write_bytecode = True
+    with mock(["numpy"] if importlib.util.find_spec("numpy") is None else []):
+        loader.exec_module(stub)
+        for name, value in list(vars(stub).items()):
+            if isinstance(value, types.FunctionType):
+                setattr(stub, name, lambda *given, **named: {})  # what the package asks when it is imported
+        sys.modules[loader.name] = stub
+        importlib.import_module("hookeye")
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True}
