@@ -3,9 +3,9 @@
 # Prints a line a file. Exits 1 where a file's mean is above 20 words, and says its longest sentence.
 #
 # What is read as prose counts: paragraphs, list items, cells of tables with more than 8 words. Code blocks,
-# headings, shorter cells, pictures and targets of links do not. `code` is one word; a word has a letter or
-# a digit. A sentence ends at . ! ? before a capital, a digit or code, and with its paragraph, item or
-# cell. No colon and no semicolon ends one.
+# headings, shorter cells, pictures and targets of links do not. `code` is one word, and so is a formula
+# between $; one between $$ is a code block. A word has a letter or a digit. A sentence ends at . ! ? before a capital,
+# a digit or code, and with its paragraph, item or cell. No colon and no semicolon ends one.
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 shopt -s nullglob
@@ -27,6 +27,7 @@ function take_sentence(text,    n) {
 }
 function take_prose(text) {
   gsub(/`[^`]*`/, "Code", text)
+  gsub(/\$[^$]+\$/, "Code", text)                  # a formula
   gsub(/!\[[^]]*\]\([^)]*\)/, "", text)
   gsub(/\]\([^)]*\)/, "", text)
   gsub(/[*_\[\]]/, "", text)
@@ -64,6 +65,7 @@ FNR == 1 {
 }
 /^[^ ]/ && !/^([-*]|[0-9]+\.) / && after_blank { in_list = 0 }
 /^ *```/ { end_block(); fenced = !fenced; next }
+/^ *\$\$/ { end_block(); if ($0 !~ /\$\$.*\$\$/) fenced = !fenced; next }
 fenced { next }
 /^ *$/ { end_block(); after_blank = 1; next }
 /^    / && after_blank && !in_list { next }        # a code block by its indent

@@ -19,15 +19,17 @@ namespace {
 
 const char* const kHead = R"(# The effects
 
-What a model may lack, as `hookeye diagnose` tests it. This page is written from the catalogue and
-checked against it by the tests; parameters are those of a block of 20 x 16 x 40 mm that is pulled,
-twisted, bent and pressed, in millimetres and newtons. At its null an effect leaves the model as it
-is. `null` is that value, `matters` the change that counts as large, in the same unit.
+What a model may lack, as `hookeye diagnose` tests it. How the residual of each looks: the gallery
+([gallery.md](gallery.md)). This page is written from the catalogue and checked against it by the tests.
+
+Parameters are those of a block of 20 x 16 x 40 mm that is pulled, twisted, bent and pressed, in
+millimetres and newtons. At its null an effect leaves the model as it is. `null` is that value,
+`matters` the change that counts as large, in the same unit.
 
 `hookeye effects` lists the same on a terminal. `hookeye effects NAME` adds the forms that a refit may
-go on to, with their parameters. `--capture CAPTURE` tells what can be tested in your capture, in its units.
+go on to, with their parameters. `--capture CAPTURE` lists what can be tested in your capture, in its units.
 
-Names stand in every command, file and test; `estimation/effects/README.md` tells how to add one.
+Names stand in every command, file and test; `estimation/effects/README.md` says how to add one.
 
 )";
 
