@@ -17,6 +17,7 @@ import numpy as np
 
 from . import _hookeye, tables
 from .capture import Capture
+from .effect import EffectLike, _registered
 from .errors import InputError
 from .fields import Field
 from .model import Model, Shot
@@ -194,8 +195,9 @@ class Run:
                    "where", "cpu_s"]
         return table(self._own.decisions(), columns)
 
-    def why(self, effect: str) -> Any:
+    def why(self, effect: EffectLike) -> Any:
         """All that was decided of one effect."""
+        effect = _registered(effect)
         known = [one["name"] for one in _hookeye.effects()]
         if effect not in known:
             wrong, right = f"there is no effect '{effect}'", f"one of {', '.join(known)}"
@@ -241,13 +243,17 @@ class Run:
             out.attrs["kind"] = "Laplace approximation"
         return out
 
-    def diagnose(self, *, on_step: Optional[OnStep] = None, cancel: Any = None) -> Diagnosis:
-        """Tests every effect against what the newest step leaves, and writes it down."""
+    def diagnose(self, *, effects: Iterable[EffectLike] = (), on_step: Optional[OnStep] = None,
+                 cancel: Any = None) -> Diagnosis:
+        """Tests every effect against what the newest step leaves, and writes it down. `effects`:
+        classes derived from hookeye.Effect, which are registered before."""
+        _register_all(effects)
         return Diagnosis(self._own.diagnose(_listener(on_step), cancel))
 
-    def add(self, effect: str, *, take_back: bool = False, on_step: Optional[OnStep] = None,
+    def add(self, effect: EffectLike, *, take_back: bool = False, on_step: Optional[OnStep] = None,
             cancel: Any = None) -> Step:
         """Refits with an effect (or without it again): the next step, diagnosed."""
+        effect = _registered(effect)
         command = f"hookeye.Run.add({effect!r}{', take_back=True' if take_back else ''})"
         self._own.add(effect, take_back, command, _listener(on_step), cancel)
         return self._newest()
@@ -312,6 +318,13 @@ def _out(out: Optional[PathLike]) -> Tuple[PathLike, Any]:
     return os.path.join(kept.name, "run"), kept
 
 
+def _register_all(effects: Iterable[EffectLike]) -> None:
+    if isinstance(effects, (str, type)):
+        raise TypeError("effects: a list of classes is expected")
+    for effect in effects:
+        _registered(effect)
+
+
 def _expect_capture(capture: Any) -> None:
     if not isinstance(capture, Capture):
         raise TypeError(f"capture: a hookeye.Capture is expected, not {type(capture).__name__}")
@@ -333,10 +346,13 @@ def fit(capture: Capture, model: Optional[Model] = None, out: Optional[PathLike]
 
 
 def discover(capture: Capture, out: Optional[PathLike] = None, *, without: Iterable[str] = (),
-             on_step: Optional[OnStep] = None, cancel: Any = None) -> Run:
+             effects: Iterable[EffectLike] = (), on_step: Optional[OnStep] = None,
+             cancel: Any = None) -> Run:
     """Fits, diagnoses, adds, until what is left is noise; takes up the run in `out`, if there is
-    one. Stopped it leaves the steps that are finished."""
+    one. Stopped it leaves the steps that are finished. `effects`: classes derived from
+    hookeye.Effect, which are registered before."""
     _expect_capture(capture)
+    _register_all(effects)
     folder, kept = _out(out)
     command = f"hookeye.discover({str(capture.file)!r})"
     own = _hookeye.discover(capture._own, folder, list(without), command, _listener(on_step), cancel)

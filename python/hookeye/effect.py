@@ -1,0 +1,487 @@
+"""Effects in Python: a class derived from Effect is tested, fitted and reported as those built in."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import re
+import zlib
+from types import CodeType
+from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _hookeye
+from .errors import EffectError, InputError
+
+#: Step into the imaginary: its square is nothing beside 1, so that the derivative is exact.
+_IMAGINARY = 1e-30
+#: Real step beside an imaginary one, for second derivatives: error some 1e-10 of them.
+_REAL = 1e-5
+
+_GROUPS = ("material", "loads", "supports", "history", "measurement", "numerical")
+_FIELDS = ("unit", "null", "typical", "low", "high", "words")
+#: What methods take besides the parameters.
+_TAKEN = ("self", "F", "I1", "I2", "J", "X", "x", "N", "example", "camera", "order", "setup")
+#: Numbers of photo(), in the order of the photo's columns: name, how many, whether where photos
+#: show a point changes with it.
+_PHOTO = (("rotate", 3, True), ("move", 3, True), ("zoom", 1, True), ("log_gain", 1, False),
+          ("ambient", 1, False), ("sun", 3, False), ("specular", 1, False), ("blur", 1, False),
+          ("background", 1, False))
+_KINDS = ("energy", "energy_of_invariants", "body_force", "traction", "photo")
+
+
+class Setup:
+    """The capture that an effect is asked about.
+
+    `points` (n, 3) and `elements` (m, 4 or 10) of the body at rest, its `size` and `centre`;
+    `shear_modulus` of the model at rest; names of `length`, `force` and `stress`; names of
+    `regions`, `examples` and `cameras`.
+    """
+
+    def __init__(self, told: Dict[str, Any]) -> None:
+        self.points: np.ndarray = told["points"]
+        self.elements: np.ndarray = told["elements"]
+        self.size: float = told["size"]
+        self.centre: np.ndarray = told["centre"]
+        self.shear_modulus: float = told["shear_modulus"]
+        self.length: str = told["length"]
+        self.force: str = told["force"]
+        self.stress: str = told["stress"]
+        self.regions: List[str] = told["regions"]
+        self.examples: List[str] = told["examples"]
+        self.cameras: List[str] = told["cameras"]
+
+
+class Effect:
+    """Base of effects in Python. What a class may say:
+
+    `name` (default: the class's, in small letters), `title`, `group`, the docstring (what it is and
+    what it is taken for), `parameters`: {name: {unit, null, typical, low, high, words}}.
+
+    And what it does, by methods that take the parameters by their names, as many as it likes:
+
+    - energy(F, k): energy per rest volume (n,) of deformation gradients (n, 3, 3) [stress];
+      stress(F, k): its derivative (n, 3, 3); stiffness(F, k): the second, (n, 3, 3, 3, 3). What is
+      not given is worked out by complex steps: then F is complex.
+    - energy_of_invariants(I1, I2, J, k): the same of I1bar, I2bar and det F. It is faster.
+    - where(X, setup): the share in which the energy acts, 0 to 1, at element centres (m, 3).
+    - body_force(X, k) or body_force(X, x, k): force per rest volume (n, 3) at points that rest at X
+      and are at x; traction(X, k), (X, x, k) or (X, x, N, k): per rest area of `region` (default:
+      the whole surface), whose normal is N. share(example, order): of it in a load case.
+    - photo(example, camera, order, k): changes of a photo, a dict of rotate, move (camera axes),
+      zoom, log_gain, ambient, sun, specular, blur (variance, px^2), background.
+    - sentence(k): what it says in words.
+    - applies(setup): "" or why it does not apply to a capture.
+
+    `parameters` may be a method parameters(setup), where sizes depend on the capture.
+    """
+
+    name: str = ""
+    title: str = ""
+    group: str = ""
+    region: str = ""
+    parameters: Any = {}
+
+    def applies(self, setup: Setup) -> str:
+        return ""
+
+    def share(self, example: str, order: int) -> float:
+        return 1.0
+
+
+EffectLike = Union[str, type, Effect]
+
+
+def cofactor(F: np.ndarray) -> np.ndarray:
+    """d det F / dF of (..., 3, 3), real or complex: det F times the inverse's transpose. Much quicker
+    than numpy.linalg.inv, which asks LAPACK for every matrix."""
+    f = [[F[..., i, j] for j in range(3)] for i in range(3)]
+    out = np.empty_like(F)
+    for i in range(3):
+        for j in range(3):
+            a, b, c, d = (i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3
+            out[..., i, j] = f[a][c] * f[b][d] - f[a][d] * f[b][c]
+    return out
+
+
+def determinant(F: np.ndarray) -> np.ndarray:
+    """det of (..., 3, 3), real or complex."""
+    f = [[F[..., i, j] for j in range(3)] for i in range(3)]
+    return (f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1])
+            + f[0][1] * (f[1][2] * f[2][0] - f[1][0] * f[2][2])
+            + f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]))
+
+
+def invariants(F: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """I1bar, I2bar and J of deformation gradients (..., 3, 3), real or complex."""
+    J = determinant(F)
+    cof = cofactor(F)
+    scale = J ** (-2 / 3)
+    squares = [sum(M[..., i, j] * M[..., i, j] for i in range(3) for j in range(3)) for M in (F, cof)]
+    return scale * squares[0], scale * scale * squares[1], J
+
+
+def register(effect: EffectLike) -> str:
+    """Puts an effect beside those built in, until the program ends; one registered before under the
+    same name goes. Returns the name."""
+    return _registered(effect)
+
+
+def unregister(effect: EffectLike) -> None:
+    """Takes an effect out again. Models and runs that have it are not opened any more."""
+    name = effect if isinstance(effect, str) else _name(_made(effect))
+    _known.pop(name, None)
+    if not _hookeye.unregister_effect(name):
+        raise _bad(f"no effect '{name}' is registered", "hookeye.effects() lists all")
+
+
+def _complex(F: np.ndarray) -> np.ndarray:
+    """A copy (n, 3, 3) whose entries lie together, so that each is one quick array."""
+    return np.ascontiguousarray(F.transpose(1, 2, 0)).astype(complex).transpose(2, 0, 1)
+
+
+def _bad(wrong: str, right: str) -> InputError:
+    return InputError(f"{wrong}\n  {right}", wrong=wrong, right=right)
+
+
+def _registered(effect: EffectLike) -> str:
+    """The name, for C++; a class is registered, unless the very same is."""
+    if isinstance(effect, str):
+        return effect
+    bridge = _Bridge(_made(effect))
+    if _known.get(bridge.name) != (bridge.own.__class__, bridge.code) or isinstance(effect, Effect):
+        _hookeye.register_effect(bridge)
+        _known[bridge.name] = (bridge.own.__class__, bridge.code)
+    return bridge.name
+
+
+_known: Dict[str, Tuple[type, str]] = {}
+
+
+def _made(effect: Any) -> Effect:
+    if isinstance(effect, Effect):
+        return effect
+    if isinstance(effect, type) and issubclass(effect, Effect):
+        try:
+            return effect()
+        except Exception as error:
+            raise EffectError(f"effect {effect.__name__}: cannot be made without arguments: {error}",
+                              effect.__name__, "__init__") from error
+    raise TypeError(f"effect: a class derived from hookeye.Effect is expected, not {effect!r}")
+
+
+def _name(effect: Effect) -> str:
+    own = effect.name or re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", type(effect).__name__).lower()
+    if not isinstance(own, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", own):
+        raise _bad(f"an effect cannot have the name {own!r}",
+                   "small letters, digits and _, as in `skin_spring`")
+    return own
+
+
+def _code_of(effect: Effect) -> str:
+    """Tells one definition from another: what the methods do, and what the class and the object
+    hold; not where they are written."""
+
+    def text(code: CodeType) -> str:
+        inner = [text(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts[1:]]
+        return repr((code.co_code, inner, code.co_names, code.co_varnames))
+
+    parts = []
+    for cls in type(effect).__mro__:
+        if cls in (Effect, object):
+            continue
+        for key, value in sorted(vars(cls).items()):
+            if inspect.isfunction(value):
+                parts.append(key + text(value.__code__))
+            elif not key.startswith("__") and isinstance(value, (str, int, float, tuple, dict, list)):
+                parts.append(f"{key} = {value!r}")
+    parts += [f"{key} = {value!r}" for key, value in sorted(vars(effect).items())
+              if isinstance(value, (str, int, float, tuple, dict, list))]
+    return f"{zlib.crc32(repr(parts).encode()):08x}"
+
+
+def _has(effect: Effect, method: str) -> bool:
+    return callable(getattr(effect, method, None))
+
+
+class _Bridge:
+    """What C++ asks. Every answer is checked: its shape, its type, that it is finite."""
+
+    def __init__(self, effect: Effect) -> None:
+        self.own = effect
+        self.name = _name(effect)
+        self.title = effect.title or self.name.replace("_", " ")
+        self.manual = " ".join((type(effect).__doc__ or "").split()) or self.title
+        self.code = _code_of(effect)
+        there = [kind for kind in _KINDS if _has(effect, kind)]
+        if not there:
+            raise _bad(f"the effect '{self.name}' does nothing",
+                       f"a method of {', '.join(_KINDS)}")
+        for one, other in (("energy", "energy_of_invariants"), ("body_force", "traction")):
+            if one in there and other in there:
+                raise _bad(f"the effect '{self.name}' has {one}() and {other}()", "one of them")
+        if not callable(effect.parameters):
+            self._check_parameters(effect.parameters)
+        energetic = there[0].startswith("energy")
+        self.group = effect.group or ("material" if energetic else
+                                      "measurement" if there[0] == "photo" else "loads")
+        if self.group not in _GROUPS:
+            raise _bad(f"the effect '{self.name}' has the group {self.group!r}",
+                       f"one of {', '.join(_GROUPS)}")
+        self.force_method = next((k for k in there if k in ("body_force", "traction")), "")
+        self.kinds = {"energy": energetic,
+                      "of_invariants": "energy_of_invariants" in there,
+                      "body_force": "body_force" in there, "traction": "traction" in there,
+                      "follows": False, "photo": "photo" in there}
+        #: Names of the parameters, in order; of parameters(setup): once it has been asked.
+        self.names: List[str] = [] if callable(effect.parameters) else list(effect.parameters)
+        self.places: List[str] = []  # of X, x, N: what a force takes
+        if self.force_method:
+            taken = list(inspect.signature(getattr(effect, self.force_method)).parameters)
+            self.places = [one for one in taken if one in ("X", "x", "N")]
+            if self.places not in (["X"], ["X", "x"], ["X", "N"], ["X", "x", "N"]):
+                raise _bad(f"the effect '{self.name}': {self.force_method}() takes {taken}",
+                           "X, then x if the force follows the body, then the parameters")
+            self.kinds["follows"] = "x" in self.places
+
+    # -- what it declares
+
+    def setup(self, told: Dict[str, Any]) -> Dict[str, Any]:
+        setup = Setup(told)
+        parameters = self.own.parameters
+        if callable(parameters):
+            parameters = self._ask("parameters", setup)
+            self._check_parameters(parameters)
+            self.names = list(parameters)
+        declared = []
+        for name, one in parameters.items():
+            null, typical = float(one.get("null", 0.0)), float(one["typical"])
+            declared.append({"name": name, "unit": one.get("unit", ""), "null": null,
+                             "words": one.get("words", name), "typical": typical,
+                             "low": float(one.get("low", -math.inf)),
+                             "high": float(one.get("high", math.inf))})
+        why_not = self._ask("applies", setup)
+        if why_not is None:
+            why_not = ""
+        if not isinstance(why_not, str):
+            raise self._wrong("applies", f"{why_not!r} was returned", "\"\", or why not")
+        cameras = False
+        if self.kinds["photo"] and not why_not and setup.examples and setup.cameras:
+            at = np.array([one["null"] + one["typical"] if one["null"] + one["typical"] <= one["high"]
+                           else one["null"] - one["typical"] for one in declared])
+            shots = [(example, camera, i) for i, example in enumerate(setup.examples)
+                     for camera in setup.cameras]
+            cameras = bool(self.photos(shots, at)[:, :7].any())
+        weights = None
+        if self.kinds["energy"] and _has(self.own, "where") and not why_not:
+            centres = setup.points[setup.elements[:, :4]].mean(axis=1)
+            weights = self._checked("where", self._ask("where", centres, setup), (len(centres),))
+            weights = weights.astype(float)
+        return {"parameters": declared, "why_not": why_not, "region": self.own.region or "",
+                "cameras": cameras, "weights": weights}
+
+    def _check_parameters(self, parameters: Any) -> None:
+        if not isinstance(parameters, Mapping) or not parameters:
+            raise _bad(f"the effect '{self.name}' has no parameters",
+                       'parameters = {"k": {"unit": "MPa", "typical": 0.01}}')
+        for name, one in parameters.items():
+            what = f"the effect '{self.name}', parameter '{name}'"
+            if not isinstance(name, str) or not name.isidentifier() or name in _TAKEN:
+                raise _bad(f"{what} has no name of its own",
+                           f"letters, digits and _, and none of {', '.join(_TAKEN)}")
+            if not isinstance(one, Mapping):
+                raise _bad(f"{what}: {one!r}", '{"unit": "MPa", "typical": 0.01}')
+            for key in one:
+                if key not in _FIELDS:
+                    raise _bad(f"{what} has `{key}`", f"one of {', '.join(_FIELDS)}")
+            null, typical = one.get("null", 0.0), one.get("typical")
+            for key in ("null", "typical", "low", "high"):
+                if key in one and (isinstance(one[key], bool)
+                                   or not isinstance(one[key], (int, float, np.number))
+                                   or math.isnan(one[key])):
+                    raise _bad(f"{what}: {key} is {one[key]!r}", "a number")
+            if typical is None or not 0 < typical < math.inf:
+                raise _bad(f"{what} has no size that matters", "typical: a number above zero")
+            if not one.get("low", -math.inf) <= null <= one.get("high", math.inf):
+                raise _bad(f"{what}: null = {null} is not between low and high", "other bounds")
+
+    def sentence(self, values: np.ndarray) -> str:
+        if not _has(self.own, "sentence"):
+            return ""
+        said = self._ask("sentence", **self._named(values))
+        if not isinstance(said, str):
+            raise self._wrong("sentence", f"{said!r} was returned", "a sentence")
+        return said
+
+    # -- energies
+
+    def psi(self, F: np.ndarray, values: np.ndarray) -> np.ndarray:
+        return self._numbers("energy", (len(F),), F, values=values, infinite=True)
+
+    def P(self, F: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """(n, 9), column by column."""
+        if _has(self.own, "stress"):
+            P = self._numbers("stress", F.shape, F, values=values)
+            return np.ascontiguousarray(np.swapaxes(P, 1, 2)).reshape(-1, 9)
+        out = np.empty((len(F), 9))
+        moved = _complex(F)
+        for k in range(9):
+            a, b = k % 3, k // 3
+            moved[:, a, b] += 1j * _IMAGINARY
+            out[:, k] = self._slope("energy", (len(F),), moved, values)
+            moved[:, a, b] = F[:, a, b]
+        return out
+
+    def dP_dF(self, F: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """(n, 9, 9), F and P column by column."""
+        n = len(F)
+        if _has(self.own, "stiffness"):
+            D = self._numbers("stiffness", (n, 3, 3, 3, 3), F, values=values)
+            return np.ascontiguousarray(D.transpose(0, 4, 3, 2, 1)).reshape(n, 9, 9)
+        out = np.empty((n, 9, 9))
+        moved = _complex(F)
+        if _has(self.own, "stress"):
+            for k in range(9):
+                a, b = k % 3, k // 3
+                moved[:, a, b] += 1j * _IMAGINARY
+                dP = self._slope("stress", F.shape, moved, values)
+                out[:, k] = np.swapaxes(dP, 1, 2).reshape(n, 9)
+                moved[:, a, b] = F[:, a, b]
+            return out
+        for k in range(9):
+            for i in range(k + 1):
+                pair = []
+                for side in (_REAL, -_REAL):
+                    moved[:, k % 3, k // 3] += side
+                    moved[:, i % 3, i // 3] += 1j * _IMAGINARY
+                    pair.append(self._slope("energy", (n,), moved, values))
+                    moved[:, k % 3, k // 3] = F[:, k % 3, k // 3]
+                    moved[:, i % 3, i // 3] = F[:, i % 3, i // 3]
+                out[:, k, i] = out[:, i, k] = (pair[0] - pair[1]) / (2 * _REAL)
+        return out
+
+    def of_invariants(self, I: np.ndarray, values: np.ndarray, order: int) -> np.ndarray:
+        """(1, 4 or 10, n): W; by I1bar, I2bar, J; by 11, 22, JJ, 12, 1J, 2J."""
+        method, shape = "energy_of_invariants", I.shape[1:]
+        rows = [self._numbers(method, shape, *I, values=values, infinite=order == 0)]
+        moved = I.astype(complex)
+
+        def slope(i: int) -> np.ndarray:
+            moved[i] += 1j * _IMAGINARY
+            out = self._slope(method, shape, moved, values, spread=True)
+            moved[i] = moved[i].real
+            return out
+
+        if order >= 1:
+            rows += [slope(i) for i in range(3)]
+        if order >= 2:
+            for i, k in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)):
+                pair = []
+                for side in (_REAL, -_REAL):
+                    moved[k] = I[k] + side
+                    pair.append(slope(i))
+                    moved[k] = I[k]
+                rows.append((pair[0] - pair[1]) / (2 * _REAL))
+        return np.stack(rows)
+
+    # -- forces
+
+    def force(self, X: np.ndarray, x: Any, N: Any, values: np.ndarray) -> np.ndarray:
+        return self._numbers(self.force_method, X.shape, *self._at(X, x, N), values=values)
+
+    def force_dx(self, X: np.ndarray, x: np.ndarray, N: Any, values: np.ndarray) -> np.ndarray:
+        """(n, 3, 3): force by place."""
+        out = np.empty((len(X), 3, 3))
+        for j in range(3):
+            moved = x.astype(complex)
+            moved[:, j] += 1j * _IMAGINARY
+            told = self._ask(self.force_method, *self._at(X, moved, N), **self._named(values))
+            told = self._checked(self.force_method, told, X.shape)
+            out[:, :, j] = told.imag / _IMAGINARY if np.iscomplexobj(told) else 0.0
+        return out
+
+    def _at(self, X: np.ndarray, x: Any, N: Any) -> List[Any]:
+        if "N" in self.places and N is None:
+            raise self._wrong(self.force_method, "a body has no normal N", "X and x")
+        return [{"X": X, "x": x, "N": N}[place] for place in self.places]
+
+    def share(self, example: str, order: int) -> float:
+        told = self._ask("share", example, order)
+        return float(self._checked("share", told, ()))
+
+    # -- photos
+
+    def photos(self, shots: Sequence[Tuple[str, str, int]], values: np.ndarray) -> np.ndarray:
+        out = np.zeros((len(shots), sum(size for _, size, _ in _PHOTO)))
+        for row, (example, camera, order) in zip(out, shots):
+            told = self._ask("photo", example, camera, order, **self._named(values))
+            if told is None:
+                continue
+            if not isinstance(told, Mapping):
+                raise self._wrong("photo", f"{type(told).__name__} was returned", "a dict")
+            left, at = dict(told), 0
+            for key, size, _ in _PHOTO:
+                if key in left:
+                    row[at:at + size] = self._checked(
+                        "photo", left.pop(key), () if size == 1 else (size,), key)
+                at += size
+            if left:
+                raise self._wrong("photo", f"it changes {', '.join(map(repr, left))}",
+                                  f"of {', '.join(key for key, _, _ in _PHOTO)}")
+        return out
+
+    # -- calls and their checks
+
+    def _named(self, values: np.ndarray) -> Dict[str, float]:
+        return dict(zip(self.names, values.tolist()))
+
+    def _wrong(self, method: str, wrong: str, right: str) -> EffectError:
+        return EffectError(f"effect '{self.name}', {method}(): {wrong}\n  {right}", self.name, method)
+
+    def _ask(self, method: str, *given: Any, **named: Any) -> Any:
+        try:
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                return getattr(self.own, method)(*given, **named)
+        except EffectError:
+            raise
+        except Exception as error:
+            raise EffectError(
+                f"effect '{self.name}', {method}(): {type(error).__name__}: {error}", self.name,
+                method) from error
+
+    def _checked(self, method: str, told: Any, shape: Tuple[int, ...], what: str = "",
+                 infinite: bool = False) -> np.ndarray:
+        said = f"{what}: " if what else ""
+        array = np.asarray(told)
+        if array.dtype.kind not in "fiucb":
+            raise self._wrong(method, f"{said}{type(told).__name__} of dtype {array.dtype} was "
+                              "returned", f"real numbers of the shape {shape}")
+        if array.shape != shape:
+            raise self._wrong(method, f"{said}an array of the shape {array.shape} was returned",
+                              f"the shape {shape}: a value for each that was asked")
+        good = ~np.isnan(array) & (array != -np.inf) if infinite else np.isfinite(array)
+        if not good.all():
+            at = np.argwhere(~good)[0]
+            raise self._wrong(method, f"{said}{array[tuple(at)]} was returned at {tuple(at.tolist())}",
+                              "finite numbers")
+        return array
+
+    def _numbers(self, method: str, shape: Tuple[int, ...], *given: Any, values: np.ndarray,
+                 infinite: bool = False) -> np.ndarray:
+        told = self._checked(method, self._ask(method, *given, **self._named(values)), shape,
+                             infinite=infinite)
+        if np.iscomplexobj(told):
+            raise self._wrong(method, "complex numbers were returned for real ones", "real numbers")
+        return np.ascontiguousarray(told, dtype=float)
+
+    def _slope(self, method: str, shape: Tuple[int, ...], moved: np.ndarray, values: np.ndarray,
+               spread: bool = False) -> np.ndarray:
+        """By the imaginary step that is in `moved`."""
+        given = tuple(moved) if spread else (moved,)
+        told = self._checked(method, self._ask(method, *given, **self._named(values)), shape)
+        if not np.iscomplexobj(told):
+            raise self._wrong(method, "real numbers were returned for a complex argument, so that "
+                              "no derivative comes out",
+                              "no abs(), real or float(); or give stress() and stiffness()")
+        return told.imag / _IMAGINARY
