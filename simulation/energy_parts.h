@@ -50,6 +50,20 @@ struct EnergyParts {
     for (const auto* part : single) sum += weight(*part, e) * part->dP_dF(e, F / g);
     return g * sum;
   }
+
+  /// Of the others, at F.col(k) in element[k]: a column each, as long as dP/dF (81).
+  Eigen::MatrixXd dP_dF_together(const std::vector<int>& element, const Matrix9Xd& F) const {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(81, F.cols());
+    if (together.empty()) return sum;
+    Matrix9Xd elastic = F;
+    for (Eigen::Index k = 0; k < F.cols(); ++k) elastic.col(k) /= swelling(element[k]);
+    for (const auto& [part, term] : together) {
+      const Eigen::MatrixXd D = term->dP_dF_of(elastic);
+      for (Eigen::Index k = 0; k < F.cols(); ++k)
+        sum.col(k) += weight(*part, element[k]) * swelling(element[k]) * D.col(k);
+    }
+    return sum;
+  }
 };
 
 }  // namespace hookeye

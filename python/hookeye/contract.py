@@ -74,6 +74,15 @@ class _Contract:
         self.asked("null changes nothing", worst, 0.0, "parameters",
                    "at its null values the model is not the same")
 
+    def begins_at_its_null(self) -> None:
+        rest = self.at(self.null)
+        near, far = (self.at(self.null + share * (self.some - self.null)) for share in (1e-4, 1.0))
+        for key in ("forces", "numbers"):
+            whole = float(np.linalg.norm(far[key] - rest[key]))
+            jump = float(np.linalg.norm(near[key] - rest[key]))
+            self.asked(f"{key} begin at the null", jump / max(whole, 1e-300), 0.01, "parameters",
+                       "it jumps where it leaves its null: the null is no null")
+
     def does_something(self) -> None:
         part = self.own_part()
         moved = max(float(np.abs(part[key]).max()) for key in ("forces", "numbers"))
@@ -145,6 +154,7 @@ class _Contract:
         self.words()
         self.null_changes_nothing()
         self.does_something()
+        self.begins_at_its_null()
         self.is_deterministic()
         self.has_slopes()
         if self.bridge.kinds["energy"]:

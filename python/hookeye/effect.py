@@ -6,7 +6,7 @@ import inspect
 import math
 import re
 import zlib
-from types import CodeType
+from types import CodeType, FunctionType
 from typing import Any, Dict, List, Mapping, Sequence, Tuple, Union
 
 import numpy as np
@@ -179,13 +179,22 @@ def _name(effect: Effect) -> str:
     return own
 
 
-def _code_of(effect: Effect) -> str:
-    """Tells one definition from another: what the methods do, and what the class and the object
-    hold; not where they are written."""
+_PLAIN = (str, int, float, tuple, dict, list)
 
-    def text(code: CodeType) -> str:
-        inner = [text(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts[1:]]
+
+def _code_of(effect: Effect) -> str:
+    """Tells one definition from another: what the methods do, and the plain values that they, the class
+    and the object hold; not where they are written, nor their docstrings."""
+
+    def text(code: CodeType, doc: Any = None) -> str:
+        inner = [text(c) if isinstance(c, CodeType) else repr(c) for c in code.co_consts
+                 if doc is None or c != doc]
         return repr((code.co_code, inner, code.co_names, code.co_varnames))
+
+    def of_function(function: FunctionType) -> str:
+        held = inspect.getclosurevars(function).nonlocals.values()
+        return text(function.__code__, function.__doc__) + repr(
+            [function.__defaults__] + [one for one in held if isinstance(one, _PLAIN)])
 
     parts = []
     for cls in type(effect).__mro__:
@@ -193,11 +202,11 @@ def _code_of(effect: Effect) -> str:
             continue
         for key, value in sorted(vars(cls).items()):
             if inspect.isfunction(value):
-                parts.append(key + text(value.__code__))
-            elif not key.startswith("__") and isinstance(value, (str, int, float, tuple, dict, list)):
+                parts.append(key + of_function(value))
+            elif not key.startswith("__") and isinstance(value, _PLAIN):
                 parts.append(f"{key} = {value!r}")
     parts += [f"{key} = {value!r}" for key, value in sorted(vars(effect).items())
-              if isinstance(value, (str, int, float, tuple, dict, list))]
+              if isinstance(value, _PLAIN)]
     return f"{zlib.crc32(repr(parts).encode()):08x}"
 
 
