@@ -16,7 +16,7 @@ Bridge::Bridge(py::object object)
 Bridge::Rows Bridge::rows_of(const py::object& array, Eigen::Index rows, Eigen::Index columns) {
   const auto numbers = py::array_t<double, py::array::c_style | py::array::forcecast>(array);
   if (numbers.size() != rows * columns)
-    throw std::logic_error("hookeye.effect returned another number of values than it was asked");
+    throw std::logic_error("hookeye._bridge returned another number of values than it was asked");
   return Eigen::Map<const Rows>(numbers.data(), rows, columns);
 }
 

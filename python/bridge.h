@@ -20,7 +20,7 @@ struct EffectFailed : Interrupted {
   pybind11::error_already_set error;
 };
 
-/// An object of hookeye.effect._Bridge (whose methods are what C++ calls). Whoever holds it may let
+/// An object of hookeye._bridge.Bridge (whose methods are what C++ calls). Whoever holds it may let
 /// it go on any thread.
 class Bridge {
  public:

@@ -28,7 +28,7 @@ struct Kinds {
   bool photo = false;
 };
 
-/// What hookeye.effect._Bridge.setup() says of one capture.
+/// What hookeye._bridge.Bridge.setup() says of one capture.
 struct Declared {
   std::vector<Parameter> parameters;
   std::string region;    ///< of a traction; empty: the whole surface
@@ -113,7 +113,7 @@ void change_photos(const Bridge& bridge, const VectorXd& values, Model& model) {
 
 class PythonEffect final : public Effect {
  public:
-  /// `told`: hookeye.effect._Bridge.
+  /// `told`: hookeye._bridge.Bridge.
   explicit PythonEffect(const py::object& told) : bridge_(std::make_shared<Bridge>(told)) {
     name_ = told.attr("name").cast<std::string>();
     title_ = told.attr("title").cast<std::string>();

@@ -7,15 +7,17 @@ import logging as _logging
 
 from . import importers
 from ._hookeye import Camera, __version__
+from ._registered import register, unregister
 from .capture import Capture
 from .catalogue import effects, options
 from .contract import check_effect
-from .effect import Effect, Setup, cofactor, determinant, invariants, register, unregister
+from .effect import Effect, Setup
 from .equilibrium import Equilibrium
 from .errors import Cancelled, EffectError, InputError, NumericalError
+from .kinematics import cofactor, determinant, invariants
 from .model import Evaluation, Model, Parameter, Picture
-from .progress import ProgressBar
-from .run import Diagnosis, Field, Progress, Run, Step, batch, discover, fit
+from .progress import Progress, ProgressBar
+from .run import Diagnosis, Field, Run, Step, batch, discover, fit
 from .tables import Table
 from .threads import set_threads
 

@@ -7,8 +7,10 @@ from typing import Any, Dict, List
 import numpy as np
 
 from . import _hookeye
+from ._bridge import Bridge
+from ._registered import known, made, registered
 from .capture import Capture
-from .effect import EffectLike, _Bridge, _known, _made, _registered
+from .effect import EffectLike
 from .errors import EffectError
 from .model import Model
 from .tables import table
@@ -17,7 +19,7 @@ from .tables import table
 class _Contract:
     """One effect on one capture, at its null and at values that matter."""
 
-    def __init__(self, bridge: _Bridge, capture: Capture) -> None:
+    def __init__(self, bridge: Bridge, capture: Capture) -> None:
         self.bridge = bridge
         self.rows: List[Dict[str, Any]] = []
         self.without, self.with_ = Model(capture), Model(capture)
@@ -181,15 +183,15 @@ def check_effect(effect: EffectLike, capture: Capture) -> Any:
         raise TypeError("effect: a class derived from hookeye.Effect is expected")
     if not isinstance(capture, Capture):
         raise TypeError(f"capture: a hookeye.Capture is expected, not {type(capture).__name__}")
-    bridge = _Bridge(_made(effect))
-    known = bridge.name in _known
-    _registered(effect)
+    bridge = Bridge(made(effect))
+    there = bridge.name in known
+    registered(effect)
     try:
         contract = _Contract(bridge, capture)
         contract.bridge.names = [one["name"].split(".", 1)[1] for one in contract.own]
         contract.run()
     finally:
-        if not known:
-            _known.pop(bridge.name, None)
+        if not there:
+            known.pop(bridge.name, None)
             _hookeye.unregister_effect(bridge.name)
     return table(contract.rows, ["check", "passed", "value", "limit"])

@@ -9,8 +9,9 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 import numpy as np
 
 from . import _hookeye
+from ._registered import registered
 from .capture import Capture
-from .effect import EffectLike, _registered
+from .effect import EffectLike
 from .equilibrium import Equilibrium
 from .errors import InputError
 from .tables import table
@@ -248,15 +249,15 @@ class Model:
 
     def variants(self, effect: EffectLike) -> List[str]:
         """The ways in which an effect can be present in this capture."""
-        return self._own.variants(_registered(effect))
+        return self._own.variants(registered(effect))
 
     def add(self, effect: EffectLike, variant: str = "") -> None:
         """Adds an effect at its null values, which change nothing yet. A class derived from
         hookeye.Effect is registered with it."""
-        self._own.add(_registered(effect), variant)
+        self._own.add(registered(effect), variant)
 
     def remove(self, effect: EffectLike) -> None:
-        self._own.remove(_registered(effect))
+        self._own.remove(registered(effect))
 
     def to_yaml(self) -> str:
         """The model.yaml that `hookeye fit -m` takes."""

@@ -4,7 +4,6 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import hookeye
 
 import hookeye as he
 
@@ -70,11 +69,11 @@ class Spring(he.Effect):
 def nothing_stays():
     yield
     from hookeye import _hookeye
-    from hookeye.effect import _known
+    from hookeye._registered import known
 
-    for name in list(_known):
+    for name in list(known):
         _hookeye.unregister_effect(name)
-    _known.clear()
+    known.clear()
 
 
 @pytest.mark.parametrize("effect, tolerance", [(Yeoh, 1e-9), (YeohOfF, 1e-8), (YeohByStress, 1e-9)])
@@ -215,7 +214,7 @@ def test_classes_that_are_no_effects_are_refused(capture):
 
 
 def test_a_definition_is_known_by_what_it_does():
-    from hookeye.effect import _Bridge
+    from hookeye._bridge import Bridge
 
     def made(factor, words, power=2):
         class Skin(Wrong):
@@ -225,7 +224,7 @@ def test_a_definition_is_known_by_what_it_does():
                 """What it is."""
                 return factor * k * (he.invariants(F)[0] - 3) ** p
 
-        return _Bridge(Skin()).code
+        return Bridge(Skin()).code
 
     assert made(1.0, "a") == made(1.0, "b")
     assert len({made(1.0, "a"), made(1.5, "a"), made(1.0, "a", 3)}) == 3
@@ -252,7 +251,7 @@ def test_a_photo_s_light_changes(capture):
     assert np.array_equal(model.render("side", "cam0"), before["side"])
 
 
-def test_an_effect_is_named_added_and_reported_as_the_built_in_one(folder, capture, tmp_path):
+def test_an_effect_is_named_added_and_reported_as_the_built_in_one(capture, tmp_path):
     run = he.fit(capture, out=tmp_path / "run")
     table = {row["effect"]: row for row in run.diagnose(effects=[Weight, Spring]).told["effects"]}
     own, built_in = table["weight"], table["gravity"]
@@ -309,7 +308,6 @@ def test_a_fault_in_a_search_leaves_the_steps_that_are_finished(capture, tmp_pat
 
 def test_several_threads_work_with_one_effect(capture):
     """A worker that waits for the interpreter is not waited for by who holds it."""
-    expected = None
     he.register(YeohByStress)
     found, threads = [], []
 
@@ -326,6 +324,24 @@ def test_several_threads_work_with_one_effect(capture):
         thread.join(timeout=120)
         assert not thread.is_alive()
     assert len(found) == 3 and found[0] == pytest.approx(found[1]) == pytest.approx(found[2])
+
+
+def test_cancel_is_seen_while_python_works(capture, tmp_path):
+    event = threading.Event()
+
+    class Slow(Wrong):
+        """Sets the event itself, in the middle of a fit."""
+
+        def energy(self, F, k):
+            event.set()
+            return super().energy(F, k)
+
+    model = capture.model()
+    model.add(Slow)
+    model["slow.k"].value = 0.001
+    with pytest.raises(he.Cancelled):
+        he.fit(capture, model, out=tmp_path / "run", cancel=event)
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_method_that_asks_the_model_at_work_is_refused(capture):
