@@ -29,8 +29,8 @@ def determinant(F: np.ndarray) -> np.ndarray:
 
 def invariants(F: np.ndarray) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
     """I1bar, I2bar and J of deformation gradients (..., 3, 3), real or complex."""
-    J = determinant(F)
     cof = cofactor(F)
+    J = sum(F[..., 0, j] * cof[..., 0, j] for j in range(3))
     scale = J ** (-2 / 3)
-    squares = [sum(M[..., i, j] * M[..., i, j] for i in range(3) for j in range(3)) for M in (F, cof)]
-    return scale * squares[0], scale * scale * squares[1], J
+    I1, I2 = (np.einsum("...ij,...ij->...", M, M) for M in (F, cof))
+    return scale * I1, scale * scale * I2, J

@@ -28,8 +28,8 @@ class YeohOfF(he.Effect):
     parameters = Yeoh.parameters
 
     def energy(self, F, c2, c3):
-        i = he.invariants(F)[0] - 3
-        return c2 * i**2 + c3 * i**3
+        i = he.determinant(F) ** (-2 / 3) * np.einsum("...ij,...ij->...", F, F) - 3
+        return (c2 + c3 * i) * i * i
 
 
 class YeohByStress(YeohOfF):
