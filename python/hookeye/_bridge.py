@@ -83,6 +83,11 @@ def _has(effect: Effect, method: str) -> bool:
     return callable(getattr(effect, method, None))
 
 
+#: What parameters(setup) named last, by name and code: an effect that is registered again is asked
+#: for sentences about what was fitted before.
+_told_names: Dict[Tuple[str, str], List[str]] = {}
+
+
 class Bridge:
     """What C++ asks. Every answer is checked: its shape, its type, that it is finite."""
 
@@ -112,8 +117,9 @@ class Bridge:
                       "of_invariants": "energy_of_invariants" in there,
                       "body_force": "body_force" in there, "traction": "traction" in there,
                       "follows": False, "photo": "photo" in there}
-        #: Names of the parameters, in order; of parameters(setup): once it has been asked.
-        self.names: List[str] = [] if callable(effect.parameters) else list(effect.parameters)
+        #: Names of the parameters, in order.
+        self.names: List[str] = (_told_names.get((self.name, self.code), [])
+                                 if callable(effect.parameters) else list(effect.parameters))
         self.places: List[str] = []  # of X, x, N: what a force takes
         if self.force_method:
             taken = list(inspect.signature(getattr(effect, self.force_method)).parameters)
@@ -131,7 +137,7 @@ class Bridge:
         if callable(parameters):
             parameters = self._ask("parameters", setup)
             self._check_parameters(parameters)
-            self.names = list(parameters)
+            self.names = _told_names[self.name, self.code] = list(parameters)
         declared = []
         for name, one in parameters.items():
             null, typical = float(one.get("null", 0.0)), float(one["typical"])

@@ -230,6 +230,19 @@ def test_a_definition_is_known_by_what_it_does():
     assert len({made(1.0, "a"), made(1.5, "a"), made(1.0, "a", 3)}) == 3
 
 
+def test_one_registered_again_tells_of_what_was_fitted_before(capture):
+    from hookeye._bridge import Bridge
+
+    class Told(Yeoh):
+        """Its sentence has its parameters."""
+
+        def sentence(self, c2, c3):
+            return f"{c2} then {c3}"
+
+    capture.model().add(Told)
+    assert Bridge(Told()).sentence(np.array([1.0, 2.0])) == "1.0 then 2.0"
+
+
 def test_a_photo_s_light_changes(capture):
     class Lamp(he.Effect):
         """One load case was photographed brighter. Easily taken for exposure."""
