@@ -35,7 +35,7 @@ class Effect:
     `name` (default: the class's, in small letters), `title`, `group`, the docstring (what it is and
     what it is taken for), `parameters`: {name: {unit, null, typical, low, high, words}}.
 
-    And what it does, by methods that take the parameters by their names, as many as it likes:
+    And what it does, by methods that take all parameters by their names:
 
     - energy(F, k): energy per rest volume (n,) of deformation gradients (n, 3, 3) [stress];
       stress(F, k): its derivative (n, 3, 3); stiffness(F, k): the second, (n, 3, 3, 3, 3). What is
