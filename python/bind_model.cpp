@@ -131,6 +131,20 @@ std::shared_ptr<SolvedExample> simulated(const SharedModel& model, const std::st
   return work.run([&] { return simulate(state, example, work); });
 }
 
+/// Energies, forces, tangents along a direction and other numbers of all examples at x (n x 3).
+py::dict probed(const SharedModel& model, const py::object& x, const py::object& along) {
+  const VectorXd q = points_from(x, "x").reshaped(), v = points_from(along, "along").reshaped();
+  Work work{py::none()};
+  const ModelState state = model->state();
+  const Probed at = work.run([&] { return probe(state, q, v); });
+  py::dict out;
+  out["energy"] = array_of(at.energy);
+  out["forces"] = array_of(Eigen::MatrixXd(at.forces.transpose()));
+  out["tangent"] = array_of(Eigen::MatrixXd(at.tangent.transpose()));
+  out["numbers"] = array_of(at.numbers);
+  return out;
+}
+
 }  // namespace
 
 void bind_model(py::module_& m) {
@@ -149,11 +163,8 @@ void bind_model(py::module_& m) {
       .def("remove", &PythonModel::remove, py::arg("effect"))
       .def("variants", &PythonModel::variants, py::arg("effect"))
       .def("ingredients", &PythonModel::ingredients)
-      .def("text",
-           [](const PythonModel& model) {
-             const ModelState state = model.state();
-             return write_model(state.form, state.p, catalogue());
-           })
+      .def("text", &PythonModel::text)
+      .def("probe", &probed, py::arg("x"), py::arg("along"))
       .def("simulate", &simulated, py::arg("example"), py::arg("cancel"))
       .def("render", &rendered, py::arg("example"), py::arg("camera"), py::arg("cancel"))
       .def("evaluate", &evaluated, py::arg("jac"), py::arg("held_out"), py::arg("cancel"));

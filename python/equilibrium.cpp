@@ -123,6 +123,41 @@ Evaluation evaluate(Workspace& workspace, const ModelState& model, bool derivati
   return value_or_fail(workspace.evaluate(model.form, model.p, options));
 }
 
+Probed probe(const ModelState& state, const VectorXd& q, const VectorXd& along) {
+  const Model model = state.realise();
+  const TetMesh& mesh = model.scene->body->mesh;
+  if (q.size() != 3 * mesh.nodes() || along.size() != q.size())
+    bad_argument("probe: not a row for each node", fmt::format("{} x 3", mesh.nodes()));
+  const auto count = static_cast<Eigen::Index>(model.examples.size());
+  Probed out{
+      VectorXd(count), Eigen::MatrixXd(q.size(), count), Eigen::MatrixXd(q.size(), count), {}};
+  std::vector<double> numbers;
+  const auto append = [&](const auto& values) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) numbers.push_back(values(i));
+  };
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const ExampleModel& one = model.examples[static_cast<size_t>(e)];
+    const EnergyModel energy = model.energy_of(static_cast<int>(e));
+    out.energy[e] = internal_energy(mesh, energy, q);
+    out.forces.col(e) = residual(mesh, energy, one.loading, q);
+    out.tangent.col(e) = tangent(mesh, energy, one.loading, q) * along;
+    append(one.loading.displacement);
+    append(one.force_offset);
+    for (const PhotoState& photo : one.photos) {
+      append(photo.camera.R.reshaped());
+      append(photo.camera.t);
+      append(photo.sun);
+      for (const double x : {photo.camera.fx, photo.camera.fy, photo.gain, photo.ambient,
+                             photo.specular, photo.blur_variance, photo.background})
+        numbers.push_back(x);
+    }
+  }
+  append(model.placement.matrix().reshaped());
+  out.numbers =
+      Eigen::Map<const VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+  return out;
+}
+
 namespace {
 
 using Solved = std::shared_ptr<SolvedExample>;

@@ -29,6 +29,16 @@ Sighting render(const ModelState& model, const std::string& example, const std::
 Evaluation evaluate(Workspace& workspace, const ModelState& model, bool derivatives, bool held_out,
                     const Work& work);
 
+/// A model at one deformed state, in equilibrium or not.
+struct Probed {
+  VectorXd energy;          ///< of each example
+  Eigen::MatrixXd forces;   ///< 3n x examples: what is out of balance
+  Eigen::MatrixXd tangent;  ///< the same: its derivative along a direction
+  VectorXd numbers;         ///< prescribed motion, photos and measurements
+};
+/// `q`: 3n positions; `along`: 3n. Throws InputError for another size.
+Probed probe(const ModelState& model, const VectorXd& q, const VectorXd& along);
+
 void bind_equilibrium(pybind11::module_& m);
 
 }  // namespace hookeye

@@ -10,6 +10,7 @@
 #include "core/interrupted.h"
 #include "core/memory_left.h"
 #include "core/scope.h"
+#include "python/bridge.h"
 #include "python/work.h"
 #include "runs/failed.h"
 #include "runs/printable.h"
@@ -55,6 +56,8 @@ void translate(std::exception_ptr thrown) {
       raise_failure(failed.failure);
   } catch (const Stopped&) {
     raise(error_class("Cancelled")("stopped: `cancel` was set"));
+  } catch (EffectFailed& failed) {
+    failed.error.restore();
   } catch (const Interrupted&) {  // a helper program had Ctrl-C
     PyErr_SetString(PyExc_KeyboardInterrupt, "stopped");
   } catch (const std::filesystem::filesystem_error& error) {

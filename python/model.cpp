@@ -14,6 +14,18 @@
 
 namespace hookeye {
 
+namespace {
+
+/// Without the interpreter's lock: what asks an effect written in Python on several threads would
+/// wait for it for ever.
+template <class Body>
+auto unlocked(const Body& body) {
+  const pybind11::gil_scoped_release others;
+  return body();
+}
+
+}  // namespace
+
 PythonModel::PythonModel(std::shared_ptr<OpenedCapture> capture)
     : capture_(std::move(capture)), whole_(base_form(capture_->scene())) {
   values_ = whole_.initial();
@@ -80,7 +92,8 @@ void PythonModel::free(const std::string& name) {
 Ingredients PythonModel::candidates(const std::string& name) const {
   check_effect(name);
   std::string why_not;
-  auto all = find_effect(name)->candidates(realise(), &why_not);
+  auto all = unlocked(
+      [&, state = state()] { return find_effect(name)->candidates(state.realise(), &why_not); });
   if (all.empty()) bad_argument(fmt::format("{} cannot be added: {}", name, why_not), "another");
   return all;
 }
@@ -97,7 +110,9 @@ void PythonModel::add(const std::string& name, const std::string& variant) {
   const auto there = ingredients();
   if (!effect.several() && std::find(there.begin(), there.end(), name) != there.end())
     bad_argument(fmt::format("the model has {} already", name), "set its parameters");
-  auto chosen = variant.empty() ? all.front() : effect.candidate(realise(), variant);
+  auto chosen = variant.empty() ? all.front() : unlocked([&, state = state()] {
+    return effect.candidate(state.realise(), variant);
+  });
   if (!chosen)
     bad_argument(fmt::format("{} has no variant '{}' in this capture", name, variant),
                  fmt::format("Model.variants(\"{}\") lists them", name));
@@ -157,6 +172,10 @@ VectorXd PythonModel::p() const {
   for (size_t i = 0; i < all.size(); ++i)
     if (!fixed_.count(all[i].name)) out.push_back(values_[static_cast<int>(i)]);
   return Eigen::Map<const VectorXd>(out.data(), static_cast<Eigen::Index>(out.size()));
+}
+
+std::string PythonModel::text() const {
+  return unlocked([state = state()] { return write_model(state.form, state.p, catalogue()); });
 }
 
 ModelState PythonModel::state() const { return {capture_, form(), p()}; }

@@ -47,6 +47,8 @@ class PythonModel {
   void remove(const std::string& effect);
   std::vector<std::string> variants(const std::string& effect) const;
   std::vector<std::string> ingredients() const;
+  /// As model.yaml has it.
+  std::string text() const;
 
   ModelState state() const;
 
@@ -56,7 +58,6 @@ class PythonModel {
  private:
   ModelForm form() const;
   VectorXd p() const;
-  Model realise() const { return form().realise(p()); }
   Ingredients candidates(const std::string& effect) const;
 
   std::shared_ptr<OpenedCapture> capture_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "python/capture.h"
+#include "python/effect.h"
 #include "python/equilibrium.h"
 #include "python/errors.h"
 #include "python/files.h"
@@ -38,6 +39,7 @@ PYBIND11_MODULE(_hookeye, m) {
   bind_equilibrium(m);
   bind_runs(m);
   bind_files(m);
+  bind_effects(m);
   m.def("set_threads", &set_threads, pybind11::arg("count"));
   m.attr("__version__") = HOOKEYE_VERSION;
 }

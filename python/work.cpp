@@ -25,6 +25,9 @@ thread_local int callbacks = 0;  ///< that this thread is in
 
 }  // namespace
 
+InCallback::InCallback() { ++callbacks; }
+InCallback::~InCallback() { --callbacks; }
+
 std::unique_lock<std::mutex> Work::alone_with(std::mutex& mutex) {
   std::unique_lock lock(mutex, std::try_to_lock);
   while (!lock) {
@@ -94,14 +97,13 @@ void Work::answer(std::unique_lock<std::mutex>& lock) {
   const std::function<void()>* callback = callback_;
   if (!callback) return;
   lock.unlock();
-  ++callbacks;
   if (!thrown_) try {
+      const InCallback mark;
       (*callback)();
     } catch (...) {
       thrown_ = std::current_exception();
       cancelled_ = true;
     }
-  --callbacks;
   lock.lock();
   callback_ = nullptr;
   answered_.notify_all();

@@ -67,4 +67,13 @@ class Work {
 /// `cancel` was set.
 struct Stopped {};
 
+/// Marks this thread as within Python that a work has called: what it may not wait for is refused.
+class InCallback {
+ public:
+  InCallback();
+  ~InCallback();
+  InCallback(const InCallback&) = delete;
+  InCallback& operator=(const InCallback&) = delete;
+};
+
 }  // namespace hookeye

@@ -8,19 +8,21 @@
 #include "core/json_file.h"
 #include "core/own_file.h"
 #include "core/text_file.h"
+#include "estimation/effects/session_effects.h"
 #include "estimation/fit/archive.h"
 #include "runs/versions.h"
 
 namespace hookeye {
 namespace {
 
-/// Another program, or another capture, comes to other answers.
+/// Another program, another capture, or other effects beside its own come to other answers.
 std::string made_for(const Run& run) {
-  return nlohmann::json{{"hookeye", versions()},
+  nlohmann::json out = {{"hookeye", versions()},
                         {"program", fingerprint_of(read_text(own_file()))},
                         {"options", run.timeline().value("options", nlohmann::json::object())},
-                        {"capture", run.timeline().value("fingerprints", nlohmann::json())}}
-      .dump();
+                        {"capture", run.timeline().value("fingerprints", nlohmann::json())}};
+  if (const auto added = added_to_catalogue(); !added.empty()) out["effects"] = added;
+  return out.dump();
 }
 
 constexpr const char* kWorkFile = "work.jsonl";

@@ -8,39 +8,18 @@
 
 #include "core/input_error.h"
 #include "core/memory_left.h"
+#include "simulation/energy_parts.h"
 #include "simulation/quadrature.h"
 
 namespace hookeye {
 namespace {
 
-double weight_of(const EnergyModel::Part& part, int e) {
-  return part.weight.size() ? part.weight[e] : 1.0;
-}
 double swelling_of(const EnergyModel& model, int e) {
   return model.swelling.size() ? model.swelling[e] : 1.0;
 }
 
-// Sums over the parts: psi = w g^3 psi(F/g), P = w g^2 P(F/g), dP/dF = w g dP/dF(F/g).
-double energy_density(const EnergyModel& model, int e, const Matrix3d& F) {
-  const double g = swelling_of(model, e);
-  double sum = 0;
-  for (const auto& part : model.parts) sum += weight_of(part, e) * part.psi(e, F / g);
-  return g * g * g * sum;
-}
-
-Matrix3d stress(const EnergyModel& model, int e, const Matrix3d& F) {
-  const double g = swelling_of(model, e);
-  Matrix3d sum = Matrix3d::Zero();
-  for (const auto& part : model.parts) sum += weight_of(part, e) * part.P(e, F / g);
-  return g * g * sum;
-}
-
-Matrix9d stiffness(const EnergyModel& model, int e, const Matrix3d& F) {
-  const double g = swelling_of(model, e);
-  Matrix9d sum = Matrix9d::Zero();
-  for (const auto& part : model.parts) sum += weight_of(part, e) * part.dP_dF(e, F / g);
-  return g * sum;
-}
+/// Points that one call of a BatchTerm is asked for: their tangents take 5 MB.
+constexpr int kPointsTogether = 8192;
 
 /// Negative eigenvalues turned positive: a descent direction that keeps the curvature's size.
 void project(Matrix9d& D) {
@@ -69,14 +48,72 @@ struct Assembly::Kernel {
     return x;
   }
 
-  double energy(const EnergyModel& model, const VectorXd& q) const {
-    double sum = 0;
-    for (int e = 0; e < a.elements(); ++e) {
+  /// Calls `each` with the first and the last element (not in it) of blocks: of all, where no
+  /// part is asked for many points.
+  template <class Each>
+  void by_blocks(const EnergyParts& parts, Each&& each) const {
+    const int all = a.elements();
+    const int block = parts.together.empty() ? all : std::max(1, kPointsTogether / a.points_);
+    for (int first = 0; first < all; first += block) each(first, std::min(first + block, all));
+  }
+
+  /// What the parts that are asked for many points add at those of a block, a column each (element
+  /// by element): `ask` of the term times weight times g^`power`. Without columns: there are none.
+  template <int Rows, class Ask>
+  Eigen::Matrix<double, Rows, Eigen::Dynamic> together(const EnergyParts& parts, const VectorXd& q,
+                                                       int first, int last, int power,
+                                                       Ask&& ask) const {
+    Eigen::Matrix<double, Rows, Eigen::Dynamic> sum;
+    if (parts.together.empty()) return sum;
+    Matrix9Xd F(9, (last - first) * a.points_);
+    for (int e = first, k = 0; e < last; ++e) {
       const Nodes x = gather(q, e);
-      for (int p = 0; p < a.points_; ++p)
-        sum += a.volume(e, p) * energy_density(model, e, x * gradient(e, p));
+      for (int p = 0; p < a.points_; ++p, ++k)
+        F.col(k) = ((x * gradient(e, p)) / parts.swelling(e)).eval().reshaped();
+    }
+    sum.setZero(Rows, F.cols());
+    for (const auto& [part, term] : parts.together) {
+      const auto values = ask(*term, F);
+      for (int e = first, k = 0; e < last; ++e) {
+        const double w = EnergyParts::weight(*part, e) * std::pow(parts.swelling(e), power);
+        for (int p = 0; p < a.points_; ++p, ++k)
+          if (w != 0) sum.col(k) += w * values.col(k);
+      }
     }
     return sum;
+  }
+
+  double energy(const EnergyModel& model, const VectorXd& q) const {
+    const EnergyParts parts(model);
+    double sum = 0;
+    by_blocks(parts, [&](int first, int last) {
+      const auto more = together<1>(parts, q, first, last, 3,
+                                    [](const BatchTerm& t, const auto& F) { return t.psi_of(F); });
+      for (int e = first, k = 0; e < last; ++e) {
+        const Nodes x = gather(q, e);
+        for (int p = 0; p < a.points_; ++p, ++k) {
+          double psi = parts.psi(e, x * gradient(e, p));
+          if (more.cols() > 0) psi += more[k];
+          sum += a.volume(e, p) * psi;
+        }
+      }
+    });
+    return sum;
+  }
+
+  /// Calls `each` with every element and its internal forces.
+  template <class Each>
+  void forces(const EnergyModel& model, const VectorXd& q, Each&& each) const {
+    const EnergyParts parts(model);
+    by_blocks(parts, [&](int first, int last) {
+      const auto more = together<9>(parts, q, first, last, 2,
+                                    [](const BatchTerm& t, const auto& F) { return t.P_of(F); });
+      for (int e = first; e < last; ++e)
+        each(e, force(q, e, [&](const Matrix3d& F, int p) -> Matrix3d {
+               if (more.cols() == 0) return parts.P(e, F);
+               return parts.P(e, F) + more.col((e - first) * a.points_ + p).reshaped(3, 3);
+             }));
+    });
   }
 
   template <class Stress>
@@ -85,7 +122,7 @@ struct Assembly::Kernel {
     Nodes f = Nodes::Zero();
     for (int p = 0; p < a.points_; ++p) {
       const auto G = gradient(e, p);
-      const Matrix3d P = a.volume(e, p) * stress_at(x * G);
+      const Matrix3d P = a.volume(e, p) * stress_at(x * G, p);
       f.noalias() += P * G.transpose();
     }
     return f;
@@ -111,19 +148,26 @@ struct Assembly::Kernel {
   }
 
   void tangent(const EnergyModel& model, const VectorXd& q, bool projected, double* values) const {
+    const EnergyParts parts(model);
     Eigen::Matrix<double, 3 * N, 3 * N> K;
-    for (int e = 0; e < a.elements(); ++e) {
-      const Nodes x = gather(q, e);
-      K.setZero();
-      for (int p = 0; p < a.points_; ++p) {
-        const auto G = gradient(e, p);
-        Matrix9d D = stiffness(model, e, x * G);
-        if (projected) project(D);
-        D *= a.volume(e, p);
-        add_stiffness(D, G, K);
+    by_blocks(parts, [&](int first, int last) {
+      const auto more =
+          together<81>(parts, q, first, last, 1,
+                       [](const BatchTerm& t, const auto& F) { return t.dP_dF_of(F); });
+      for (int e = first, k = 0; e < last; ++e) {
+        const Nodes x = gather(q, e);
+        K.setZero();
+        for (int p = 0; p < a.points_; ++p, ++k) {
+          const auto G = gradient(e, p);
+          Matrix9d D = parts.dP_dF(e, x * G);
+          if (more.cols() > 0) D += more.col(k).reshaped(9, 9);
+          if (projected) project(D);
+          D *= a.volume(e, p);
+          add_stiffness(D, G, K);
+        }
+        scatter_tangent(K, e, values);
       }
-      scatter_tangent(K, e, values);
-    }
+    });
   }
   void scatter_tangent(const Eigen::Matrix<double, 3 * N, 3 * N>& K, int e, double* values) const {
     const int* block = a.block_.data() + static_cast<size_t>(e) * N * N;
@@ -197,9 +241,7 @@ double Assembly::energy(const EnergyModel& model, const VectorXd& q) const {
 void Assembly::add_forces(const EnergyModel& model, const VectorXd& q, VectorXd& R) const {
   if (model.parts.empty()) return;  // forces alone are asked for (effects, linear in a load)
   dispatch([&](auto kernel) {
-    for (int e = 0; e < elements(); ++e)
-      kernel.scatter(kernel.force(q, e, [&](const Matrix3d& F) { return stress(model, e, F); }), e,
-                     R);
+    kernel.forces(model, q, [&](int e, const auto& f) { kernel.scatter(f, e, R); });
     return 0;
   });
 }
@@ -207,9 +249,7 @@ void Assembly::add_forces(const EnergyModel& model, const VectorXd& q, VectorXd&
 MatrixXd Assembly::element_forces(const EnergyModel& model, const VectorXd& q) const {
   MatrixXd all(3 * npe_, elements());
   dispatch([&](auto kernel) {
-    for (int e = 0; e < elements(); ++e)
-      all.col(e) =
-          kernel.force(q, e, [&](const Matrix3d& F) { return stress(model, e, F); }).reshaped();
+    kernel.forces(model, q, [&](int e, const auto& f) { all.col(e) = f.reshaped(); });
     return 0;
   });
   return all;
@@ -220,10 +260,10 @@ VectorXd Assembly::dR_dtheta(const EnergyModel& model, const VectorXd& q, int pa
   const auto& chosen = model.parts[part];
   dispatch([&](auto kernel) {
     for (int e = 0; e < elements(); ++e) {
-      const double g = swelling_of(model, e), w = weight_of(chosen, e) * g * g;
+      const double g = swelling_of(model, e), w = EnergyParts::weight(chosen, e) * g * g;
       if (w == 0) continue;
       kernel.scatter(kernel.force(q, e,
-                                  [&](const Matrix3d& F) -> Matrix3d {
+                                  [&](const Matrix3d& F, int) -> Matrix3d {
                                     return w * chosen.dP_dtheta(e, F / g, k);
                                   }),
                      e, R);
@@ -238,7 +278,7 @@ MatrixXd Assembly::all_dR_dtheta(const EnergyModel& model, const VectorXd& q, in
   MatrixXd R = MatrixXd::Zero(3 * n_, chosen.term->size());
   dispatch([&](auto kernel) {
     for (int e = 0; e < elements(); ++e) {
-      const double g = swelling_of(model, e), w = weight_of(chosen, e) * g * g;
+      const double g = swelling_of(model, e), w = EnergyParts::weight(chosen, e) * g * g;
       if (w == 0) continue;
       const auto x = kernel.gather(q, e);
       for (int p = 0; p < points_; ++p) {

@@ -1,6 +1,7 @@
 // Strain, stress and energy of the elements at their centroid, for pictures and vtu files.
 #include <Eigen/Dense>
 
+#include "simulation/energy_parts.h"
 #include "simulation/equilibrium.h"
 #include "simulation/quadrature.h"
 
@@ -13,18 +14,28 @@ Eigen::Matrix<double, 6, 1> six(const Matrix3d& A) {
   return v;
 }
 
-/// Energy density and first Piola-Kirchhoff stress of the whole model in one element.
+/// Energy density and first Piola-Kirchhoff stress of the whole model in the middle of elements.
 struct Local {
-  double psi = 0;
-  Matrix3d P = Matrix3d::Zero();
+  Eigen::RowVectorXd psi;
+  Matrix9Xd P;
 };
-Local local_response(const EnergyModel& model, int e, const Matrix3d& F) {
-  const double g = model.swelling.size() ? model.swelling[e] : 1.0;
-  Local sum;
-  for (const auto& part : model.parts) {
-    const double w = part.weight.size() ? part.weight[e] : 1.0;
-    sum.psi += w * g * g * g * part.psi(e, F / g);
-    sum.P += w * g * g * part.P(e, F / g);
+Local local_response(const EnergyModel& model, const Matrix9Xd& F) {
+  const EnergyParts parts(model);
+  Local sum{Eigen::RowVectorXd(F.cols()), Matrix9Xd(9, F.cols())};
+  Matrix9Xd elastic = F;
+  for (int e = 0; e < F.cols(); ++e) {
+    sum.psi[e] = parts.psi(e, F.col(e).reshaped(3, 3));
+    sum.P.col(e) = parts.P(e, F.col(e).reshaped(3, 3)).reshaped();
+    elastic.col(e) /= parts.swelling(e);
+  }
+  for (const auto& [part, term] : parts.together) {
+    const Eigen::RowVectorXd psi = term->psi_of(elastic);
+    const Matrix9Xd P = term->P_of(elastic);
+    for (int e = 0; e < F.cols(); ++e) {
+      const double g = parts.swelling(e), w = EnergyParts::weight(*part, e);
+      sum.psi[e] += w * g * g * g * psi[e];
+      sum.P.col(e) += w * g * g * P.col(e);
+    }
   }
   return sum;
 }
@@ -59,21 +70,25 @@ ElementState element_state(const TetMesh& mesh, const EnergyModel& energy, const
   state.J.resize(m);
   state.energy_density.resize(m);
   MatrixXd X(3, npe), x(3, npe);
+  Matrix9Xd all(9, m);
   for (int e = 0; e < m; ++e) {
     for (int i = 0; i < npe; ++i) {
       X.col(i) = mesh.X.col(mesh.elements(i, e));
       x.col(i) = q.segment<3>(3 * mesh.elements(i, e));
     }
-    const Matrix3d F = (x * dN) * Matrix3d(X * dN).inverse();
-    const Local local = local_response(energy, e, F);
+    all.col(e) = Matrix3d((x * dN) * Matrix3d(X * dN).inverse()).reshaped();
+  }
+  const Local local = local_response(energy, all);
+  for (int e = 0; e < m; ++e) {
+    const Matrix3d F = all.col(e).reshaped(3, 3);
     const double J = F.determinant();
-    const Matrix3d sigma = local.P * F.transpose() / J;
+    const Matrix3d sigma = local.P.col(e).reshaped(3, 3) * F.transpose() / J;
     const Matrix3d deviator = sigma - sigma.trace() / 3.0 * Matrix3d::Identity();
     state.green_strain.col(e) = six(0.5 * (F.transpose() * F - Matrix3d::Identity()));
     state.cauchy_stress.col(e) = six(sigma);
     state.von_mises[e] = std::sqrt(1.5 * deviator.squaredNorm());
     state.J[e] = J;
-    state.energy_density[e] = local.psi;
+    state.energy_density[e] = local.psi[e];
   }
   return state;
 }

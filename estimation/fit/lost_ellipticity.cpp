@@ -1,26 +1,20 @@
 #include "estimation/fit/lost_ellipticity.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "simulation/ellipticity.h"
+#include "simulation/energy_parts.h"
 
 namespace hookeye {
 
 using nlohmann::json;
 
 namespace {
-
-/// dP/dF of the whole model.
-Matrix9d stiffness_of(const EnergyModel& energy, int e, const Matrix3d& F) {
-  const double g = energy.swelling.size() ? energy.swelling[e] : 1.0;
-  Matrix9d D = Matrix9d::Zero();
-  for (const auto& part : energy.parts)
-    D += (part.weight.size() ? part.weight[e] : 1.0) * g * part.dP_dF(e, F / g);
-  return D;
-}
 
 /// Of an element's points the most strained and the most compressed: Green strain has no limit in
 /// tension and ends at -1/2 in compression, where laws fail first.
@@ -48,15 +42,26 @@ LostEllipticity lost_ellipticity(const TetMesh& mesh, const EnergyModel& energy,
   LostEllipticity out{std::numeric_limits<double>::infinity(), -1, Matrix9d::Zero(), 0};
   const auto all = deformation_gradients(mesh, q);
   const size_t points = all.size() / static_cast<size_t>(mesh.size());
-  for (int e = 0; e < mesh.size(); ++e) {
-    bool here = false;
-    for (const Matrix3d& F : extremes(all.data() + static_cast<size_t>(e) * points, points)) {
-      const Matrix9d D = stiffness_of(energy, e, F);
+  const EnergyParts parts(energy);
+  constexpr int kBlock = 4096;
+  for (int first = 0; first < mesh.size(); first += kBlock) {
+    std::vector<int> element;
+    std::vector<Matrix3d> F;
+    for (int e = first; e < std::min(first + kBlock, mesh.size()); ++e)
+      for (const Matrix3d& one : extremes(all.data() + static_cast<size_t>(e) * points, points))
+        element.push_back(e), F.push_back(one);
+    Matrix9Xd columns(9, static_cast<Eigen::Index>(F.size()));
+    for (size_t k = 0; k < F.size(); ++k)
+      columns.col(static_cast<Eigen::Index>(k)) = F[k].reshaped();
+    const Eigen::MatrixXd together = parts.dP_dF_together(element, columns);
+    int lost = -1;
+    for (size_t k = 0; k < F.size(); ++k) {
+      Matrix9d D = parts.dP_dF(element[k], F[k]);
+      D += together.col(static_cast<Eigen::Index>(k)).reshaped(9, 9);
       const double value = ellipticity(D, kStarts).smallest;
-      here = here || value <= 0.0;
-      if (value < out.smallest) out.smallest = value, out.element = e, out.dP_dF = D;
+      if (value < out.smallest) out.smallest = value, out.element = element[k], out.dP_dF = D;
+      if (value <= 0.0 && std::exchange(lost, element[k]) != element[k]) ++out.elements;
     }
-    out.elements += here;
   }
   return out;
 }

@@ -7,13 +7,17 @@ import logging as _logging
 
 from . import importers
 from ._hookeye import Camera, __version__
+from ._registered import register, unregister
 from .capture import Capture
 from .catalogue import effects, options
+from .contract import check_effect
+from .effect import Effect, Setup
 from .equilibrium import Equilibrium
-from .errors import Cancelled, InputError, NumericalError
+from .errors import Cancelled, EffectError, InputError, NumericalError
+from .kinematics import cofactor, determinant, invariants
 from .model import Evaluation, Model, Parameter, Picture
-from .progress import ProgressBar
-from .run import Diagnosis, Field, Progress, Run, Step, batch, discover, fit
+from .progress import Progress, ProgressBar
+from .run import Diagnosis, Field, Run, Step, batch, discover, fit
 from .tables import Table
 from .threads import set_threads
 
@@ -21,8 +25,9 @@ from .threads import set_threads
 _logging.getLogger("hookeye").addHandler(_logging.NullHandler())
 
 __all__ = [
-    "Camera", "Cancelled", "Capture", "Diagnosis", "Equilibrium", "Evaluation", "Field",
-    "InputError", "Model", "NumericalError", "Parameter", "Picture", "Progress", "ProgressBar", "Run", "Step",
-    "Table", "__version__", "batch", "discover", "effects", "fit", "importers", "options",
-    "set_threads",
+    "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
+    "Evaluation", "Field", "InputError", "Model", "NumericalError", "Parameter", "Picture",
+    "Progress", "ProgressBar", "Run", "Setup", "Step", "Table", "__version__", "batch",
+    "check_effect", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
+    "options", "register", "set_threads", "unregister",
 ]

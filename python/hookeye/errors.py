@@ -30,3 +30,15 @@ class NumericalError(ArithmeticError):
 
 class Cancelled(Exception):
     """`cancel` was set. (Ctrl-C is KeyboardInterrupt.)"""
+
+
+class EffectError(RuntimeError):
+    """An effect written in Python went wrong: `effect`, and the `method` of it. What that threw is
+    the cause (`__cause__`)."""
+
+    def __init__(self, message: str, effect: str = "", method: str = "") -> None:
+        super().__init__(message)
+        self.effect, self.method = effect, method
+
+    def __reduce__(self):
+        return (type(self), (str(self), self.effect, self.method))

@@ -9,7 +9,9 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 import numpy as np
 
 from . import _hookeye
+from ._registered import registered
 from .capture import Capture
+from .effect import EffectLike
 from .equilibrium import Equilibrium
 from .errors import InputError
 from .tables import table
@@ -245,16 +247,17 @@ class Model:
         for name in names:
             self._own.free(name)
 
-    def variants(self, effect: str) -> List[str]:
+    def variants(self, effect: EffectLike) -> List[str]:
         """The ways in which an effect can be present in this capture."""
-        return self._own.variants(effect)
+        return self._own.variants(registered(effect))
 
-    def add(self, effect: str, variant: str = "") -> None:
-        """Adds an effect at its null values, which change nothing yet."""
-        self._own.add(effect, variant)
+    def add(self, effect: EffectLike, variant: str = "") -> None:
+        """Adds an effect at its null values, which change nothing yet. A class derived from
+        hookeye.Effect is registered with it."""
+        self._own.add(registered(effect), variant)
 
-    def remove(self, effect: str) -> None:
-        self._own.remove(effect)
+    def remove(self, effect: EffectLike) -> None:
+        self._own.remove(registered(effect))
 
     def to_yaml(self) -> str:
         """The model.yaml that `hookeye fit -m` takes."""

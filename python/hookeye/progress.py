@@ -1,9 +1,31 @@
-"""A bar for `on_step`."""
+"""What `on_step` is told, and a bar for it."""
 
 from __future__ import annotations
 
 import logging
-from typing import Any
+from typing import Any, Callable, NamedTuple, Optional
+
+
+class Progress(NamedTuple):
+    """What `on_step` is told. work: "fit" (of its iterations), "diagnose", "report", or "step" once
+    one is written; stage: "1/8 size", "motion", or the step's name; chi: 0 where it is not known."""
+
+    work: str
+    stage: str
+    done: int
+    of: int
+    chi: float
+
+
+OnStep = Callable[[Progress], Any]
+
+
+def listener(on_step: Optional[OnStep]) -> Any:
+    if on_step is None:
+        return None
+    if not callable(on_step):
+        raise TypeError("on_step: a function of one Progress is expected")
+    return lambda *told: on_step(Progress(*told))
 
 
 class ProgressBar:

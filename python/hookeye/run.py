@@ -10,42 +10,22 @@ import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from html import escape
-from typing import (Any, Callable, Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence,
-                    Tuple, Union)
+from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _hookeye, tables
+from ._registered import registered
 from .capture import Capture
+from .effect import EffectLike
 from .errors import InputError
 from .fields import Field
 from .model import Model, Shot
+from .progress import OnStep, listener
 from .tables import Table, table
 
 PathLike = Union[str, "os.PathLike[str]"]
 _log = logging.getLogger("hookeye")
-
-
-class Progress(NamedTuple):
-    """What `on_step` is told. work: "fit" (of its iterations), "diagnose", "report", or "step" once
-    one is written; stage: "1/8 size", "motion", or the step's name; chi: 0 where it is not known."""
-
-    work: str
-    stage: str
-    done: int
-    of: int
-    chi: float
-
-
-OnStep = Callable[[Progress], Any]
-
-
-def _listener(on_step: Optional[OnStep]) -> Any:
-    if on_step is None:
-        return None
-    if not callable(on_step):
-        raise TypeError("on_step: a function of one Progress is expected")
-    return lambda *told: on_step(Progress(*told))
 
 
 class Step:
@@ -194,8 +174,9 @@ class Run:
                    "where", "cpu_s"]
         return table(self._own.decisions(), columns)
 
-    def why(self, effect: str) -> Any:
+    def why(self, effect: EffectLike) -> Any:
         """All that was decided of one effect."""
+        effect = registered(effect)
         known = [one["name"] for one in _hookeye.effects()]
         if effect not in known:
             wrong, right = f"there is no effect '{effect}'", f"one of {', '.join(known)}"
@@ -241,21 +222,25 @@ class Run:
             out.attrs["kind"] = "Laplace approximation"
         return out
 
-    def diagnose(self, *, on_step: Optional[OnStep] = None, cancel: Any = None) -> Diagnosis:
-        """Tests every effect against what the newest step leaves, and writes it down."""
-        return Diagnosis(self._own.diagnose(_listener(on_step), cancel))
+    def diagnose(self, *, effects: Iterable[EffectLike] = (), on_step: Optional[OnStep] = None,
+                 cancel: Any = None) -> Diagnosis:
+        """Tests every effect against what the newest step leaves, and writes it down. `effects`:
+        classes derived from hookeye.Effect, which are registered before."""
+        _register_all(effects)
+        return Diagnosis(self._own.diagnose(listener(on_step), cancel))
 
-    def add(self, effect: str, *, take_back: bool = False, on_step: Optional[OnStep] = None,
+    def add(self, effect: EffectLike, *, take_back: bool = False, on_step: Optional[OnStep] = None,
             cancel: Any = None) -> Step:
         """Refits with an effect (or without it again): the next step, diagnosed."""
+        effect = registered(effect)
         command = f"hookeye.Run.add({effect!r}{', take_back=True' if take_back else ''})"
-        self._own.add(effect, take_back, command, _listener(on_step), cancel)
+        self._own.add(effect, take_back, command, listener(on_step), cancel)
         return self._newest()
 
     def report(self, out: PathLike, *, on_step: Optional[OnStep] = None,
                cancel: Any = None) -> "Report":
         """Writes the run as one page that can be mailed; a notebook shows it."""
-        told = self._own.report(out, _listener(on_step), cancel)
+        told = self._own.report(out, listener(on_step), cancel)
         for fault in told["faults"]:
             _log.warning("%s", fault)
         return Report(told)
@@ -312,6 +297,13 @@ def _out(out: Optional[PathLike]) -> Tuple[PathLike, Any]:
     return os.path.join(kept.name, "run"), kept
 
 
+def _register_all(effects: Iterable[EffectLike]) -> None:
+    if isinstance(effects, (str, type)):
+        raise TypeError("effects: a list of classes is expected")
+    for effect in effects:
+        registered(effect)
+
+
 def _expect_capture(capture: Any) -> None:
     if not isinstance(capture, Capture):
         raise TypeError(f"capture: a hookeye.Capture is expected, not {type(capture).__name__}")
@@ -328,18 +320,21 @@ def fit(capture: Capture, model: Optional[Model] = None, out: Optional[PathLike]
     folder, kept = _out(out)
     command = f"hookeye.fit({str(capture.file)!r})"
     own = _hookeye.fit(capture._own, None if model is None else model._own, folder, iterations,
-                       additive, command, _listener(on_step), cancel)
+                       additive, command, listener(on_step), cancel)
     return Run(folder, own, capture, kept)
 
 
 def discover(capture: Capture, out: Optional[PathLike] = None, *, without: Iterable[str] = (),
-             on_step: Optional[OnStep] = None, cancel: Any = None) -> Run:
+             effects: Iterable[EffectLike] = (), on_step: Optional[OnStep] = None,
+             cancel: Any = None) -> Run:
     """Fits, diagnoses, adds, until what is left is noise; takes up the run in `out`, if there is
-    one. Stopped it leaves the steps that are finished."""
+    one. Stopped it leaves the steps that are finished. `effects`: classes derived from
+    hookeye.Effect, which are registered before."""
     _expect_capture(capture)
+    _register_all(effects)
     folder, kept = _out(out)
     command = f"hookeye.discover({str(capture.file)!r})"
-    own = _hookeye.discover(capture._own, folder, list(without), command, _listener(on_step), cancel)
+    own = _hookeye.discover(capture._own, folder, list(without), command, listener(on_step), cancel)
     return Run(folder, own, capture, kept)
 
 

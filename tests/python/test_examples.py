@@ -5,8 +5,11 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from conftest import SOURCES
+
+import hookeye as he
 
 
 def run(script, *words, cwd):
@@ -41,12 +44,44 @@ def test_diagnose(folder, tmp_path):
     assert "cannot be told apart: gravity" in said and "named: yes" in said
 
 
+def test_own_sampler(folder, tmp_path):
+    said = run("own_sampler.py", folder / "capture", 150, cwd=tmp_path)
+    accepted = float(re.search(r"accepted: (\d+) %;", said).group(1))
+    assert 5 < accepted < 95
+    for name in ("mu", "kappa"):
+        ends = {what: (float(low), float(high)) for what, low, high in re.findall(
+            rf"{name} ([\w ]+): (\S+) to (\S+)", said)}
+        assert set(ends) == {"every pixel", "Laplace", "sampled"}
+        widths = {what: high - low for what, (low, high) in ends.items()}
+        assert 0.4 < widths["sampled"] / widths["Laplace"] < 2.5, name
+        assert widths["every pixel"] < widths["Laplace"], name
+
+
+def test_residual_arrays(folder, tmp_path, fitted):
+    said = run("residual_arrays.py", folder / "capture", "r.npz", cwd=tmp_path)
+    kept = np.load(tmp_path / "r.npz")
+    assert set(kept) == {f"{example}_{camera}" for example, camera in fitted.residuals()}
+    for (example, camera), r in fitted.residuals().items():
+        chi = float(re.search(rf"{example}, {camera}: chi (\S+),", said).group(1))
+        assert chi == pytest.approx(np.sqrt(np.nanmean(r.astype(float) ** 2)), abs=2e-3)
+
+
+def test_own_effect(folder, tmp_path):
+    pytest.importorskip("pandas")
+    said = run("own_effect.py", folder / "capture", "run", cwd=tmp_path)
+    assert said.count("null changes nothing") == 2
+    assert re.search(r"^ *spring ", said, re.M) and re.search(r"^ *stiff_skin ", said, re.M)
+    assert "spring.k" in said
+
+
 def test_the_page_s_lines_run(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     os.symlink(folder / "capture", tmp_path / "block")
     blocks = re.findall(r"```python\n(.*?)```", (SOURCES / "docs/python.md").read_text(), re.S)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
     names = {}
     for block in blocks:
         exec(block, names)
+    assert "stiff_skin" in list(names["diagnosis"].table["effect"])
+    he.unregister("stiff_skin")
     assert names["model"]["kappa"].fixed and (tmp_path / "run/run.json").exists()
