@@ -154,7 +154,10 @@ export async function saveDraft(): Promise<void> {
 }
 
 let trying = 0;
-export function typed(text: string): void {
+/** What stands in the field for text, whose lines end as browsers end them. */
+export const shownText = (): string => (draft.value ?? capture.value?.text ?? '').replaceAll('\r\n', '\n');
+export function typed(inField: string): void {
+  const text = capture.value?.text.includes('\r\n') ? inField.replaceAll('\n', '\r\n') : inField;
   draft.value = text === capture.value?.text ? null : text;
   draftFaults.value = [];
   clearTimeout(trying);

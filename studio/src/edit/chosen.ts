@@ -61,7 +61,6 @@ export function subject(fault: Fault): {kind: 'examples' | 'regions' | 'cameras'
 /** Shows a fault where it can be mended: in its form, else in the text. */
 export function show(fault: Fault): void {
   const about = subject(fault);
-  wantedLine.value = inFile(fault) ? fault.line : 0;
   if (about.kind === 'examples') {
     chooseCase(about.name);
     form.value = 'case';
@@ -70,8 +69,10 @@ export function show(fault: Fault): void {
     form.value = 'regions';
   } else {
     if (about.kind === 'cameras') chooseCamera(about.name);
-    form.value = 'text';
+    showLine(inFile(fault) ? fault.line : 0);
   }
+  // The text takes the focus by itself.
+  if (form.value !== 'text') requestAnimationFrame(() => document.getElementById('form')?.focus());
 }
 export function showLine(line: number): void {
   wantedLine.value = line;

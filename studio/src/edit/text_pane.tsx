@@ -1,6 +1,6 @@
 // The text of the file, with faults beside their lines. What is typed is read at once, and written when it is saved.
 import {useEffect, useRef, useState} from 'preact/hooks';
-import {capture, draft, draftFaults, faults, saveDraft, saving, typed, type Fault} from './capture';
+import {draft, draftFaults, faults, saveDraft, saving, shownText, typed, type Fault} from './capture';
 import {inFile, wantedLine} from './chosen';
 
 const lineHeight = 18;
@@ -15,7 +15,7 @@ function byLine(): Map<number, Fault[]> {
 export function TextPane() {
   const area = useRef<HTMLTextAreaElement>(null);
   const [scrolled, setScrolled] = useState({top: 0, left: 0});
-  const text = draft.value ?? capture.value?.text ?? '';
+  const text = shownText();
   const lines = text.split('\n');
   const found = byLine();
   useEffect(() => {
@@ -40,7 +40,7 @@ export function TextPane() {
     <div class="text-pane">
       <div class="toolbar">
         <button class="primary" disabled={draft.value === null || saving.value} onClick={() => void saveDraft()}>Save</button>
-        <button disabled={draft.value === null} onClick={() => typed(capture.value?.text ?? '')}>Discard</button>
+        <button disabled={draft.value === null} onClick={() => (draft.value = null)}>Discard</button>
         <span role="status" class="note">{draft.value === null ? 'as in the file' : `not saved yet (Ctrl-S); ${draftFaults.value.length || 'no'} fault${draftFaults.value.length === 1 ? '' : 's'} of reading`}</span>
       </div>
       <div class="text-lines">
