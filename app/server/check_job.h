@@ -1,8 +1,6 @@
 // `hookeye check` of a file that is being edited, in the background.
 #pragma once
 
-#include <sys/types.h>
-
 #include <condition_variable>
 #include <filesystem>
 #include <mutex>
@@ -10,10 +8,11 @@
 #include <string>
 #include <thread>
 
+#include "app/server/own_program.h"
+
 namespace hookeye {
 
-/// Runs the program itself, so that what a file does to it does not reach the server, and so that
-/// it can be ended at once. One at a time: a change ends the one before. Thread-safe.
+/// One at a time: a change ends the one before. Thread-safe.
 class CheckJob {
  public:
   explicit CheckJob(std::filesystem::path file);
@@ -28,13 +27,12 @@ class CheckJob {
 
  private:
   void work();
-  nlohmann::json checked();
   std::filesystem::path file_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::string wanted_;  ///< mark; empty: nothing is
   nlohmann::json state_{{"state", "idle"}};
-  pid_t child_ = -1;
+  OwnProgram program_;
   bool ended_ = false;
   std::thread thread_;  ///< last: it uses the others
 };

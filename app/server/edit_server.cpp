@@ -10,6 +10,7 @@
 #include "app/server/edit_view.h"
 #include "app/server/edited_text.h"
 #include "app/server/nudged.h"
+#include "app/server/place_job.h"
 #include "capture_io/camera_text.h"
 #include "capture_io/yaml_edit.h"
 #include "capture_io/yaml_section.h"
@@ -107,8 +108,10 @@ class Editor {
   }
 
   json pulse() {
-    return {
-        {"mark", text_.mark()}, {"outside", text_.changed_outside()}, {"check", check_.state()}};
+    return {{"mark", text_.mark()},
+            {"outside", text_.changed_outside()},
+            {"check", check_.state()},
+            {"place", place_.state()}};
   }
 
   /// {seen: MARK, ...}: the text that the page has shown.
@@ -203,6 +206,29 @@ class Editor {
     text_.set(placed_text(text_.text(), text_.file().string(), place), request["seen"]);
   }
 
+  /// By pairs [{camera, pixel, point}], else by the outline; what is found is written at the end.
+  void place(const json& request) {
+    std::vector<std::string> pairs;
+    for (const json& pair : request.value("pairs", json::array())) {
+      if (!pair.is_object()) throw bad_request("`pairs` is a list of {camera, pixel, point}");
+      const Eigen::Vector3d point = vector_of(pair, "point");
+      const json pixel = pair.value("pixel", json());
+      if (!pixel.is_array() || pixel.size() != 2 || !pixel[0].is_number() || !pixel[1].is_number())
+        throw bad_request("`pixel` is a list of two numbers");
+      pairs.push_back(fmt::format("{}:{},{}={},{},{}", camera(pair.value("camera", "")).name,
+                                  pixel[0].get<double>(), pixel[1].get<double>(), point.x(),
+                                  point.y(), point.z()));
+    }
+    const std::string seen = request["seen"];
+    if (seen != text_.mark()) throw bad_request("the mark of the newest text as `seen`");
+    const bool began = place_.start(text_.file(), pairs, [this, seen](const ToldPlacement& found) {
+      const std::lock_guard lock(mutex_);
+      text_.set(placed_text(text_.text(), text_.file().string(), found), seen);
+      look();
+    });
+    if (!began) throw bad_request("wait for the place that is being looked for");
+  }
+
   const ShownBody& body() {
     const std::string stamp = stamp_of(read_.capture.body);
     if (!body_ || stamp != body_stamp_) {
@@ -272,6 +298,16 @@ class Editor {
     change("edit", &Editor::edit);
     change("faces", &Editor::faces);
     change("nudge", &Editor::nudge);
+    server_.post("place", [this](const WebRequest& request) {
+      const json wanted = asked(request);
+      const std::lock_guard lock(mutex_);
+      place(wanted);
+      return answer_json(pulse());
+    });
+    server_.post("stop", [this](const WebRequest&) {
+      place_.stop();
+      return answer_json(place_.state());
+    });
     change("undo", &Editor::undo);
     change("redo", &Editor::redo);
     change("reload", &Editor::reload);
@@ -285,6 +321,7 @@ class Editor {
   std::set<std::string> lists_;  ///< files of triangles that this session wrote
   std::optional<ShownBody> body_;
   std::string body_stamp_;
+  PlaceJob place_;  ///< last: what it finds goes into the others
 };
 
 }  // namespace

@@ -174,6 +174,8 @@ struct LocalServer::Impl {
         std::rethrow_exception(error);
       } catch (const InputError& known) {
         refuse(response, 400, known.what());
+      } catch (const json::exception&) {
+        refuse(response, 400, "the request cannot be understood");
       } catch (const std::exception& known) {
         refuse(response, 500, known.what());
       } catch (...) {

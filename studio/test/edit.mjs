@@ -215,6 +215,65 @@ async function nudgedAndBack(page, read) {
   say('a pose that is off by 25 px is drawn, and taken back');
 }
 
+/** How far the told placement takes the body's middle. */
+function displaced(text) {
+  const [, rows, t] = /placement: \{rotation: (\[\[.*?\]\]), translation: (\[.*?\])/.exec(text).map((one, i) => (i ? JSON.parse(one) : one));
+  const middle = [0, 0, 20];
+  return Math.hypot(...rows.map((row, i) => row.reduce((sum, r, k) => sum + r * middle[k], t[i]) - middle[i]));
+}
+/** The pixel of the front camera in which a point stands that the capture's own pose tells. */
+function pixelOf(text, point) {
+  const [, rows, t] = /front:[^]*?rotation: (\[\[.*?\]\]), translation: (\[.*?\])/.exec(text).map((one, i) => (i ? JSON.parse(one) : one));
+  const [x, y, z] = rows.map((row, i) => row.reduce((sum, r, k) => sum + r * point[k], t[i]));
+  return [480 * x / z + 99.5, 480 * y / z + 99.5];
+}
+async function placed(page, button, read) {
+  await page.click(button);
+  await until(page, () => /Turned by/.test(document.querySelector('.pose .note')?.textContent ?? ''), 180);
+  await page.waitForTimeout(1500);
+  return displaced(read());
+}
+
+/** A pose that is off is found by the outline, and by pairs of points and pixels. */
+async function poseIsFound(page, read) {
+  const before = read();
+  await page.click('.nudge button[aria-label="Move right"]');
+  await saved(page);
+  const off = displaced(read());
+  assert.ok(off > 5, `moved by ${off}`);
+  const byOutline = await placed(page, '.pose button:text-is("by the outline")', read);
+  assert.ok(byOutline < 1.5, `by the outline the body is ${byOutline} mm off`);
+  await page.click('button:text-is("Undo")');
+  await saved(page);
+  assert.equal(displaced(read()), off);
+  await page.click('.pose button:has-text("by pairs")');
+  for (const [dx, dy] of [[0, 0], [-50, -90], [60, 60], [-40, 120], [70, -100], [10, -40]]) {
+    await page.waitForTimeout(1200);
+    const box = await page.locator('.body3d canvas').first().boundingBox();
+    await page.mouse.click(box.x + box.width / 2 + dx, box.y + box.height / 2 + dy);
+    await until(page, () => /now click/.test(document.querySelector('.pairs-picked .note').textContent));
+    const said = (await page.textContent('.pairs-picked .note')).replaceAll('−', '-');
+    const point = JSON.parse(`[${/\((.*?)\)/.exec(said)[1]}]`);
+    await page.waitForTimeout(800);
+    await page.mouse.click(...await pixel(page, ...pixelOf(before, point)));
+    await until(page, () => !/now click/.test(document.querySelector('.pairs-picked .note').textContent));
+    await page.click('text=Next point');
+  }
+  await shot(page, 'pairs');
+  await page.click('button:text-is("Body over photo")');
+  const byPairs = await placed(page, '.pose button:has-text("Place by 6 pairs")', read);
+  assert.ok(byPairs < 1.5, `by pairs the body is ${byPairs} mm off`);
+  await page.waitForTimeout(1000);
+  await shot(page, 'placed');
+  await page.click('.pose button:has-text("by pairs …")');
+  for (let i = 0; i < 2; ++i) {
+    await page.click('button:text-is("Undo")');
+    await saved(page);
+  }
+  assert.equal(read(), before);
+  say(`a pose ${off.toFixed(1)} mm off is found: to ${byOutline.toFixed(2)} mm by the outline, to ${byPairs.toFixed(2)} mm by six pairs`);
+}
+
 /** Another program's change is told, taken in on a click, and undone to what was here. */
 async function outsideIsTold(page, file, read) {
   const mine = read(), theirs = mine + '# theirs\n';
@@ -237,6 +296,7 @@ async function inTheDark(address, file, read) {
   const {page, faults, close} = await open(address, {width: 1280, height: 800}, 'dark');
   await page.waitForTimeout(1500);
   await nudgedAndBack(page, read);
+  await poseIsFound(page, read);
   await outsideIsTold(page, file, read);
   await page.click('button:text-is("Blink")');
   await page.waitForTimeout(700);

@@ -1,6 +1,8 @@
 // `hookeye edit` from outside: what it tells of a capture, and what it writes into it.
 #include <gmock/gmock.h>
 
+#include <array>
+
 #include "app/served.h"
 
 namespace hookeye::test {
@@ -173,12 +175,59 @@ cameras:
   EXPECT_EQ(change(editor, "nudge", {{"camera", "no"}, {"move", {1, 2, 0}}}).status, 400);
 }
 
+TEST_F(Edit, PlacesTheBodyByPairs) {
+  write("capture.yaml", read(file()) + R"(cameras:
+  top:
+    size: [200, 200]
+    intrinsics: {fx: 600, fy: 600, cx: 100, cy: 100}
+    pose: {rotation: [[1, 0, 0], [0, -1, 0], [0, 0, -1]], translation: [0, 0, 100]}
+)");
+  SERVED_OR_SKIPPED(editor);
+  const auto placed = [&](const json& pairs) {
+    const json request{{"seen", mark(editor)}, {"pairs", pairs}};
+    const auto began = editor.post("place", request.dump());
+    if (began.status != 200) return json{{"state", began.body}};
+    for (int i = 0; i < 600; ++i) {
+      const json now = json::parse(editor.get("pulse").body)["place"];
+      if (now["state"] != "running") return now;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return json();
+  };
+  // The body as it stands, but 1 along x and 2 along -y.
+  json pairs = json::array();
+  for (const auto& [x, y, z] :
+       {std::array{0.0, 0.0, 0.0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 10}, {0, 0, 10}, {10, 0, 10}})
+    pairs.push_back({{"camera", "top"},
+                     {"pixel", {100 + 600 * (x + 1) / (100 - z), 100 - 600 * (y - 2) / (100 - z)}},
+                     {"point", {x, y, z}}});
+  const json found = placed(pairs);
+  EXPECT_EQ(found["state"], "done") << found.dump();
+  EXPECT_THAT(found["message"].get<std::string>(), HasSubstr("off by"));
+  const std::string text = read(file());
+  const size_t at = text.find("translation: [");
+  ASSERT_NE(at, std::string::npos) << text;
+  double x = 0, y = 0;
+  ASSERT_EQ(std::sscanf(text.c_str() + at, "translation: [%lf, %lf", &x, &y), 2);
+  EXPECT_NEAR(x, 1, 1e-3);
+  EXPECT_NEAR(y, -2, 1e-3);
+  // Two pairs leave it open: told, and nothing is written.
+  pairs.erase(pairs.begin(), pairs.begin() + 4);
+  EXPECT_EQ(placed(pairs)["state"], "failed");
+  EXPECT_EQ(read(file()), text);
+  EXPECT_EQ(placed({{{"camera", "no"}, {"pixel", {1, 1}}, {"point", {0, 0, 0}}}})["state"]
+                .get<std::string>()
+                .find("done"),
+            std::string::npos);
+}
+
 TEST_F(Edit, RefusesWhatItDoesNotUnderstandAndWhatComesFromElsewhere) {
   const std::string before = read(file());
   SERVED_OR_SKIPPED(editor);
   const json good{{"seen", mark(editor)}, {"text", "x"}};
   EXPECT_EQ(editor.post_from_elsewhere("text", good.dump()).status, 403);
-  for (const char* what : {"text", "edit", "faces", "nudge", "undo", "redo", "reload", "try"})
+  for (const char* what :
+       {"text", "edit", "faces", "nudge", "place", "undo", "redo", "reload", "try"})
     for (const char* body : {"", "{", "[]", "{\"seen\": 1}"})
       EXPECT_EQ(editor.post(what, body).status, 400) << what << " " << body;
   for (const char* path : {"[]", "[1]", "\"a\"", "[\"nothing\", \"here\"]"}) {

@@ -8,6 +8,7 @@ import {actsOf} from './acts';
 import {body, bodyFault, colours, patches, type Body} from './body';
 import {picked, region, shownCase} from './chosen';
 import {pick} from './pick';
+import {pairing, pendingPoint, pickPoint} from './pose';
 
 /** Each triangle has corners of its own, so that it has a colour and a direction of its own. */
 function surfaceOf(of: Body): Surface {
@@ -27,18 +28,25 @@ export function BodyView() {
     const of = colours(body.value, region.value, picked.value);
     scene.show(surface, {amount: 0, colour: (node) => of[Math.floor(node / 3)], ghost: false, acts: actsOf(shownCase.value)});
   }, [scene, surface, region.value, picked.value, shownCase.value, theme.value]);
+  const taken = (node: number): void => {
+    if (node < 0 || !body.value) return;
+    if (!pairing.value) return pick(body.value, Math.floor(node / 3));
+    scene!.mark(node);
+    pickPoint(Array.from(body.value.corners.subarray(3 * node, 3 * node + 3)));
+  };
+  useEffect(() => {
+    if (!pendingPoint.value) scene?.mark(-1);
+  }, [scene, pendingPoint.value]);
   const pressed = useRef<[number, number] | null>(null);
   const click = (event: PointerEvent): void => {
     const from = pressed.current;
     if (!scene || !body.value || !from || Math.hypot(event.offsetX - from[0], event.offsetY - from[1]) > 4) return;
-    const node = scene.pick(event.offsetX, event.offsetY);
-    if (node >= 0) pick(body.value, Math.floor(node / 3));
+    taken(scene.pick(event.offsetX, event.offsetY));
   };
   const keys = (event: KeyboardEvent): void => {
     if (!scene || scene.key(event)) return;
     if (event.key !== 'Enter' || !body.value) return;
-    const node = scene.pick(canvas.current!.clientWidth / 2, canvas.current!.clientHeight / 2);
-    if (node >= 0) pick(body.value, Math.floor(node / 3));
+    taken(scene.pick(canvas.current!.clientWidth / 2, canvas.current!.clientHeight / 2));
     event.preventDefault();
   };
   return (

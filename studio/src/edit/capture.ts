@@ -74,6 +74,7 @@ interface Pulse {
   mark: string;
   outside: boolean;
   check: CheckState;
+  place: {state: 'idle' | 'running' | 'done' | 'failed' | 'stopped'; message: string};
 }
 export interface EditState {
   title: string;

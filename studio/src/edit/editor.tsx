@@ -10,6 +10,7 @@ import {CaseForm} from './case_form';
 import {chooseCase, form, formNames, forms, shownCase, stage, stages, type Form} from './chosen';
 import {checkWords, FaultList} from './faults';
 import {PhotoView} from './photo_view';
+import {Pose} from './pose';
 import {RegionForm} from './region_form';
 import {TextPane} from './text_pane';
 import './edit.css';
@@ -98,6 +99,7 @@ export function Editor() {
           <section class="stage" aria-label="Photo and body">
             <Buttons label="What is shown" values={stages} chosen={stage} names={{photo: 'Body over photo', body: 'Body in space'}} />
             {stage.value === 'photo' ? <PhotoView /> : <BodyView />}
+            {state.cameras.length > 0 && <Pose />}
           </section>
           <section class="side" aria-label="Capture">
             <FormTabs />

@@ -11,6 +11,7 @@ import {body, bodyFault, colours, middleOf, patches, type Body} from './body';
 import {ask, capture, pulse, type CameraEntry, type CasePhoto} from './capture';
 import {chooseCamera, picked, region, shownCamera, shownCase} from './chosen';
 import {Nudge} from './nudge';
+import {pairing, pairs, pickPixel} from './pose';
 import {pick} from './pick';
 import {Overlay, pixelNear, sightOf, triangleAt, type Sight} from './projected';
 
@@ -84,6 +85,24 @@ function drawMarks(context: CanvasRenderingContext2D, shown: Body, sight: Sight,
   }
 }
 
+/** Picked pixels, with the numbers of their pairs. */
+function drawPairs(context: CanvasRenderingContext2D, camera: string, factor: number): void {
+  const arm = context.canvas.width / 100;
+  context.font = `${2.4 * arm}px sans-serif`;
+  pairs.value.forEach((pair, i) => {
+    if (pair.camera !== camera) return;
+    const [x, y] = pair.pixel.map((c) => (c + 0.5) * factor);
+    stroke(context, '#ffd400', 0.25 * arm, () => {
+      context.moveTo(x - arm, y);
+      context.lineTo(x + arm, y);
+      context.moveTo(x, y - arm);
+      context.lineTo(x, y + arm);
+    });
+    context.fillStyle = '#ffd400';
+    context.fillText(String(i + 1), x + 0.6 * arm, y - 0.6 * arm);
+  });
+}
+
 /** Photo, and photo with the body over it, so fine that lines are thin. */
 function useLayers(photo: ImageBitmap | null, camera: CameraEntry | undefined, sight: Sight | null): {plain: Layer | null; over: Layer | null} {
   const overlay = useRef<Overlay | null>(null);
@@ -116,8 +135,9 @@ function useLayers(photo: ImageBitmap | null, camera: CameraEntry | undefined, s
       context.drawImage(drawn, 0, 0);
       context.globalAlpha = 1;
       if (show.marks.value) drawMarks(context, body.value!, sight, factor);
+      if (pairing.value) drawPairs(context, camera.name, factor);
     })});
-  }, [photo, camera?.stamp, sight, body.value, picked.value, region.value, shownCase.value, patches.value, ...looks]);
+  }, [pairs.value, pairing.value, photo, camera?.stamp, sight, body.value, picked.value, region.value, shownCase.value, patches.value, ...looks]);
   return layers;
 }
 
@@ -186,7 +206,8 @@ export function PhotoView() {
   }, [camera?.name]);
   if (!camera) return <p class="empty">The capture has no camera that can be read. <code>hookeye import</code> and <code>hookeye calibrate</code> make some.</p>;
   const onPick = (x: number, y: number): void => {
-    if (seen.value && body.value) pick(body.value, triangleAt(seen.value, x, y));
+    if (pairing.value) pickPixel(camera.name, x, y);
+    else if (seen.value && body.value) pick(body.value, triangleAt(seen.value, x, y));
   };
   const over = hidden.value ? null : layers.over;
   const absent = !photo ? `${shown?.name ?? 'The capture'} has no photo of ${camera.name}.` : fetched.fault || seen.fault || bodyFault.value || undefined;
