@@ -79,18 +79,18 @@ export async function refreshBody(): Promise<void> {
 
 const dot = (a: ArrayLike<number>, b: ArrayLike<number>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
+function holds({box, sphere, halfspace}: RegionEntry, x: number, y: number, z: number): boolean {
+  if (box) return x >= box[0][0] && x <= box[1][0] && y >= box[0][1] && y <= box[1][1] && z >= box[0][2] && z <= box[1][2];
+  if (sphere) return Math.hypot(x - sphere.center[0], y - sphere.center[1], z - sphere.center[2]) <= sphere.radius;
+  return halfspace !== undefined && dot([x, y, z], halfspace.normal) >= dot(halfspace.point, halfspace.normal);
+}
+
 /** Triangles of the shown body that lie in a region: by their middles. */
 export function patch(of: Body, region: RegionEntry): number[] {
   const out: number[] = [];
   const listed = region.faces ? new Set(region.faces) : region.group ? new Set(of.groups[region.group] ?? []) : null;
   for (let t = 0; t < of.count; ++t) {
-    const x = of.middles.subarray(3 * t, 3 * t + 3);
-    let inside = false;
-    if (listed) inside = listed.has(of.parent[t]);
-    else if (region.box) inside = [0, 1, 2].every((c) => x[c] >= region.box![0][c] && x[c] <= region.box![1][c]);
-    else if (region.sphere) inside = Math.hypot(...[0, 1, 2].map((c) => x[c] - region.sphere!.center[c])) <= region.sphere.radius;
-    else if (region.halfspace) inside = dot(x, region.halfspace.normal) >= dot(region.halfspace.point, region.halfspace.normal);
-    if (inside) out.push(t);
+    if (listed ? listed.has(of.parent[t]) : holds(region, of.middles[3 * t], of.middles[3 * t + 1], of.middles[3 * t + 2])) out.push(t);
   }
   return out;
 }
@@ -102,9 +102,10 @@ export const patches = computed<Map<string, number[]>>(() => {
   return out;
 });
 
-/** The faces that go on from a triangle without an edge sharper than `degrees`: triangles of the file. */
+/** The faces that go on from a triangle without an edge sharper than `degrees`, around bends up to three times as much in all:
+ *  triangles of the file. */
 export function smoothPatch(of: Body, from: number, degrees: number): number[] {
-  const least = Math.cos((degrees * Math.PI) / 180);
+  const [least, leastInAll] = [degrees, Math.min(180, 3 * degrees)].map((d) => Math.cos((d * Math.PI) / 180));
   const normal = (t: number): Float32Array => of.normals.subarray(3 * t, 3 * t + 3);
   const [seen, waiting, out] = [new Set([from]), [from], new Set<number>()];
   while (waiting.length) {
@@ -113,7 +114,7 @@ export function smoothPatch(of: Body, from: number, degrees: number): number[] {
     for (let k = 0; k < 3; ++k) {
       const next = of.beside[3 * t + k];
       if (next < 0 || seen.has(next)) continue;
-      if (of.parent[next] !== of.parent[t] && dot(normal(t), normal(next)) < least) continue;
+      if (of.parent[next] !== of.parent[t] && (dot(normal(t), normal(next)) < least || dot(normal(from), normal(next)) < leastInAll)) continue;
       seen.add(next);
       waiting.push(next);
     }

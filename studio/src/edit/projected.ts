@@ -20,30 +20,42 @@ export async function sightOf(body: Body, camera: string): Promise<Sight> {
   const told = await (await ask('sight?camera=' + encodeURIComponent(camera))).json();
   const seen = new Float32Array(fromBase64(told.seen).buffer as ArrayBuffer);
   const corners = new Float32Array(9 * body.count), faces = new Uint8Array(body.count);
-  let [near, far] = [Infinity, -Infinity];
-  for (let t = 0; t < body.count; ++t) {
-    for (let k = 0; k < 3; ++k) corners.set(seen.subarray(3 * body.triangles[3 * t + k], 3 * body.triangles[3 * t + k] + 3), 9 * t + 3 * k);
-    const p = corners.subarray(9 * t, 9 * t + 9);
-    // v goes down: what is counter-clockwise from outside is clockwise in the photo.
-    faces[t] = (p[3] - p[0]) * (p[7] - p[1]) - (p[6] - p[0]) * (p[4] - p[1]) < 0 ? 1 : 0;
-    for (const depth of [p[2], p[5], p[8]]) if (depth > 0) [near, far] = [Math.min(near, depth), Math.max(far, depth)];
+  let near = Infinity, far = -Infinity;
+  for (let k = 0; k < 3 * body.count; ++k) {
+    const from = 3 * body.triangles[k];
+    for (let c = 0; c < 3; ++c) corners[3 * k + c] = seen[from + c];
+    if (seen[from + 2] > 0) {
+      near = Math.min(near, seen[from + 2]);
+      far = Math.max(far, seen[from + 2]);
+    }
   }
+  // v goes down: what is counter-clockwise from outside is clockwise in the photo.
+  for (let t = 0; t < body.count; ++t) faces[t] = twiceArea(corners, 9 * t) < 0 ? 1 : 0;
   return {corners, faces, near, far};
 }
 
-const whole = (sight: Sight, t: number): boolean => sight.corners.subarray(9 * t, 9 * t + 9).every(Number.isFinite);
+const twiceArea = (p: Float32Array, i: number): number =>
+  (p[i + 3] - p[i]) * (p[i + 7] - p[i + 1]) - (p[i + 6] - p[i]) * (p[i + 4] - p[i + 1]);
+
+/** All its corners are seen. */
+function whole(sight: Sight, t: number): boolean {
+  for (let i = 9 * t; i < 9 * t + 9; ++i) if (!Number.isFinite(sight.corners[i])) return false;
+  return true;
+}
 
 /** The triangle that the camera sees at a pixel; -1: none. */
 export function triangleAt(sight: Sight, x: number, y: number): number {
-  let [best, nearest] = [-1, Infinity];
+  let best = -1, nearest = Infinity;
+  const p = sight.corners;
   for (let t = 0; t < sight.faces.length; ++t) {
-    const p = sight.corners.subarray(9 * t, 9 * t + 9);
-    const area = (p[3] - p[0]) * (p[7] - p[1]) - (p[6] - p[0]) * (p[4] - p[1]);
-    const b = ((x - p[0]) * (p[7] - p[1]) - (p[6] - p[0]) * (y - p[1])) / area;
-    const c = ((p[3] - p[0]) * (y - p[1]) - (x - p[0]) * (p[4] - p[1])) / area;
+    const i = 9 * t, area = twiceArea(p, i);
+    const b = ((x - p[i]) * (p[i + 7] - p[i + 1]) - (p[i + 6] - p[i]) * (y - p[i + 1])) / area;
+    const c = ((p[i + 3] - p[i]) * (y - p[i + 1]) - (x - p[i]) * (p[i + 4] - p[i + 1])) / area;
     if (!(b >= 0 && c >= 0 && b + c <= 1)) continue;
-    const depth = p[2] + b * (p[5] - p[2]) + c * (p[8] - p[2]);
-    if (depth < nearest) [best, nearest] = [t, depth];
+    const depth = p[i + 2] + b * (p[i + 5] - p[i + 2]) + c * (p[i + 8] - p[i + 2]);
+    if (depth >= nearest) continue;
+    best = t;
+    nearest = depth;
   }
   return best;
 }
@@ -56,7 +68,8 @@ function edges(body: Body, sight: Sight, wanted: (t: number, other: number) => b
       const other = body.beside[3 * t + k];
       if ((other >= 0 && other < t) || !wanted(t, other) || !whole(sight, t)) continue;
       const next = (k + 1) % 3;
-      out.push(...sight.corners.subarray(9 * t + 3 * k, 9 * t + 3 * k + 3), ...sight.corners.subarray(9 * t + 3 * next, 9 * t + 3 * next + 3));
+      for (const from of [9 * t + 3 * k, 9 * t + 3 * next])
+        out.push(sight.corners[from], sight.corners[from + 1], sight.corners[from + 2]);
     }
   return new Float32Array(out);
 }
@@ -100,10 +113,11 @@ export class Overlay {
       if (whole(sight, t) && (!drawn || look.faces || look.colours[t] !== plainColour)) kept.push(t);
     const positions = new Float32Array(9 * kept.length), colours = new Float32Array(9 * kept.length);
     kept.forEach((t, i) => {
-      positions.set(sight.corners.subarray(9 * t, 9 * t + 9), 9 * i);
+      for (let k = 0; k < 9; ++k) positions[9 * i + k] = sight.corners[9 * t + k];
+      if (!drawn) return;
       // A form is seen by its shade: as if it were lit from the right above.
-      const n = body.normals.subarray(3 * t, 3 * t + 3);
-      const shade = 0.72 + 0.28 * (0.48 * n[0] - 0.36 * n[1] + 0.8 * n[2]);
+      const n = body.normals;
+      const shade = 0.72 + 0.28 * (0.48 * n[3 * t] - 0.36 * n[3 * t + 1] + 0.8 * n[3 * t + 2]);
       for (let k = 0; k < 9; ++k) colours[9 * i + k] = ((look.colours[t][k % 3] / 255) ** 2.2) * shade;
     });
     const geometry = new BufferGeometry();
