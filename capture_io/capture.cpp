@@ -24,13 +24,6 @@ YamlNode load_capture(const fs::path& file) {
   return load_yaml(file, file.string());
 }
 
-void check_version(const YamlSection& top) {
-  const YamlNode& version = top.need("hookeye", "a capture begins with `hookeye: 1`");
-  if (version.kind != YamlNode::Kind::scalar || version.text != "1")
-    throw InputError(version.place, fmt::format("the capture has format {}", describe(version)),
-                     "this program reads format 1: write `hookeye: 1`");
-}
-
 /// What can only be checked once all sections are known.
 void check_references(const Capture& capture) {
   const BodySpec& body = capture.body;
@@ -87,6 +80,26 @@ void check_file_names(const Capture& capture) {
 
 }  // namespace
 
+void check_version(const YamlSection& top) {
+  const YamlNode& version = top.need("hookeye", "a capture begins with `hookeye: 1`");
+  if (version.kind != YamlNode::Kind::scalar || version.text != "1")
+    throw InputError(version.place, fmt::format("the capture has format {}", describe(version)),
+                     "this program reads format 1: write `hookeye: 1`");
+}
+
+void check_together(const Capture& capture) {
+  check_references(capture);
+  check_file_names(capture);
+}
+
+std::string read_title(const YamlNode& node) { return one_line(read_string(node, "title")); }
+
+const std::vector<std::string>& capture_keys() {
+  static const std::vector<std::string> keys{"hookeye", "title", "units",  "body",    "model",
+                                             "cameras", "light", "photos", "regions", "examples"};
+  return keys;
+}
+
 std::string Units::stress() const {
   if (length == "mm" && force == "N") return "MPa";
   if (length == "m" && force == "N") return "Pa";
@@ -127,16 +140,13 @@ Capture read_capture(const fs::path& path) {
   std::error_code error;
   const fs::path given = fs::is_directory(path, error) ? path / "capture.yaml" : path;
   const YamlNode root = load_capture(given);
-  const YamlSection top(root, "the capture",
-                        {"hookeye", "title", "units", "body", "model", "cameras", "light", "photos",
-                         "regions", "examples"});
+  const YamlSection top(root, "the capture", capture_keys());
   check_version(top);
   Capture capture;
   capture.file = fs::canonical(given);
   capture.folder = capture.file.parent_path();
   const CaptureFolder folder{given.parent_path(), capture.folder};
-  if (const YamlNode* title = top.find("title"))
-    capture.title = one_line(read_string(*title, "title"));
+  if (const YamlNode* title = top.find("title")) capture.title = read_title(*title);
   capture.units = read_units(top.need("units", "write `units: {length: mm, force: N}`"));
   capture.body = read_body(top.need("body", "write `body: {surface: rest.obj}`"), folder);
   read_model(
@@ -153,8 +163,7 @@ Capture read_capture(const fs::path& path) {
   capture.examples =
       read_examples(top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`"),
                     capture, defaults, folder);
-  check_references(capture);
-  check_file_names(capture);
+  check_together(capture);
   return capture;
 }
 

@@ -14,6 +14,14 @@ namespace hookeye {
 /// In the order of MeasuredSpec::Kind.
 std::span<const MeasuredKind> measured_kinds();
 
+/// Keys of the top level.
+const std::vector<std::string>& capture_keys();
+void check_version(const YamlSection& top);
+/// On one line.
+std::string read_title(const YamlNode& node);
+/// What can only be checked once all sections are known.
+void check_together(const Capture& capture);
+
 Units read_units(const YamlNode& node);
 BodySpec read_body(const YamlNode& node, const CaptureFolder& folder);
 /// Fills materials, fit, fit_places and gravity.

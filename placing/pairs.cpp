@@ -340,7 +340,7 @@ PairFit place_by_pairs(const std::vector<PickedPair>& pairs, const Capture& capt
   warn_of_others(body, &placing);
   warn_of_points_off(pairs, body, &placing);
   if (freedom <= 2.0)
-    placing.warnings.push_back(
+    placing.warnings.emplace_back(
         "so few pairs hardly check each other: a wrong one would not show; six and more do");
   for (size_t i = 0; i < pairs.size(); ++i) {
     out.off_px.push_back(solver.off(i, placing.motion));

@@ -9,7 +9,7 @@ namespace {
 
 struct StudioArguments {
   std::string run;
-  StudioOptions options;
+  ServerOptions options;
 };
 
 void run_studio(const StudioArguments& arguments, Session& session) {

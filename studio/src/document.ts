@@ -230,6 +230,8 @@ export interface PageDocument {
   version: string;
   run: string;
   live?: boolean;
+  /** The page of `hookeye edit`: a capture, and no run. */
+  edit?: boolean;
   answer: Answer;
   timeline: {
     verdict?: string;

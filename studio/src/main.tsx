@@ -5,13 +5,15 @@ import {Add, JobLine} from './add/add';
 import {follow} from './add/job';
 import {Answer} from './answer/answer';
 import {Compare} from './compare/compare';
+import {Editor} from './edit/editor';
 import {Facts} from './facts/facts';
 import {Fails} from './fails/fails';
 import {Falls} from './falls/falls';
 import {Missing} from './missing/missing';
 import {setLive} from './parts';
-import {chosenPhoto, help, otherStep, run, showStep, stepIndex, theme, verb, verbs, type Verb} from './state';
+import {chosenPhoto, help, otherStep, run, showStep, stepIndex, verb, verbs, type Verb} from './state';
 import {Tabs} from './tabs';
+import {followSystem, turnTheme} from './theme';
 import {Said} from './widgets';
 import './style.css';
 
@@ -78,13 +80,6 @@ function Help() {
   );
 }
 
-const system = matchMedia('(prefers-color-scheme: dark)');
-function setTheme(wanted: 'light' | 'dark'): void {
-  document.documentElement.dataset.theme = wanted;
-  theme.value = wanted;
-}
-const turnTheme = (): void => setTheme(theme.value === 'dark' ? 'light' : 'dark');
-
 function keys(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   const typed = target instanceof HTMLInputElement ? !/checkbox|radio/.test(target.type) : /SELECT|TEXTAREA/.test(target.tagName);
@@ -134,9 +129,8 @@ function nextPhoto(by: number): void {
   if (count) chosenPhoto.value = (chosenPhoto.value + by + count) % count;
 }
 
-setTheme(system.matches ? 'dark' : 'light');
-system.addEventListener('change', () => setTheme(system.matches ? 'dark' : 'light'));
+followSystem();
 setLive(run.value.live === true);
 document.title = `${run.value.capture?.title ?? 'Run'} – Hookeye`;
-render(<Page />, document.getElementById('page')!);
+render(run.value.edit ? <Editor /> : <Page />, document.getElementById('page')!);
 if (run.value.live) follow();

@@ -109,7 +109,7 @@ TEST(StorePlaced, WritesTheFileWholeOrNotAtAll) {
   const Vector3d as_told = placed.told().R.transpose() * (in_cameras - placed.told().t);
   EXPECT_LT((read.cameras[0].project(X) - told.project(as_told)).norm(), 1e-5);
   for (const auto& entry : std::filesystem::directory_iterator(placed.folder().path()))
-    EXPECT_FALSE(entry.path().filename().string().starts_with(".placed")) << entry.path();
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".tried")) << entry.path();
 }
 
 }  // namespace
