@@ -59,9 +59,12 @@ std::string counts_list(const Rows& rows) {
   const auto add = [&](const char* kind, int count, const std::string& words) {
     if (count) out += fmt::format("<li class=\"{}\"><b>{}</b>{}</li>", kind, count, words);
   };
-  for (const auto& [verdict, count] : verdicts) add(class_of(verdict), count, html_text(verdict));
+  for (const char* known : {"explained", "ambiguous", "unexplained"})
+    add(class_of(known), verdicts[known], known);
+  for (const auto& [verdict, count] : verdicts)
+    if (*class_of(verdict) == 0) add("", count, html_text(verdict));
   if (verdicts.empty()) add("", states["done"], "done");
-  add("failed", states["failed"], "failed");
+  add("failed", states["failed"], "<a class=\"failed\" href=\"#failed\">failed</a>");
   add("", states["leased"], "at work");
   add("", states["todo"], "to do");
   return out + fmt::format("<li><b>{}</b>of processors</li></ul>", times_text(seconds));
@@ -115,15 +118,18 @@ std::string effects_section(const Rows& rows) {
   });
   std::string out = "<section><h2>What the given models lack</h2><div class=\"effects\">";
   for (const auto& [name, one] : sorted) out += effect_row(name, "", one, judged);
-  if (nothing.alone) out += effect_row("nothing is missing", "none", nothing, judged);
+  if (nothing.alone) out += effect_row("nothing missing", "none", nothing, judged);
   if (untold.alone) out += effect_row("not explained", "untold", untold, judged);
   return out +
          "</div><p class=\"soft\">Click a line for its captures. Pale: the photos cannot tell "
          "it from another effect.</p></section>";
 }
 
-/// Points of every parameter, by name and unit, and of the misfit.
-using Strips = std::map<std::pair<std::string, std::string>, std::vector<StripPoint>>;
+/// Points of a parameter in all captures.
+struct ParameterStrip {
+  std::string name, unit, words;
+  std::vector<StripPoint> points;
+};
 
 StripPoint point_of(const json& row, double value, double low, double high) {
   return {value,
@@ -134,18 +140,21 @@ StripPoint point_of(const json& row, double value, double low, double high) {
           text_in(row, "verdict") != "unexplained" && text_in(row, "verdict") != "ambiguous"};
 }
 
-Strips parameter_strips(const Rows& rows, std::map<std::string, std::string>& words) {
-  Strips out;
+/// In the order in which they are met: the material's before those of effects.
+std::vector<ParameterStrip> parameter_strips(const Rows& rows) {
+  std::vector<ParameterStrip> out;
+  std::map<std::pair<std::string, std::string>, size_t> places;
   for (const json& row : rows) {
     if (!is_done(row)) continue;
     for (const json& one : row.at("parameters")) {
       if (!one.at("value").is_number()) continue;
-      const double value = one.at("value"),
-                   low = one.at("low").is_number() ? number_at(one, "low") : value,
-                   high = one.at("high").is_number() ? number_at(one, "high") : value;
-      const std::string name = one.at("name");
-      words[name] = text_in(one, "long_name");
-      out[{name, text_in(one, "unit")}].push_back(point_of(row, value, low, high));
+      const std::string name = one.at("name"), unit = text_in(one, "unit");
+      const auto [place, first] = places.try_emplace({name, unit}, out.size());
+      if (first) out.push_back({name, unit, text_in(one, "long_name"), {}});
+      const double value = one.at("value");
+      const bool open = !one.at("low").is_number() || !one.at("high").is_number();
+      out[place->second].points.push_back(point_of(row, value, open ? value : number_at(one, "low"),
+                                                   open ? value : number_at(one, "high")));
     }
   }
   return out;
@@ -172,11 +181,10 @@ std::string plot(const std::string& name, const std::string& unit, const std::st
 }
 
 std::string plots_section(const Rows& rows) {
-  std::map<std::string, std::string> words;
   std::vector<std::string> outliers;
   std::string plots;
-  for (const auto& [key, points] : parameter_strips(rows, words))
-    plots += plot(key.first, key.second, words[key.first], points, outliers);
+  for (const ParameterStrip& one : parameter_strips(rows))
+    plots += plot(one.name, one.unit, one.words, one.points, outliers);
   std::vector<StripPoint> misfits;
   for (const json& row : rows)
     if (const double times = over_floor(row); is_done(row) && times > 0.0)
@@ -203,7 +211,8 @@ std::string failures_section(const Rows& rows) {
           linked(row), row.at("exit").dump(), html_text(text_in(row, "error")),
           html_text(text_in(row, "log")));
   if (lines.empty()) return {};
-  return "<section><h2 class=\"failed\">Failed</h2><div class=\"wide\" tabindex=\"0\"><table><tr>"
+  return "<section id=\"failed\"><h2 class=\"failed\">Failed</h2><div class=\"wide\" "
+         "tabindex=\"0\"><table><tr>"
          "<th>capture</th><th class=\"value\">exit status</th><th>what it said</th><th></th></tr>" +
          lines + "</table></div></section>";
 }
@@ -278,7 +287,7 @@ std::string fleet_page(const Rows& rows, const BatchOrder& order) {
              "<header><h1>Batch of {} captures</h1><span class=\"soft\">each by "
              "<code>hookeye {}</code></span></header>",
              rows.size(), html_text(command)) +
-         counts_list(rows) + failures_section(rows) + effects_section(rows) + plots_section(rows) +
+         counts_list(rows) + effects_section(rows) + plots_section(rows) + failures_section(rows) +
          all_section(rows) +
          fmt::format(
              "<footer>hookeye {}. The same rows: <a href=\"index.csv\">index.csv</a>, "
