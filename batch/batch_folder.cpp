@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <system_error>
 
 #include "core/input_error.h"
@@ -177,8 +178,9 @@ BatchTask BatchFolder::task(const std::string& key) const {
 
 std::vector<BatchTask> BatchFolder::tasks() const {
   std::vector<BatchTask> out;
-  for (const std::string& key : names_in("tasks"))
-    if (!is_past(key)) out.push_back(task(key));
+  const std::set<std::string> gone_by = past();
+  for (const std::string& key : keys())
+    if (!gone_by.count(key)) out.push_back(task(key));
   std::sort(out.begin(), out.end(), [](const BatchTask& a, const BatchTask& b) {
     return std::tie(a.label, a.key) < std::tie(b.label, b.key);
   });
@@ -194,6 +196,11 @@ void BatchFolder::set_past(const std::string& key, bool past) const {
 }
 
 bool BatchFolder::is_past(const std::string& key) const { return fs::exists(path_ / "past" / key); }
+
+std::set<std::string> BatchFolder::past() const {
+  const std::vector<std::string> names = names_in("past");
+  return {names.begin(), names.end()};
+}
 
 std::vector<std::string> BatchFolder::names_in(const std::string& folder) const {
   std::vector<std::string> out;
@@ -263,6 +270,24 @@ fs::path BatchFolder::log_of(const BatchTask& task, const std::string& extension
 
 fs::path BatchFolder::report_of(const BatchTask& task) const {
   return path_ / "reports" / (task.file_name() + ".html");
+}
+
+BatchCounts count(const BatchFolder& folder, const std::vector<std::string>& keys) {
+  const std::set<std::string> wanted(keys.begin(), keys.end()), past = folder.past();
+  // A ticket that moves on meanwhile is seen where it comes to; one of a moment ago counts once.
+  std::map<std::string, TicketPlace> places;
+  for (const TicketPlace place :
+       {TicketPlace::todo, TicketPlace::leased, TicketPlace::failed, TicketPlace::done})
+    for (const Ticket& ticket : folder.tickets(place))
+      if ((wanted.empty() || wanted.count(ticket.key)) && !past.count(ticket.key))
+        places[ticket.key] = place;
+  BatchCounts out;
+  for (const auto& [key, place] : places)
+    ++(place == TicketPlace::todo     ? out.todo
+       : place == TicketPlace::leased ? out.running
+       : place == TicketPlace::done   ? out.done
+                                      : out.failed);
+  return out;
 }
 
 }  // namespace hookeye

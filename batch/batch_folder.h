@@ -12,6 +12,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,7 @@ class BatchFolder {
   /// Its capture has changed, or is as it was again.
   void set_past(const std::string& key, bool past) const;
   bool is_past(const std::string& key) const;
+  std::set<std::string> past() const;
 
   std::vector<Ticket> tickets(TicketPlace place) const;
   /// False: somebody was faster. Exactly one of those who try gets it.
@@ -83,5 +85,13 @@ class BatchFolder {
   std::filesystem::path path_;
   BatchOrder order_;
 };
+
+struct BatchCounts {
+  int todo = 0, running = 0, done = 0, failed = 0;  ///< running: by all workers
+  int all() const { return todo + running + done + failed; }
+};
+
+/// Of the tasks that are told; of all where there are none. Those that are past do not count.
+BatchCounts count(const BatchFolder& folder, const std::vector<std::string>& keys);
 
 }  // namespace hookeye

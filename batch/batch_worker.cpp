@@ -1,21 +1,17 @@
 #include "batch/batch_worker.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <ctime>
 #include <deque>
 #include <map>
 
 #include "batch/child.h"
 #include "batch/finding.h"
+#include "batch/obstacles.h"
 #include "core/input_error.h"
 #include "core/interrupted.h"
 
@@ -26,32 +22,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kLeastRoom = 32e6;  // [bytes] on the disk, below which nothing more is begun
-constexpr double kGrace = 20.0;      // [s] from the request to stop until a process is killed
-constexpr double kLookEvery = 1.0;   // [s] how often the folder is looked through
-
-/// Which file the program is: another one under its name is another program.
-struct FileMark {
-  unsigned long long device = 0, inode = 0;
-  long long seconds = 0, nanoseconds = 0, size = 0;
-  bool operator==(const FileMark&) const = default;
-};
-FileMark mark_of(const fs::path& file) {
-  struct stat found {};
-  if (::stat(file.c_str(), &found) != 0) return {};
-  return {found.st_dev, found.st_ino, found.st_mtim.tv_sec, found.st_mtim.tv_nsec, found.st_size};
-}
-
-bool out_of_room(const fs::path& folder) {
-  struct statvfs found {};
-  if (::statvfs(folder.c_str(), &found) != 0) return false;
-  return static_cast<double>(found.f_bavail) * static_cast<double>(found.f_frsize) < kLeastRoom;
-}
-
-bool tells_a_full_disk(const std::string& line) {
-  return line.find(std::strerror(ENOSPC)) != std::string::npos ||
-         line.find(std::strerror(EDQUOT)) != std::string::npos;
-}
+constexpr double kGrace = 20.0;     // [s] from the request to stop until a process is killed
+constexpr double kLookEvery = 1.0;  // [s] how often the folder is looked through
 
 /// "2026-11-29T21:30:05Z": for people alone.
 std::string time_text() {
@@ -133,6 +105,8 @@ class BatchWorker {
   /// Starts what there is room for.
   void fill() {
     while (in_hand_.size() < static_cast<size_t>(options_.jobs)) {
+      if (waiting_.empty()) look();
+      if (waiting_.empty()) return;
       close_if_it_must();
       if (!closed_.empty()) return;
       const std::optional<Ticket> ticket = claim();
@@ -142,7 +116,6 @@ class BatchWorker {
   }
 
   std::optional<Ticket> claim() {
-    if (waiting_.empty()) look();
     while (!waiting_.empty()) {
       const Ticket ticket = waiting_.front();
       waiting_.pop_front();
@@ -162,8 +135,9 @@ class BatchWorker {
     looked_ = now;
     folder_.finish_enrolling([&](const std::string& worker) { return watch_.gone(worker); });
     take_up_abandoned();
+    const std::set<std::string> past = folder_.past();
     for (const Ticket& ticket : folder_.tickets(TicketPlace::todo))
-      if (is_wanted(ticket.key) && !folder_.is_past(ticket.key)) waiting_.push_back(ticket);
+      if (is_wanted(ticket.key) && !past.count(ticket.key)) waiting_.push_back(ticket);
     put_in_order();
   }
 
@@ -368,8 +342,9 @@ class BatchWorker {
   }
   int expected() const {
     const std::vector<std::string> keys = options_.keys.empty() ? folder_.keys() : options_.keys;
+    const std::set<std::string> past = folder_.past();
     return static_cast<int>(std::count_if(
-        keys.begin(), keys.end(), [&](const std::string& key) { return !folder_.is_past(key); }));
+        keys.begin(), keys.end(), [&](const std::string& key) { return !past.count(key); }));
   }
 
   void tell_progress() {
@@ -416,24 +391,6 @@ class BatchWorker {
 
 void work_on(const BatchFolder& folder, const WorkOptions& options) {
   BatchWorker(folder, options).run();
-}
-
-BatchCounts count(const BatchFolder& folder, const std::vector<std::string>& keys) {
-  const std::set<std::string> wanted(keys.begin(), keys.end());
-  // A ticket that moves on meanwhile is seen where it comes to; one of a moment ago counts once.
-  std::map<std::string, TicketPlace> places;
-  for (const TicketPlace place :
-       {TicketPlace::todo, TicketPlace::leased, TicketPlace::failed, TicketPlace::done})
-    for (const Ticket& ticket : folder.tickets(place))
-      if ((wanted.empty() || wanted.count(ticket.key)) && !folder.is_past(ticket.key))
-        places[ticket.key] = place;
-  BatchCounts out;
-  for (const auto& [key, place] : places)
-    ++(place == TicketPlace::todo     ? out.todo
-       : place == TicketPlace::leased ? out.running
-       : place == TicketPlace::done   ? out.done
-                                      : out.failed);
-  return out;
 }
 
 }  // namespace hookeye

@@ -13,11 +13,6 @@
 
 namespace hookeye {
 
-struct BatchCounts {
-  int todo = 0, running = 0, done = 0, failed = 0;  ///< running: by all workers
-  int all() const { return todo + running + done + failed; }
-};
-
 struct WorkOptions {
   std::filesystem::path program;  ///< that is started for every capture
   int jobs = 1;                   ///< processes at once
@@ -41,8 +36,5 @@ inline constexpr int kMostTries = 3;
 /// processes have stopped and their captures are free again; InputError where the disk is full, or
 /// the program was replaced meanwhile, with what is running ended in order.
 void work_on(const BatchFolder& folder, const WorkOptions& options);
-
-/// Of the tasks that are told; of all where there are none. Those that are past do not count.
-BatchCounts count(const BatchFolder& folder, const std::vector<std::string>& keys);
 
 }  // namespace hookeye

@@ -29,10 +29,12 @@ std::string linked(const json& row) {
   return link.empty() ? label : fmt::format("<a href=\"{}\">{}</a>", html_text(link), label);
 }
 
-/// Misfit of the newest step in multiples of the noise floor; 0: not known.
+/// Misfit of the newest step in multiples of the noise floor, on fitted or on held-out photos,
+/// where it is larger; 0: not known.
 double over_floor(const json& row) {
   const double floor = number_at(row, "floor");
-  return floor > 0.0 ? number_at(row, "chi_fit") / floor : 0.0;
+  return floor > 0.0 ? std::max(number_at(row, "chi_fit"), number_at(row, "chi_validate")) / floor
+                     : 0.0;
 }
 
 const char* class_of(const std::string& verdict) {
@@ -175,9 +177,9 @@ std::string plot(const std::string& name, const std::string& unit, const std::st
         html_text(name), one.value, html_text(unit), middle));
   }
   return fmt::format(
-      "<div><h3>{} <small>{}</small></h3><p>{}{} captures, median {:.5g} {}</p>{}</div>",
+      "<div><h3>{} <small>{}</small></h3><p>{}{} capture{}, median {:.5g} {}</p>{}</div>",
       html_text(name), html_text(unit), words.empty() ? "" : html_text(words) + "; ", points.size(),
-      middle, html_text(unit), strip_plot(points, unit));
+      points.size() == 1 ? "" : "s", middle, html_text(unit), strip_plot(points, unit));
 }
 
 std::string plots_section(const Rows& rows) {
@@ -190,8 +192,9 @@ std::string plots_section(const Rows& rows) {
     if (const double times = over_floor(row); is_done(row) && times > 0.0)
       misfits.push_back(point_of(row, times, times, times));
   if (!misfits.empty())
-    plots += plot("misfit", "", "normalised residual over the noise floor, 1 is noise", misfits,
-                  outliers);
+    plots +=
+        plot("misfit", "", "the larger of fitted and held-out, over the noise floor; 1 is noise",
+             misfits, outliers);
   if (plots.empty()) return {};
   std::string far;
   for (const std::string& one : outliers) far += "<li>" + one + "</li>";

@@ -203,12 +203,14 @@ void run_batch(const BatchArguments& arguments, const CLI::App& app, Session& se
 }  // namespace
 
 void add_batch(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "batch", "A verb over many captures, resumable; options of the verb stand behind --");
+  CLI::App* command =
+      app.add_subcommand("batch", "A verb over many captures, a process each; resumes a batch");
+  command->footer("\nOptions of the verb stand at the end: -- --without creep" +
+                  command->get_footer());
   const auto arguments = std::make_shared<BatchArguments>();
-  CLI::Option* list = command->add_option(
-      "CAPTURES", arguments->list,
-      "Captures, folders above them, patterns in quotes, text lists, or tables (csv)");
+  CLI::Option* list =
+      command->add_option("CAPTURES", arguments->list,
+                          "Captures, folders above them, patterns in quotes, lists, tables (csv)");
   CLI::Option* out = command->add_option("-o,--out", arguments->out, "Folder of the batch");
   CLI::Option* resume =
       command->add_option("--resume", arguments->resume, "Go on with all that this folder holds");

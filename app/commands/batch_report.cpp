@@ -68,7 +68,8 @@ void report_batch(const BatchFolder& folder, const std::vector<json>& rows, Sess
                         {"running", states["leased"]},
                         {"todo", states["todo"]}};
   document["captures"] = rows;
-  std::string line = fmt::format("{} captures: {} done", rows.size(), states["done"]);
+  std::string line = fmt::format("{} capture{}: {} done", rows.size(), rows.size() == 1 ? "" : "s",
+                                 states["done"]);
   for (const auto& [state, words] : {std::pair<const char*, const char*>{"failed", "failed"},
                                      {"leased", "at work"},
                                      {"todo", "to do"}})
