@@ -14,6 +14,7 @@
 #include "app/invocation.h"
 #include "app/progress.h"
 #include "app/validators.h"
+#include "batch/child.h"
 #include "core/input_error.h"
 #include "core/memory_left.h"
 #include "core/scope.h"
@@ -103,7 +104,7 @@ int run(const CommandBody& body, Session& session) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       throw InputError({"standard output"}, "this cannot be written to",
                        "a file on a disk with room, or a pipe that is read to its end");
-    return kDone;
+    return session.status;
   } catch (const InputError& error) {
     return report_input(session, error);
   } catch (const Failed& failed) {
@@ -174,6 +175,7 @@ void add_common_options(CLI::App& command, Session& session) {
 
 int run_program(int argc, char** argv) {
   Session session;
+  session.handed_on = take_handed_on(argc, argv);
   CommandBody chosen;
   CLI::App app{
       "Finds the elastic model whose pictures match the photos of a soft object,\n"
@@ -209,6 +211,7 @@ int run_program(int argc, char** argv) {
 }  // namespace hookeye
 
 int main(int argc, char** argv) {
+  hookeye::end_with_starter();
   hookeye::watch_interrupts();
   hookeye::keep_freed_memory();
   hookeye::remember_invocation(argc, argv);

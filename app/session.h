@@ -26,6 +26,9 @@ struct Session {
   bool json = false;
   bool verbose = false;
   int threads = 0;  ///< 0: all cores
+  /// What stands behind `--` on the command line, for a command that hands it on.
+  std::vector<std::string> handed_on;
+  int status = 0;  ///< exit status of work that was done and in which something failed
   nlohmann::ordered_json document;
   std::vector<std::string> warnings;
 

@@ -2,14 +2,15 @@
 #   core <- capture_io <- meshing <- simulation, render <- estimation <- runs <- app
 #                 meshing <- importers <- proposal <- app      runs, importers <- python
 #   capture_io <- calibration <- app      estimation/model <- exporters <- app
-#   estimation/inspection <- placing <- app
+#   estimation/inspection <- placing <- app      runs <- batch <- app; of the layers below, batch stands
+#   on core, capture_io and runs alone
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
 # and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
 # that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
-set(layers core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs app python)
+set(layers core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch app python)
 set(below_core "")
 set(below_capture_io core)
 set(below_meshing core capture_io)
@@ -22,7 +23,8 @@ set(below_calibration core capture_io)
 set(below_placing core capture_io meshing render estimation)
 set(below_exporters core capture_io meshing simulation estimation)
 set(below_runs core capture_io meshing simulation render estimation)
-set(below_app core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs)
+set(below_batch core capture_io runs)
+set(below_app core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch)
 set(below_python core capture_io meshing simulation render estimation importers runs)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
@@ -38,7 +40,7 @@ set(below_synth images model evaluation effects fit)
 set(below_output images model evaluation effects fit diagnosis plan search)
 # First part of the header's path, as a regular expression.
 set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL pugixml zlib embree3 ceres httplib
-    boost xxhash)
+    boost xxhash sqlite3)
 set(layers_of_ceres estimation calibration placing)  # one .cpp in each; other libraries: in one of all
 
 set(faults "")

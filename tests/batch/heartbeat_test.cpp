@@ -1,0 +1,124 @@
+// Who is at work, and who has gone: by the process where it can be asked, by its count elsewhere.
+#include "batch/heartbeat.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <thread>
+
+#include "support/temporary_folder.h"
+
+namespace hookeye::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::string only_file(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (entry.path().filename().string()[0] != '.') return entry.path().filename();
+  return {};
+}
+
+/// Whether it counts as gone within `seconds`, asked again and again.
+bool gone_within(WorkerWatch& watch, const std::string& worker, double seconds) {
+  for (int i = 0; i < 20 * seconds; ++i) {
+    if (watch.gone(worker)) return true;
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  return watch.gone(worker);
+}
+
+class OtherWorker {
+ public:
+  explicit OtherWorker(const std::filesystem::path& folder) : process_(::fork()) {
+    if (process_ == 0) {
+      const Heartbeat beating(folder, {0.05, 0.5});
+      while (true) ::pause();
+    }
+    for (int i = 0; i < 100 && worker().empty(); ++i)
+      std::this_thread::sleep_for(milliseconds(20)), name_ = only_file(folder);
+  }
+  ~OtherWorker() {
+    if (process_ > 0) ::kill(process_, SIGKILL), ::waitpid(process_, nullptr, 0);
+  }
+  const std::string& worker() const { return name_; }
+  void send(int signal) const { ::kill(process_, signal); }
+
+ private:
+  pid_t process_;
+  std::string name_;
+};
+
+TEST(WorkersHere, AreGoneWithTheirProcessAlone) {
+  const TemporaryFolder folder;
+  const OtherWorker other(folder.path());
+  ASSERT_FALSE(other.worker().empty());
+  WorkerWatch watch(folder.path(), {0.05, 0.3});
+  other.send(SIGSTOP);  // it is silent, but there
+  EXPECT_FALSE(gone_within(watch, other.worker(), 1.5));
+  other.send(SIGCONT);
+  other.send(SIGKILL);  // stays as a zombie
+  EXPECT_FALSE(watch.gone(other.worker())) << "what it had started may still end";
+  EXPECT_TRUE(gone_within(watch, other.worker(), 3.0));
+  watch.forget(other.worker());
+  EXPECT_EQ(only_file(folder.path()), "");
+}
+
+/// As of another machine: its boot is another.
+class CountingElsewhere {
+ public:
+  CountingElsewhere(const std::filesystem::path& folder, const std::string& name)
+      : file_(folder / name) {
+    beat();
+  }
+  void beat() {
+    std::ofstream(file_) << ++count_ << "\nanother-boot pid:[1] " << ::getpid() << " 1\n";
+  }
+
+ private:
+  std::filesystem::path file_;
+  int count_ = 0;
+};
+
+TEST(WorkersElsewhere, AreGoneWhenTheyCountNoMore) {
+  const TemporaryFolder folder;
+  CountingElsewhere other(folder.path(), "other");
+  WorkerWatch watch(folder.path(), {0.05, 0.4});
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_FALSE(watch.gone("other"));
+    std::this_thread::sleep_for(milliseconds(80));
+    other.beat();
+  }
+  EXPECT_FALSE(watch.gone("other"));
+  EXPECT_TRUE(gone_within(watch, "other", 2.0));
+  other.beat();  // it was out of sight, and is back
+  EXPECT_FALSE(watch.gone("other"));
+  WorkerWatch later(folder.path(), {0.05, 0.4});  // whoever comes anew waits by his own clock
+  EXPECT_FALSE(later.gone("other"));
+  EXPECT_FALSE(later.gone("nobody"));
+  EXPECT_TRUE(gone_within(later, "nobody", 2.0));
+}
+
+TEST(Heartbeat, CountsAndLeavesNothing) {
+  const TemporaryFolder folder;
+  const auto text = [&](const std::string& name) {
+    std::ifstream stream(folder / name);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  {
+    const Heartbeat one(folder.path(), {0.05, 0.5}), two(folder.path(), {0.05, 0.5});
+    EXPECT_NE(one.worker(), two.worker());
+    const std::string before = text(one.worker());
+    std::this_thread::sleep_for(milliseconds(300));
+    const std::string after = text(one.worker());
+    EXPECT_NE(before, after);
+    EXPECT_EQ(before.size(), after.size());
+  }
+  EXPECT_EQ(only_file(folder.path()), "");
+}
+
+}  // namespace
+}  // namespace hookeye::test

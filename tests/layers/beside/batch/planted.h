@@ -1,0 +1,1 @@
+#include "estimation/fit/fit.h"
