@@ -283,7 +283,7 @@ Body make(const Capture& capture, double edge_factor, int order, const RenderSur
     body.said = surface->said;
   }
   body.mesh = make_mesh(spec, surface.get(), edge_factor, order, body.said);
-  if (surface && seen) {
+  if (seen) {
     body.surface = *seen;
     place_on(body.mesh, body.surface);
     body.surface.W = weights_of(body.mesh, body.surface.points);

@@ -35,8 +35,8 @@ Body make_body(const Capture& capture);
 
 /// Another mesh of the same body: `edge_factor` scales the target edge, `order` 0: as told. What is
 /// photographed stays the surface of `told`, riding on the new tetrahedra: smooth normals would
-/// change with its vertices, and a mesh would be blamed for its shading. (Without a surface file it
-/// is the boundary of the new mesh.)
+/// change with its vertices, and a mesh would be blamed for its shading. (Without a surface file
+/// that is the boundary of the mesh of `told`.)
 Body remesh(const Capture& capture, const Body& told, double edge_factor, int order = 0);
 
 /// Nearest material points of the mesh's boundary, for many queries. Quadratic faces are taken as

@@ -235,7 +235,8 @@ TEST(RenderSurfaces, CarryAffineMotionExactly) {
   const Vector3d b(3, -2, 1);
   for (const Capture& capture : {box.capture, volume_only}) {
     for (const int order : {1, 2}) {
-      const Body body = remesh(capture, make_body(capture), 1.0, order);
+      const Body told = make_body(capture), body = remesh(capture, told, 1.0, order);
+      EXPECT_EQ(body.surface.mesh.X, told.surface.mesh.X) << "what is photographed stays";
       const Matrix3Xd x = (A * body.mesh.X).colwise() + b;
       const VectorXd q = Eigen::Map<const VectorXd>(x.data(), x.size());
       const Matrix3Xd expected = (A * body.surface.mesh.X).colwise() + b;
