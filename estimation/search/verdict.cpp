@@ -204,6 +204,31 @@ std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
       most->first, std::sqrt(most->second / floor.per_px2));
 }
 
+namespace {
+
+/// "; ... ended at ...": of numbers that went to the end of what is tried. What a bound gave is no
+/// measurement. Not where the null lies there: a spring may be rigid.
+std::string at_their_bounds(const Ingredient& ingredient, const VectorXd& values) {
+  std::string out;
+  const auto parameters = ingredient.parameters();
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const Parameter& one = parameters[i];
+    const double value = values[static_cast<Eigen::Index>(i)];
+    for (const bool high : {false, true}) {
+      const double bound = high ? one.high : one.low;
+      const double near = 1e-6 * one.typical + 1e-9 * std::abs(bound);
+      if (!std::isfinite(bound) || std::abs(value - bound) > near || bound == one.value) continue;
+      out += fmt::format(
+          "; the {} ended at the {} that is tried, {:g}{}{}: how {} it is, is not known",
+          one.long_name, high ? "largest" : "smallest", bound, one.unit.empty() ? "" : " ",
+          one.unit, high ? "large" : "small");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<std::string> effects_in_words(const Fitted& fitted) {
   std::vector<std::string> out;
   ModelForm before = fitted.form;
@@ -212,9 +237,10 @@ std::vector<std::string> effects_in_words(const Fitted& fitted) {
     const auto size = static_cast<Eigen::Index>(ingredient->parameters().size());
     const Eigen::Index at = before.size();
     if (const Effect* effect = find_effect(ingredient->name()))
-      out.push_back(fmt::format("{}: {}", effect->name(),
+      out.push_back(fmt::format("{}: {}{}", effect->name(),
                                 effect->sentence(before.realise(fitted.p.head(at)), *ingredient,
-                                                 fitted.p.segment(at, size))));
+                                                 fitted.p.segment(at, size)),
+                                at_their_bounds(*ingredient, fitted.p.segment(at, size))));
     before.ingredients.push_back(ingredient);
   }
   return out;

@@ -6,6 +6,7 @@
 
 #include "estimation/effects/catalogue.h"
 #include "estimation/effects/toolbox.h"
+#include "estimation/effects_scene.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/contest.h"
 #include "tests/estimation/small_capture.h"
@@ -46,6 +47,24 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
   EXPECT_EQ(judge(fitted, diagnosis, {}, &why), Verdict::explained);
   EXPECT_THAT(why, testing::EndsWith("over 1.1: what the mesh or the renderer may err by, or "
                                      "something small that is not named"));
+}
+
+/// What a bound gave is no measurement.
+TEST(Verdict, AValueAtTheEndOfWhatIsTriedIsToldAsThat) {
+  const auto ball = find_effect("stiffness_field")->candidate(test::base_model(), "free ball");
+  ASSERT_NE(ball, nullptr);
+  Fitted fitted;
+  fitted.form = test::extended(test::base(), ball);
+  VectorXd values = test::some_values(*ball);
+  const auto said = [&](double amplitude) {
+    values[0] = amplitude;
+    fitted.p = test::with_values(fitted.form, values);
+    return effects_in_words(fitted).at(0);
+  };
+  EXPECT_THAT(said(3.9), testing::Not(testing::HasSubstr("ended at")));
+  EXPECT_THAT(said(4.0),
+              testing::HasSubstr("; the log of the stiffness factor ended at the largest "
+                                 "that is tried, 4: how large it is, is not known"));
 }
 
 /// A small effect near the floor: what stays and has no name must not be more than what it took.
