@@ -82,7 +82,8 @@ ElementState element_state(const TetMesh& mesh, const EnergyModel& energy, const
   for (int e = 0; e < m; ++e) {
     const Matrix3d F = all.col(e).reshaped(3, 3);
     const double J = F.determinant();
-    const Matrix3d sigma = local.P.col(e).reshaped(3, 3) * F.transpose() / J;
+    const Matrix3d P = local.P.col(e).reshaped(3, 3);
+    const Matrix3d sigma = P * F.transpose() / J;
     const Matrix3d deviator = sigma - sigma.trace() / 3.0 * Matrix3d::Identity();
     state.green_strain.col(e) = six(0.5 * (F.transpose() * F - Matrix3d::Identity()));
     state.cauchy_stress.col(e) = six(sigma);
