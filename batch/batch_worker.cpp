@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
-
 constexpr double kGrace = 20.0;     // [s] from the request to stop until a process is killed
 constexpr double kLookEvery = 1.0;  // [s] how often the folder is looked through
 
@@ -119,8 +118,7 @@ class BatchWorker {
     while (!waiting_.empty()) {
       const Ticket ticket = waiting_.front();
       waiting_.pop_front();
-      Ticket own = ticket;
-      own.worker = heartbeat_.worker();
+      const Ticket own{ticket.key, ticket.tries, heartbeat_.worker()};
       if (folder_.move(ticket, TicketPlace::todo, own, TicketPlace::leased)) return own;
     }
     return {};
@@ -159,9 +157,13 @@ class BatchWorker {
   /// A lease is taken over by one rename: of those who see that its worker is gone one gets it.
   void take_up_abandoned() {
     std::set<std::string> gone;
+    in_doubt_ = 0;
     for (const Ticket& ticket : folder_.tickets(TicketPlace::leased)) {
       if (ticket.worker == heartbeat_.worker()) continue;
-      if (!gone.count(ticket.worker) && !watch_.gone(ticket.worker)) continue;
+      if (!gone.count(ticket.worker) && !watch_.gone(ticket.worker)) {
+        in_doubt_ += !watch_.known_alive(ticket.worker);
+        continue;
+      }
       gone.insert(ticket.worker);
       folder_.move(ticket, TicketPlace::leased, {ticket.key, ticket.tries, ""}, TicketPlace::todo);
     }
@@ -288,9 +290,9 @@ class BatchWorker {
 
   /// A run stands without its page, too.
   void settle_report(InHand ended, const ChildEnd& end) {
-    const fs::path log = folder_.log_of(ended.task, ".report.txt");
     if (end.status != 0 && !stopping())
-      warn(fmt::format("{}: no page of its run: {}", ended.task.label, error_line("", log)));
+      warn(fmt::format("{}: no page of its run: {}", ended.task.label,
+                       error_line("", folder_.log_of(ended.task, ".report.txt"))));
     finish(ended.ticket, ended.task, std::move(ended.result));
   }
 
@@ -337,7 +339,7 @@ class BatchWorker {
   bool nothing_left() {
     if (!waiting_.empty()) return false;
     const BatchCounts now = count(folder_, options_.keys);
-    if (!options_.wait_for_others) return now.todo == 0;
+    if (!options_.wait_for_others) return now.todo == 0 && in_doubt_ == 0;
     return now.done + now.failed >= expected();
   }
   int expected() const {
@@ -383,6 +385,7 @@ class BatchWorker {
   std::set<std::string> wanted_;
   std::vector<InHand> in_hand_;
   std::deque<Ticket> waiting_;
+  int in_doubt_ = 0;  ///< leases of workers of whom it is not known whether they are gone
   Clock::time_point looked_, checked_, told_;
   std::string closed_, closed_remedy_;
 };

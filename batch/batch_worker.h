@@ -22,6 +22,7 @@ struct WorkOptions {
   /// Keys of what is to be done, in this order; empty: all that the folder holds.
   std::vector<std::string> keys;
   /// Stays until others have ended what they have in hand, and takes it up where they are gone.
+  /// Else it leaves when nothing waits and all others are known to be at work.
   bool wait_for_others = true;
   BeatTimes times;
   const std::atomic<bool>* cancel = nullptr;

@@ -124,7 +124,7 @@ bool WorkerWatch::gone(const std::string& worker) {
   read << std::ifstream(folder_ / worker).rdbuf();
   const std::string text = read.str();
   const auto now = Clock::now();
-  const auto [place, first] = seen_.try_emplace(worker, Seen{text, now, false});
+  const auto [place, first] = seen_.try_emplace(worker, Seen{text, now, false, false});
   Seen& seen = place->second;
   const auto waited = [&] { return std::chrono::duration<double>(now - seen.since).count(); };
   std::istringstream lines(text);
@@ -133,11 +133,17 @@ bool WorkerWatch::gone(const std::string& worker) {
   const bool here = boot + " " + names == process_space() && boot != "-" && names != "-";
   if (here && !its_begin.empty()) {
     const bool ended = began(std::atol(process.c_str())) != its_begin;
-    if (ended != seen.ended) seen = {text, now, ended};
+    if (ended != seen.ended) seen = {text, now, ended, false};
+    seen.alive = !ended;
     return ended && waited() >= kEndedFor;
   }
-  if (text != seen.text) seen = {text, now, false};
+  if (text != seen.text) seen = {text, now, false, true};
   return waited() >= times_.silent;
+}
+
+bool WorkerWatch::known_alive(const std::string& worker) const {
+  const auto found = seen_.find(worker);
+  return found != seen_.end() && found->second.alive;
 }
 
 void WorkerWatch::forget(const std::string& worker) {

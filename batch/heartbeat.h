@@ -41,6 +41,9 @@ class WorkerWatch {
   /// On this machine: its process is there no more, at two questions a second apart, so that what
   /// it had started has ended too. Elsewhere: it has not counted for `silent`.
   bool gone(const std::string& worker);
+  /// When it was asked last, it was known to be there: its process is, or it has counted since it
+  /// was seen first.
+  bool known_alive(const std::string& worker) const;
   /// Removes the file of one that has gone.
   void forget(const std::string& worker);
 
@@ -49,7 +52,8 @@ class WorkerWatch {
   struct Seen {
     std::string text;
     Clock::time_point since;
-    bool ended = false;
+    bool ended = false;  ///< its process, on this machine
+    bool alive = false;  ///< for certain
   };
   std::filesystem::path folder_;
   BeatTimes times_;

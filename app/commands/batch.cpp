@@ -192,7 +192,7 @@ void run_batch(const BatchArguments& arguments, const CLI::App& app, Session& se
   const BatchCounts now = count(folder, keys);
   if (arguments.worker && now.todo + now.running > 0) {
     session.document = {{"hookeye", 1}, {"command", "batch"}, {"folder", folder.path().string()}};
-    session.say("nothing is left to take up; {} captures are at work elsewhere\n", now.running);
+    session.say("nothing is left to take up; at work elsewhere: {}\n", now.running);
     return;
   }
   const std::vector<nlohmann::json> rows = batch_rows(folder, keys);

@@ -46,6 +46,12 @@ class OtherWorker {
   }
   const std::string& worker() const { return name_; }
   void send(int signal) const { ::kill(process_, signal); }
+  /// It stays as a zombie, as no one has asked how it ended.
+  void kill_and_wait() const {
+    send(SIGKILL);
+    siginfo_t how{};
+    ::waitid(P_PID, static_cast<id_t>(process_), &how, WEXITED | WNOWAIT);
+  }
 
  private:
   pid_t process_;
@@ -59,9 +65,11 @@ TEST(WorkersHere, AreGoneWithTheirProcessAlone) {
   WorkerWatch watch(folder.path(), {0.05, 0.3});
   other.send(SIGSTOP);  // it is silent, but there
   EXPECT_FALSE(gone_within(watch, other.worker(), 1.5));
+  EXPECT_TRUE(watch.known_alive(other.worker()));
   other.send(SIGCONT);
-  other.send(SIGKILL);  // stays as a zombie
+  other.kill_and_wait();
   EXPECT_FALSE(watch.gone(other.worker())) << "what it had started may still end";
+  EXPECT_FALSE(watch.known_alive(other.worker()));
   EXPECT_TRUE(gone_within(watch, other.worker(), 3.0));
   watch.forget(other.worker());
   EXPECT_EQ(only_file(folder.path()), "");
@@ -89,6 +97,7 @@ TEST(WorkersElsewhere, AreGoneWhenTheyCountNoMore) {
   WorkerWatch watch(folder.path(), {0.05, 0.4});
   for (int i = 0; i < 12; ++i) {
     EXPECT_FALSE(watch.gone("other"));
+    EXPECT_EQ(watch.known_alive("other"), i > 0);
     std::this_thread::sleep_for(milliseconds(80));
     other.beat();
   }
