@@ -8,6 +8,7 @@
 
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/at_floor.h"
+#include "estimation/model/parameters_json.h"
 #include "estimation/output/step_json.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/verdict.h"
@@ -51,9 +52,10 @@ std::string parameter_table(const Fitted& fitted) {
     for (const Parameter& parameter : ingredient->parameters()) {
       const Eigen::Index own = i++;
       if (ingredient->name() == "material") continue;
+      const auto [low, high] = interval_within(parameter, fitted.low[own], fitted.high[own]);
       rows.push_back({parameter.name, fmt::format("{:.5g}", fitted.p[own]),
-                      fmt::format("{:.5g} .. {:.5g}", fitted.low[own], fitted.high[own]),
-                      parameter.unit, parameter.long_name});
+                      fmt::format("{:.5g} .. {:.5g}", low, high), parameter.unit,
+                      parameter.long_name});
     }
   std::string text = rows.size() > 1 ? table(rows) : "";
   for (const auto& sentence : effects_in_words(fitted)) text += wrapped(sentence, 2);

@@ -244,10 +244,11 @@ json diagnosis_json(const Step& step) {
 std::string parameters_csv(const Fitted& fitted) {
   std::string csv = "name,unit,long_name,value,low,high\n";
   const auto parameters = fitted.form.parameters();
-  for (size_t i = 0; i < parameters.size(); ++i)
+  for (size_t i = 0; i < parameters.size(); ++i) {
+    const auto [low, high] = interval_within(parameters[i], fitted.low[i], fitted.high[i]);
     csv += fmt::format("\"{}\",{},\"{}\",{:.9g},{:.9g},{:.9g}\n", parameters[i].name,
-                       parameters[i].unit, parameters[i].long_name, fitted.p[i], fitted.low[i],
-                       fitted.high[i]);
+                       parameters[i].unit, parameters[i].long_name, fitted.p[i], low, high);
+  }
   return csv;
 }
 
