@@ -27,8 +27,8 @@ void run_edit(const EditArguments& arguments, Session& session) {
 }  // namespace
 
 void add_edit(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "edit", "The capture in the browser: body over photos, regions, loads");
+  CLI::App* command =
+      app.add_subcommand("edit", "The capture in the browser: body over photos, regions, loads");
   const auto arguments = std::make_shared<EditArguments>();
   command->add_option("CAPTURE", arguments->capture, "capture.yaml or its folder")->required();
   command->add_option("--port", arguments->options.port, "Port (default: any free one)")
