@@ -250,7 +250,7 @@ class BatchWorker {
       close_for_room();
       return;
     }
-    if (end.status == 0 && makes_run(folder_.order().verb) && !add_finding(ended)) return;
+    if (end.status == 0 && !add_finding(ended)) return;
     finish(ended.ticket, ended.task, std::move(result));
   }
 
@@ -270,6 +270,10 @@ class BatchWorker {
 
   /// False: the run's page is being written first.
   bool add_finding(InHand& ended) {
+    if (!makes_run(folder_.order().verb)) {
+      ended.result["finding"] = finding_of_log(folder_.log_of(ended.task, ".txt"));
+      return true;
+    }
     const fs::path run = folder_.run_of(ended.task);
     try {
       ended.result["finding"] = finding_of_run(run);

@@ -59,6 +59,19 @@ json finding_of_run(const std::filesystem::path& folder) {
           {"floor", value_in(value_in(timeline, "floor"), "chi")}};
 }
 
+json finding_of_log(const std::filesystem::path& log) {
+  const std::string mark = "warning: ";
+  std::ifstream lines(log);
+  std::string first;
+  int count = 0;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(mark) && ++count == 1) first = line.substr(mark.size());
+  const std::string verdict = count == 0   ? "no warnings"
+                              : count == 1 ? "1 warning"
+                                           : std::to_string(count) + " warnings";
+  return {{"verdict", verdict}, {"sentence", count > 0 ? json(first) : json()}};
+}
+
 std::string error_line(const std::filesystem::path& document, const std::filesystem::path& log) {
   std::error_code ignored;
   std::string damage;

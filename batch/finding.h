@@ -12,6 +12,9 @@ namespace hookeye {
 /// InputError where it cannot be read.
 nlohmann::json finding_of_run(const std::filesystem::path& run);
 
+/// Of a verb that makes no run, by what it warned of: {verdict: "2 warnings", sentence: the first}.
+nlohmann::json finding_of_log(const std::filesystem::path& log);
+
 /// The first line of what went wrong, of the document that --json prints, else the last line of the
 /// log. "": neither tells.
 std::string error_line(const std::filesystem::path& document, const std::filesystem::path& log);

@@ -190,7 +190,10 @@ std::vector<double> read_numbers(const YamlNode& node, const std::string& what) 
 
 Eigen::Vector3d read_vector3(const YamlNode& node, const std::string& what) {
   if (node.kind != YamlNode::Kind::sequence || node.items.size() != 3)
-    unexpected(node, what, "three numbers are expected: [x, y, z]");
+    unexpected(node, what,
+               node.kind == YamlNode::Kind::sequence && node.items.size() == 6
+                   ? "three numbers are expected, with decimal points: [0.5, 0.25, 2.4]"
+                   : "three numbers are expected: [x, y, z]");
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i)
     v[i] = read_number(node.items[i], fmt::format("component {} of {}", "xyz"[i], what));

@@ -299,12 +299,37 @@ Patch parent_patch(std::set<int> chosen, const SurfaceMesh& surface,
   return patch;
 }
 
+/// Largest number of a shape [length]; 0: it has none.
+double largest_number(const RegionSpec& spec) {
+  if (const auto* box = std::get_if<RegionSpec::Box>(&spec.shape))
+    return std::max(box->low.cwiseAbs().maxCoeff(), box->high.cwiseAbs().maxCoeff());
+  if (const auto* sphere = std::get_if<RegionSpec::Sphere>(&spec.shape))
+    return std::max(sphere->center.cwiseAbs().maxCoeff(), sphere->radius);
+  if (const auto* half = std::get_if<RegionSpec::Halfspace>(&spec.shape))
+    return half->point.cwiseAbs().maxCoeff();
+  return 0.0;
+}
+
+/// Numbers some thousand times the body's, or a thousandth of them.
+std::string other_unit(const RegionSpec& spec, const TetMesh& mesh) {
+  constexpr double kLeast = 200.0, kMost = 5000.0;
+  const double told = largest_number(spec), body = mesh.X.cwiseAbs().maxCoeff();
+  const double ratio = body > 0.0 ? told / body : 0.0;
+  if (ratio > kLeast && ratio < kMost)
+    return fmt::format("; the region's numbers are {:.3g} times the body's: is its file in m?",
+                       ratio);
+  if (ratio > 1.0 / kMost && ratio < 1.0 / kLeast)
+    return fmt::format("; the body's numbers are {:.3g} times the region's: is that in m?",
+                       1.0 / ratio);
+  return "";
+}
+
 [[noreturn]] void nothing_selected(const RegionSpec& spec, const TetMesh& mesh) {
   throw InputError(spec.place,
                    fmt::format("region '{}' selects no point of the surface", spec.name),
-                   fmt::format("a patch of the body, which reaches from {} to {}",
+                   fmt::format("a patch of the body, which reaches from {} to {}{}",
                                detail::where(mesh.X.rowwise().minCoeff()),
-                               detail::where(mesh.X.rowwise().maxCoeff())));
+                               detail::where(mesh.X.rowwise().maxCoeff()), other_unit(spec, mesh)));
 }
 
 Region build(const RegionSpec& spec, const TetMesh& mesh, const Patch& patch) {

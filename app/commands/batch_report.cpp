@@ -51,6 +51,23 @@ void say_failures(const std::vector<json>& rows, const Session& session) {
   if (all > said) session.say("  and {} more, in index.csv\n", all - said);
 }
 
+/// Of verbs that make no run: `check` warns and goes on.
+void say_warnings(const std::vector<json>& rows, const Session& session) {
+  size_t all = 0;
+  for (const json& row : rows) {
+    if (row.at("state") != "done" || !row.at("verdict").is_string() ||
+        !row.at("sentence").is_string() ||
+        row.at("verdict").get<std::string>().find("warning") == std::string::npos)
+      continue;
+    if (++all > kMostFailures) continue;
+    session.say("{}",
+                wrapped(fmt::format("{}: {}, the first: {}", row.at("label").get<std::string>(),
+                                    row.at("verdict").get<std::string>(),
+                                    row.at("sentence").get<std::string>())));
+  }
+  if (all > kMostFailures) session.say("  and {} more, in index.csv\n", all - kMostFailures);
+}
+
 }  // namespace
 
 void report_batch(const BatchFolder& folder, const std::vector<json>& rows, Session& session) {
@@ -77,6 +94,7 @@ void report_batch(const BatchFolder& folder, const std::vector<json>& rows, Sess
   session.say("{}\n", line);
   say_effects(rows, session);
   say_failures(rows, session);
+  say_warnings(rows, session);
   const std::filesystem::path page = folder.path() / "index.html";
   session.say("page: {}\ntable: {} (and index.sqlite)\n", page.string(),
               (folder.path() / "index.csv").string());

@@ -92,6 +92,7 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& file) {
     throw InputError({file.string()}, "there is no such file", "check the name and its folder");
   if (!fs::is_regular_file(file, ignored))
     throw InputError({file.string()}, "this is not a file", "name a picture");
+  if (fs::file_size(file, ignored) == 0) unreadable(file, "the file is empty: it has no bytes");
   if (is_png(file) && !png_begins_well(file))
     unreadable(file, "the file cannot be read as a picture");
   OIIO::ImageSpec config;

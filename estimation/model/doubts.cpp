@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <variant>
 
 #include "capture_io/yaml_place.h"
 #include "meshing/extent.h"
@@ -163,11 +164,35 @@ void look_at_material(const MaterialSpec& spec, Sentences* out) {
         of, off));
 }
 
+/// Regions by shape that hold nodes and no face: what acts there acts on next to nothing.
+void look_at_regions(const Scene& scene, Sentences* out) {
+  std::map<std::string, std::string> used;  // and by what
+  for (const ExampleSpec& example : scene.capture.examples) {
+    for (const SupportSpec& one : example.supports) used.emplace(one.region, "a support");
+    for (const LoadSpec& one : example.loads) used.emplace(one.region, "a load");
+  }
+  for (const RegionSpec& spec : scene.capture.regions) {
+    const auto by = used.find(spec.name);
+    const bool drawn = std::holds_alternative<RegionSpec::Box>(spec.shape) ||
+                       std::holds_alternative<RegionSpec::Halfspace>(spec.shape) ||
+                       std::holds_alternative<RegionSpec::Sphere>(spec.shape);
+    if (by == used.end() || !drawn) continue;
+    const Region& region = scene.body->regions.at(spec.name);
+    if (region.area > 0.0) continue;
+    out->push_back(fmt::format(
+        "region `{}` of {} has {} node{} and no area: no face of the surface lies in it. A shape "
+        "thinner than a hundredth of the body means a plane; where the body's end is tilted, lay "
+        "one along it: `halfspace: {{point: [x, y, z], normal: [x, y, z]}}`",
+        spec.name, by->second, region.nodes.size(), region.nodes.size() == 1 ? "" : "s"));
+  }
+}
+
 }  // namespace
 
 Sentences doubts(const Scene& scene) {
   Sentences out;
   for (const MaterialSpec& material : scene.capture.materials) look_at_material(material, &out);
+  look_at_regions(scene, &out);
   for (const ExampleSpec& example : scene.capture.examples) {
     compare_supports(scene, example, &out);
     look_at_measurements(scene, example, &out);

@@ -191,6 +191,7 @@ json material_card(const Scene& scene, const Fitted& fitted, const EnergyNeighbo
   if (near.model().energy.parts.size() < specs.size() || specs.empty()) return {};
   const bool blended = std::any_of(specs.begin(), specs.end(),
                                    [](const MaterialSpec& one) { return one.blend.has_value(); });
+  const json beside = effects_beside(fitted);
   json cards = json::array();
   for (size_t i = 0; i < specs.size(); ++i) {
     json card = {{"region", specs[i].region},
@@ -201,13 +202,16 @@ json material_card(const Scene& scene, const Fitted& fitted, const EnergyNeighbo
       const int of = blended ? -1 : static_cast<int>(i);
       card["small_strain"] =
           small_strain_rows(Derived(near, of), scene.capture.units.stress(), card["parameters"]);
+      if (!beside.empty())
+        for (json& one : card["small_strain"])
+          one["long_name"] = one["long_name"].get<std::string>() + ", mean over the body";
       card["curves"] = uniaxial_curves(scene, fitted, near, of);
     }
     cards.push_back(std::move(card));
   }
   return {{"cards", std::move(cards)},
           {"blended", blended},
-          {"beside", effects_beside(fitted)},
+          {"beside", beside},
           {"depends", what_fixes_the_scale(scene, fitted)},
           {"yaml", material_yaml(scene.capture, near.model().energy)}};
 }

@@ -63,6 +63,7 @@ const char* what_is_seen(const json& metrics) {
 struct Left {
   std::string seen;                     ///< "photos", "fields" or "values"
   double fitted = 0.0, held_out = 0.0;  ///< times the floor; 0: nothing is held out
+  double limit = 0.0;                   ///< times the floor that count as explained
   bool at_floor = false;                ///< all photos together
   bool on_floor = false;                ///< no more than renderers leave at least
   std::string one_camera;               ///< ", but ..." where one alone is not
@@ -88,7 +89,8 @@ Left left_of(const json& step, const json& metrics, double floor, const Limits& 
                  limits.floor.on * floor;
   out.fitted = number_in(step, "chi_fit") / floor;
   out.held_out = number_in(step, "chi_validate") / floor;
-  out.at_floor = std::max(out.fitted, out.held_out) <= limits.floor.at;
+  out.limit = limits.floor.at;
+  out.at_floor = std::max(out.fitted, out.held_out) <= out.limit;
   const json most = metrics.is_object() ? metrics.value("most_over_floor", json()) : json();
   if (out.at_floor && most.is_object() && most.value("its_own", false))
     out.one_camera = fmt::format(
@@ -136,6 +138,14 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
           found.empty() ? "" : capital(listed(found)) + " is missing, but it is not enough. ",
           left.seen, found.empty() ? "" : "else ", left.text(), any_of_them(untold),
           untold.size() > 1 ? "" : "s");
+    if (!found.empty() && left.held_out > left.limit && left.fitted <= left.limit)
+      return fmt::format(
+          "{} {} missing. {} explains the fitted {} ({:.2f} times the noise floor), but not yet "
+          "the "
+          "held-out ones ({:.2f}; up to {:g} counts as explained)",
+          capital(listed(found)), found.size() == 1 ? "is" : "are",
+          found.size() == 1 ? "It" : "Together that", left.seen, left.fitted, left.held_out,
+          left.limit);
     return found.empty()
                ? fmt::format("No effect of the catalogue explains what is left{}: {}", on,
                              left.text())
@@ -177,7 +187,9 @@ void judge_by_figures(const json& step, const json& diagnosis, const Left& left,
   const Names effects = strings_in(step, "effects");
   const std::string model =
       effects.empty() ? "The given model" : fmt::format("The model with {}", listed(effects));
-  const std::string leaves = fmt::format("{} leaves {}{}", model, left.text(), left.one_camera);
+  const std::string leaves =
+      fmt::format("{} leaves {}{}{}", model, left.text(), left.one_camera,
+                  left.at_floor ? "" : ": until that is explained, values and intervals mislead");
   const bool tested = diagnosis.is_object() || !step.value("diagnosis", json::array()).empty();
   const bool done = left.at_floor && left.one_camera.empty();
   out["headline"] = !tested ? "not judged yet"
@@ -199,17 +211,30 @@ void judge_by_figures(const json& step, const json& diagnosis, const Left& left,
                                               named.size() == 1 ? "s" : ""));
 }
 
-/// "; measured forces are met to 0.9 of their sigma (6 values)".
+/// "; measured forces are met to 0.9 of their sigma (6 values)", and which is far off.
 std::string met_forces(const json& metrics) {
-  double sum = 0.0, count = 0.0;
+  constexpr double kFarOff = 5.0;  // by no noise
+  double sum = 0.0, count = 0.0, worst = 0.0;
+  std::string of;
   for (const json& one :
        metrics.is_object() ? metrics.value("measured", json::array()) : json::array())
-    for (const json& r : one.value("over_sigma", json::array()))
-      if (r.is_number()) sum += std::pow(r.get<double>(), 2), count += 1.0;
+    for (const json& r : one.value("over_sigma", json::array())) {
+      if (!r.is_number()) continue;
+      const double off = std::abs(r.get<double>());
+      sum += off * off, count += 1.0;
+      if (off <= worst) continue;
+      worst = off;
+      const std::string region = string_in(one, "region");
+      of = fmt::format("{}{} in '{}'", string_in(one, "kind"), region.empty() ? "" : " " + region,
+                       string_in(one, "example"));
+    }
   if (count == 0.0) return "";
-  return fmt::format(
-      "; measured values are met to {:.2g} of their sigma (RMS of {:.0f} components)",
-      std::sqrt(sum / count), count);
+  std::string out =
+      fmt::format("; measured values are met to {:.2g} of their sigma (RMS of {:.0f} components)",
+                  std::sqrt(sum / count), count);
+  if (worst > kFarOff)
+    out += fmt::format(", {} is off by {:.2g}: look at its sign and its unit too", of, worst);
+  return out;
 }
 
 std::string misfit_sentence(const json& step, const json& metrics, double floor,
@@ -338,8 +363,9 @@ std::string material_text(const json& material) {
       text += fmt::format("  and {} control values: the step's model.yaml has them\n", own.size());
   }
   if (const Names beside = strings_in(material, "beside"); !beside.empty())
-    text +=
-        wrapped("the body also has " + listed(beside) + ", which the law alone does not hold", 2);
+    text += wrapped("the law's own values are without " + listed(beside) +
+                        ", which the body has too; means over the body are with it",
+                    2);
   for (const std::string& sentence : strings_in(material, "depends")) text += wrapped(sentence, 2);
   return text;
 }

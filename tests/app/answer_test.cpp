@@ -46,6 +46,9 @@ TEST(Answer, SaysInPlainWordsWhatIsMissing) {
   EXPECT_EQ(sentence(timeline("unexplained", {"creep"}, 3.1, 4.0)),
             "Creep is missing, but it is not enough: 3.10 times the noise floor (4.00 on held-out "
             "photos) is left, and nothing else of the catalogue explains it");
+  EXPECT_EQ(sentence(timeline("unexplained", {"creep"}, 1.21, 1.36)),
+            "Creep is missing. It explains the fitted photos (1.21 times the noise floor), but not "
+            "yet the held-out ones (1.36; up to 1.3 counts as explained)");
   json untold = timeline("unexplained", json::array(), 3.1, 0.0);
   untold["untold"] = {"stiffness_field", "pressure"};
   EXPECT_EQ(sentence(untold),
@@ -62,6 +65,24 @@ TEST(Answer, SaysInPlainWordsWhatIsMissing) {
   EXPECT_EQ(sentence(timeline("unexplained", json::array(), 1.05, 1.0)), "As the search said it");
 }
 
+/// A measured value that no noise explains has a wrong sign or unit more often than a wrong model.
+TEST(Answer, AMeasuredValueFarOffIsNamed) {
+  const auto misfit = [](double off) {
+    const json metrics = {{"measured",
+                           {{{"kind", "force_on"},
+                             {"region", "grip"},
+                             {"example", "pull"},
+                             {"over_sigma", {0.2, -off}}},
+                            {{"kind", "position_of"}, {"region", ""}, {"over_sigma", {1.0}}}}}};
+    return answer_of(timeline("explained", {"gravity"}, 1.0, 1.0), metrics, {})
+        .at("misfit")
+        .get<std::string>();
+  };
+  EXPECT_THAT(misfit(31.0), HasSubstr("force_on grip in 'pull' is off by 31: look at its sign and "
+                                      "its unit too"));
+  EXPECT_THAT(misfit(2.0), testing::Not(HasSubstr("off by 2:")));
+}
+
 TEST(Answer, AStepThatNobodyHasJudgedIsToldByItsFigures) {
   json run = timeline("unexplained", {"gravity"}, 4.33, 4.0);
   run.erase("sentence");
@@ -70,7 +91,8 @@ TEST(Answer, AStepThatNobodyHasJudgedIsToldByItsFigures) {
   EXPECT_THAT(
       answer.at("sentence").get<std::string>(),
       HasSubstr("The model with gravity leaves 4.33 times the noise floor (4.00 on held-out "
-                "photos). What may be missing has not been tested"));
+                "photos): until that is explained, values and intervals mislead. What may be "
+                "missing has not been tested"));
   const json tested = {
       {"effects",
        {{{"effect", "creep"}, {"named", true}}, {{"effect", "swelling"}, {"named", false}}}}};

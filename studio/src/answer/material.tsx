@@ -49,7 +49,7 @@ export function MaterialCard() {
       <button class="quiet" onClick={() => saveCsv('material.csv', csv(material))}>CSV</button></h3>
     {material.cards.map((card) => <Values key={card.region} card={card} />)}
     {material.blended && <p class="note">Moduli at small strain: of the mean over the body.</p>}
-    {material.beside.length > 0 && <p class="note">The body also has {material.beside.join(', ')}, which the law alone does not hold.</p>}
+    {material.beside.length > 0 && <p class="note">The law's own values are without {material.beside.join(', ')}, which the body has too; means over the body are with it.</p>}
     {material.depends.map((sentence) => <p class="rests" key={sentence}>{sentence}.</p>)}
     {yaml.length < 400 && <code class="yaml">{yaml}</code>}
   </>;
