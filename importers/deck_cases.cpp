@@ -162,10 +162,18 @@ class CaseWriter {
     return fmt::format("      - {{region: {}, rigid: {{{}}}}}\n", yaml_name(region), motion);
   }
 
+  void say_loose(int label, const Place& place) {
+    deck_.say(place,
+              fmt::format("node {} is in no tetrahedron: what acts on it is left out", label));
+  }
+
   void node_by_node(const std::map<int, Held>& left, const Place& place) {
     std::map<Held, std::set<int>> groups;
     for (const auto& [label, held] : left)
-      if (patches_.column(label)) groups[held].insert(label);
+      if (patches_.column(label))
+        groups[held].insert(label);
+      else
+        say_loose(label, place);
     if (groups.size() > kMostGroups)
       throw InputError(place,
                        "the displacements differ from node to node, and no node set that turns as "
@@ -179,25 +187,31 @@ class CaseWriter {
     Matrix3Xd f = Matrix3Xd::Zero(3, patches_.mesh().nodes());
     for (const auto& [key, told] : step_.forces)
       for (const int label : targets(key.first))
-        if (const auto at = patches_.column(label)) f(key.second, *at) += told.value;
+        if (const auto at = patches_.column(label))
+          f(key.second, *at) += told.value;
+        else
+          say_loose(label, told.place);
     if (f.isZero(0.0) || even_spread(f)) return;
     std::map<std::string, Vector3d> of_sets;
     std::map<std::string, Place> places;
+    std::set<int> labels;  // of nodes that are told one by one
     for (const auto& [key, told] : step_.forces) {
+      const std::set<int> nodes = targets(key.first);
+      const auto of_body = std::count_if(nodes.begin(), nodes.end(), [&](int label) {
+        return patches_.column(label).has_value();
+      });
+      if (of_body == 0) continue;
       const std::string target = is_label(key.first) ? "" : key.first;
+      if (target.empty()) labels.insert(*nodes.begin());
       of_sets.try_emplace(target, Vector3d::Zero()).first->second[key.second] +=
-          told.value * static_cast<double>(targets(key.first).size());
+          told.value * static_cast<double>(of_body);
       places[target] = told.place;
     }
     for (const auto& [target, total] : of_sets) {
-      if (!target.empty()) {
+      if (target.empty())
+        total_force("loaded", labels, total, places.at(target));
+      else
         total_force(deck_.node_sets.at(target).name, targets(target), total, places.at(target));
-        continue;
-      }
-      std::set<int> labels;
-      for (const auto& [key, told] : step_.forces)
-        if (is_label(key.first)) labels.insert(std::stoi(key.first));
-      total_force("loaded", labels, total, places.at(target));
     }
   }
 

@@ -38,6 +38,7 @@ const std::array kQuiet = {"*HEADING",
                            "*SECTION CONTROLS",
                            "*TIME POINTS",
                            "*DIAGNOSTICS",
+                           "*BULK VISCOSITY",
                            "*END LOAD CASE"};
 
 /// What acts on a body or makes it up and is not taken.
@@ -93,6 +94,16 @@ const std::array kToldOnly = {"*TEMPERATURE",
                               "*INERTIA RELIEF",
                               "*PRE-TENSION SECTION",
                               "*CHANGE FRICTION",
+                              "*UNIAXIAL TEST DATA",
+                              "*BIAXIAL TEST DATA",
+                              "*PLANAR TEST DATA",
+                              "*VOLUMETRIC TEST DATA",
+                              "*DAMAGE INITIATION",
+                              "*DAMAGE EVOLUTION",
+                              "*COHESIVE SECTION",
+                              "*TRUSS SECTION",
+                              "*RATE DEPENDENT",
+                              "*CONNECTOR MOTION",
                               "*COUPLED TEMPERATURE-DISPLACEMENT",
                               "*UNCOUPLED TEMPERATURE-DISPLACEMENT"};
 

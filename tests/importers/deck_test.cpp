@@ -209,6 +209,15 @@ TEST_F(DeckImport, TheAssemblysSetsAreThoseOfTheSteps) {
   EXPECT_LT((Eigen::Vector3d(x, y, z) - Eigen::Vector3d(90, 10, 0)).norm(), 1e-9);
 }
 
+TEST_F(DeckImport, LoadsOnNodesOfNoTetrahedronAreSaid) {
+  std::string deck = kMesh + kMaterial + kStep;
+  deck.replace(deck.find("8, 0, 10, 10\n"), 0, "99, 5, 5, 30\n");
+  deck.replace(deck.find("*NODE FILE"), 0, "99, 1, 3.\n");
+  const ImportedDeck imported = import(deck);
+  EXPECT_TRUE(says(imported, "pull.inp:35: node 99 is in no tetrahedron"));
+  EXPECT_THAT(file(imported, "examples.yaml"), HasSubstr("force: [0, 0, 2]"));
+}
+
 TEST_F(DeckImport, IncludedFilesAreFollowed) {
   write_text(folder_ / "mesh.inp", kMesh);
   const ImportedDeck imported = import("*INCLUDE, INPUT=mesh.inp\n" + kMaterial + kStep);
