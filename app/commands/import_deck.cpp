@@ -12,6 +12,9 @@ namespace hookeye {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+/// A deck may hold thousands of cards of a kind that is left out.
+constexpr size_t kMostSaid = 40;
+
 void run_import_decks(const std::vector<fs::path>& decks, const fs::path& folder,
                       Session& session) {
   const Scope scope("source " + decks.front().string());
@@ -48,7 +51,10 @@ void run_import_decks(const std::vector<fs::path>& decks, const fs::path& folder
     session.document["files"].push_back((folder / name).string());
   session.say("{}: a deck, {} nodes and {} tetrahedra, {} regions\n{}", decks.front().string(),
               imported.nodes, imported.elements, imported.regions.size(), table(rows));
-  for (const std::string& said : imported.said) session.say("{}", wrapped(said, 2));
+  for (size_t i = 0; i < imported.said.size() && i < kMostSaid; ++i)
+    session.say("{}", wrapped(imported.said[i], 2));
+  if (imported.said.size() > kMostSaid)
+    session.say("  and {} more: --json tells all\n", imported.said.size() - kMostSaid);
   session.say(
       "written to {}: body.inp, examples.yaml, and body.yaml, whose sections go into a "
       "capture.yaml\n",
