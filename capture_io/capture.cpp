@@ -160,9 +160,10 @@ Capture read_capture(const fs::path& path) {
   if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);
   if (const YamlNode* regions = top.find("regions"))
     capture.regions = read_regions(*regions, folder);
+  const YamlNode& examples =
+      top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`");
   capture.examples =
-      read_examples(top.need("examples", "write `examples: {rest: {photos: {CAMERA: FILE}}}`"),
-                    capture, defaults, folder);
+      read_examples(section_in_place(examples, "examples", folder), capture, defaults, folder);
   check_together(capture);
   return capture;
 }

@@ -34,11 +34,13 @@ std::map<std::string, std::string> fingerprints(const fs::path& yaml) {
   try {
     const YamlNode root = parse_yaml(read_text(yaml), yaml.string());
     add_named(root, yaml.parent_path(), &out);
-    const YamlNode* cameras = root.find("cameras");
-    const YamlNode* part = cameras ? file_of_section(*cameras) : nullptr;
-    if (part && out.count(part->text))
-      add_named(load_section(yaml.parent_path() / part->text, part->text, "cameras"),
-                yaml.parent_path(), &out);
+    for (const char* key : {"cameras", "examples"}) {
+      const YamlNode* section = root.find(key);
+      const YamlNode* part = section ? file_of_section(*section) : nullptr;
+      if (part && out.count(part->text))
+        add_named(load_section(yaml.parent_path() / part->text, part->text, key),
+                  yaml.parent_path(), &out);
+    }
   } catch (const InputError&) {
     // told where the capture is read
   }

@@ -8,7 +8,7 @@
 namespace hookeye {
 
 /// Fingerprints of a capture's yaml and of the files of its folder that its values name, by their
-/// names there, in a file of cameras too: XXH3 of all bytes. A yaml that cannot be read has none,
+/// names there, in a file of cameras or of examples too: XXH3 of all bytes. A yaml that cannot be read has none,
 /// and nor has what it would name.
 std::map<std::string, std::string> fingerprints(const std::filesystem::path& yaml);
 

@@ -96,7 +96,8 @@ class PartialReader {
     return read_examples(only(all, entry), out_.capture, defaults_, folder_).front();
   }
 
-  void examples(const YamlNode& node) {
+  void examples(const YamlNode& told) {
+    const YamlNode node = section_in_place(told, "examples", folder_);
     if (node.kind != Kind::map || node.entries.empty())
       read_examples(node, out_.capture, defaults_, folder_);
     for (const YamlNode::Entry& entry : node.entries) {

@@ -10,7 +10,8 @@ YamlPlaces::YamlPlaces(const std::filesystem::path& file, const std::string& tol
   const CaptureFolder folder{std::filesystem::path(told).parent_path(),
                              std::filesystem::canonical(file).parent_path()};
   for (YamlNode::Entry& entry : root_.entries)
-    if (entry.key == "cameras") entry.value = section_in_place(entry.value, entry.key, folder);
+    if (entry.key == "cameras" || entry.key == "examples")
+      entry.value = section_in_place(entry.value, entry.key, folder);
 }
 
 Place YamlPlaces::of(std::initializer_list<std::string> path) const {

@@ -11,11 +11,14 @@
 
 #include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"
+#include "app/commands/import_files.h"
 #include "app/validators.h"
 #include "core/input_error.h"
 #include "core/scope.h"
 #include "core/text_file.h"
+#include "importers/deck.h"
 #include "importers/importer.h"
+#include "importers/scan.h"
 
 namespace hookeye {
 namespace {
@@ -111,7 +114,37 @@ std::string cameras_table(const Imported& imported, const std::vector<Reprojecti
   return table(rows);
 }
 
+/// Decks hold a body and load cases in place of cameras, scans a body. False: the words name none.
+bool import_body_if_any(const ImportCommand& options, Session& session) {
+  Importer::Sources sources(options.words.begin(), options.words.end());
+  std::error_code error;
+  const std::string kind = options.words.front();
+  const bool named = (kind == "deck" || kind == "scan") && !fs::exists(sources.front(), error);
+  if (named) sources.erase(sources.begin());
+  const bool deck = named ? kind == "deck" : is_deck(sources.front());
+  if (!deck && !named && !is_scan(sources.front())) return false;
+  if (sources.empty())
+    throw InputError({kind}, "there is no source behind the kind",
+                     fmt::format("hookeye import {} SOURCE -o FOLDER", kind));
+  if (!options.size.empty() || !options.lens.empty() || (deck && options.options.scale != 1))
+    throw InputError({sources.front().string()},
+                     fmt::format("--size, --lens{} are of cameras", deck ? " and --scale" : ""),
+                     deck ? "leave them out: a deck keeps its own units" : "leave them out");
+  for (const fs::path& source : sources)
+    if (!fs::is_regular_file(source, error))
+      throw InputError({source.string()}, "there is no such file",
+                       deck ? "name a deck of one body" : "name an obj or ply file");
+  if (!deck && sources.size() > 1)
+    throw InputError({sources[1].string()}, "there is a second source", "one scan alone");
+  if (deck)
+    run_import_decks(sources, options.folder, session);
+  else
+    run_import_scan(sources.front(), options.options.scale, options.folder, session);
+  return true;
+}
+
 void run_import(const ImportCommand& options, Session& session) {
+  if (import_body_if_any(options, session)) return;
   const auto [importer, sources] = chosen_importer(options);
   const Scope scope("source " + sources.front().string());
   const fs::path file = fs::path(options.folder) / "cameras.yaml";
@@ -145,17 +178,19 @@ void run_import(const ImportCommand& options, Session& session) {
 
 void add_import(CLI::App& app, CommandBody& chosen) {
   CLI::App* command =
-      app.add_subcommand("import", "Cameras that another program calibrated, for a capture");
+      app.add_subcommand("import", "Cameras, a deck or a scan of another program, for a capture");
   const auto options = std::make_shared<ImportCommand>();
   std::string kinds = "\nKinds of sources:\n";
   for (const Importer* importer : importers())
     kinds += fmt::format("  {:<12} {}\n", importer->name(), importer->title());
+  kinds += fmt::format("  {:<12} {}\n", "deck", "body, supports and loads of Abaqus or CalculiX");
+  kinds += fmt::format("  {:<12} {}\n", "scan", "textured surface, obj with mtl or ply");
   command->footer(kinds);
   command
       ->add_option("SOURCE", options->words,
                    "What the other program wrote; before it, if not recognised, its kind")
       ->required();
-  command->add_option("-o,--out", options->folder, "Folder for cameras.yaml")->required();
+  command->add_option("-o,--out", options->folder, "Folder for what is written")->required();
   command->add_option("--size", options->size, "Size of the photos, where the source lacks it")
       ->check(picture_size());
   command

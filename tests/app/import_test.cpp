@@ -57,5 +57,47 @@ TEST_F(Cli, ImportWritesNothingWhereAnythingIsWrong) {
   EXPECT_EQ(read(folder_ / "cameras.yaml"), "cameras: {}\n");
 }
 
+const std::string kDeck =
+    "*NODE\n1, 0, 0, 0\n2, 10, 0, 0\n3, 0, 10, 0\n4, 0, 0, 10\n"
+    "*ELEMENT, TYPE=C3D4, ELSET=EALL\n1, 1, 2, 3, 4\n*NSET, NSET=base\n1, 2, 3\n"
+    "*MATERIAL, NAME=GEL\n*HYPERELASTIC, NEO HOOKE\n0.025, 4.\n"
+    "*SOLID SECTION, ELSET=EALL, MATERIAL=GEL\n"
+    "*STEP\n*STATIC\n*BOUNDARY\nbase, 1, 3\n4, 3, 3, 1.\n*END STEP\n";
+
+TEST_F(Cli, ImportWritesTheBodyAndTheCasesOfADeck) {
+  write("lift.inp", kDeck);
+  const Result got = hookeye("import lift.inp -o . --json");
+  ASSERT_EQ(got.status, 0) << got.err;
+  const json document = json::parse(got.out);
+  EXPECT_EQ(document["elements"], 1);
+  EXPECT_EQ(document["examples"][0]["supports"], 2);
+  write("capture.yaml",
+        "hookeye: 1\nunits: {length: mm, force: N}\n" + read(folder_ / "body.yaml"));
+  const Result checked = hookeye("check . --json");
+  ASSERT_EQ(checked.status, 0) << checked.err;
+  EXPECT_EQ(json::parse(checked.out)["examples"].size(), 1u);
+  EXPECT_EQ(hookeye("import lift.inp -o .").status, 0);  // what import wrote it writes anew
+  write("examples.yaml", "examples: {}\n");
+  const std::string body = read(folder_ / "body.yaml");
+  const Result kept = hookeye("import lift.inp -o .");
+  EXPECT_EQ(kept.status, 2);
+  EXPECT_THAT(kept.err, HasSubstr("examples.yaml: there is another file of this name"));
+  EXPECT_EQ(read(folder_ / "body.yaml"), body);
+}
+
+TEST_F(Cli, ImportOfABadDeckWritesNothing) {
+  std::string deck = kDeck;
+  deck.replace(deck.find("base, 1, 3"), 4, "bass");
+  write("lift.inp", deck);
+  const Result got = hookeye("import lift.inp -o out");
+  EXPECT_EQ(got.status, 2);
+  EXPECT_THAT(got.err, HasSubstr("lift.inp:17: there is no node set `bass`"));
+  EXPECT_THAT(got.err, HasSubstr("did you mean `base`?"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_THAT(hookeye("import lift.inp -o out --scale 10").err,
+              HasSubstr("a deck keeps its own units"));
+  EXPECT_THAT(hookeye("import deck -o out").err, HasSubstr("no source behind the kind"));
+}
+
 }  // namespace
 }  // namespace hookeye::test

@@ -164,7 +164,8 @@ class Test:
         """A schema that takes everything would pass all of the above."""
         for path, value in ((("body", "mesh", "edge"), -1), (("model", "material"), {"law": "neo-hookean", "mu": 1}),
                             (("cameras", "front", "projection"), "pinhole"), (("examples", "pull", "use"), "train"),
-                            (("regions", "base"), {}), (("light",), {"sun": 1})):
+                            (("regions", "base"), {}), (("light",), {"sun": 1}),
+                            (("examples",), {"from": "cases.txt"})):
             document = captures.full_capture()
             place = document
             for key in path[:-1]:
@@ -172,6 +173,10 @@ class Test:
             place[path[-1]] = value
             if jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
                 self.fault(f"capture.json takes {'/'.join(path)}: {value}")
+        for section in ("cameras", "examples"):
+            document = {**captures.full_capture(), section: {"from": "parts/of_it.yaml"}}
+            if not jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
+                self.fault(f"capture.json refuses a file of {section}")
 
 
 def plant(test, how, where):
