@@ -316,8 +316,8 @@ std::string other_unit(const RegionSpec& spec, const TetMesh& mesh) {
   const double told = largest_number(spec), body = mesh.X.cwiseAbs().maxCoeff();
   const double ratio = body > 0.0 ? told / body : 0.0;
   if (ratio > kLeast && ratio < kMost)
-    return fmt::format("; the region's numbers are {:.3g} times the body's: is its file in m?",
-                       ratio);
+    return fmt::format(
+        "; the region's numbers are {:.3g} times the body's: is the body's file in m?", ratio);
   if (ratio > 1.0 / kMost && ratio < 1.0 / kLeast)
     return fmt::format("; the body's numbers are {:.3g} times the region's: is that in m?",
                        1.0 / ratio);

@@ -157,8 +157,9 @@ TEST(Regions, FaultsAreRefusedWithPlaceAndNearestName) {
   for (int t = 0; t < 12; ++t) surface.file_triangle.push_back(t);
   EXPECT_THAT(fault(spec("a", RegionSpec::Box{{5, 5, 5}, {6, 6, 6}}), nullptr),
               HasSubstr("capture.yaml:9:3: region 'a' selects no point"));
-  EXPECT_THAT(fault(spec("a", RegionSpec::Box{{900, 0, 0}, {1000, 1000, 1000}}), nullptr),
-              HasSubstr("the region's numbers are 1e+03 times the body's: is its file in m?"));
+  EXPECT_THAT(
+      fault(spec("a", RegionSpec::Box{{900, 0, 0}, {1000, 1000, 1000}}), nullptr),
+      HasSubstr("the region's numbers are 1e+03 times the body's: is the body's file in m?"));
   EXPECT_THAT(fault(spec("a", RegionSpec::Group{"FOOD"}), nullptr), HasSubstr("'FOOT'"));
   EXPECT_THAT(fault(spec("a", RegionSpec::Faces{{}, {0}, {}, {}}), nullptr),
               HasSubstr("surface file"));
