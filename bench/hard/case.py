@@ -101,7 +101,10 @@ class Case:
         order = list(self.examples)
         loaded = [n for n, told in self.examples.items() if told["forces"]]
         turned = [values["example"] for values in self.spec["hidden"].values() if "example" in values]
+        reference = self.reference()
         without = order if differences else [loaded[0], loaded[-1], *turned] if self.physics else []
+        if without and reference:
+            without = [*without, reference]
         self.displacement, self.plain = {}, {}
         for k, name in enumerate(order):
             base, true = self.problem(name), self.problem(name)
@@ -110,6 +113,11 @@ class Case:
             self.displacement[name] = self.equilibrium(true, name)
             if name in without:
                 self.plain[name] = self.equilibrium(base, name)
+
+    def reference(self):
+        """The example whose photos give the texture, if any does: the model's picture of it is right, whatever is hidden."""
+        texture = self.spec["told_body"].get("texture")
+        return texture.get("from") if isinstance(texture, dict) else None
 
     def equilibrium(self, problem, name):
         if not (problem.forces.any() or problem.growth is not None or any(np.any(u) for u in problem.fixed.values())):
@@ -172,7 +180,7 @@ class Case:
 
     def shifts(self):
         """By example: motion from rest and what the hidden thing moves, rms over the surface, px of the first camera."""
-        still = np.zeros_like(self.body.nodes)
+        still, reference = np.zeros_like(self.body.nodes), self.reference()
         found = {}
         for name, told in self.examples.items():
             eye, u = self.spec["cameras"][told["photos"][0]], self.displacement[name]
@@ -180,6 +188,9 @@ class Case:
                            "largest_mm": float(np.linalg.norm(self.body.carried(u), axis=1).max())}
             if name in self.plain:
                 found[name]["hidden_px"] = self.rms(u, self.plain[name], eye)
+                if reference in self.plain:  # the texture has what is hidden of its own photos
+                    lacks = [self.pixels(self.displacement[n], eye) - self.pixels(self.plain[n], eye) for n in (name, reference)]
+                    found[name]["seen_px"] = float(np.sqrt(((lacks[0] - lacks[1]) ** 2).sum(1).mean()))
         for name, camera in itertools.product(self.examples, self.spec["cameras"]):
             photo = dict(self.spec["cameras"][camera])
             for change in self.optics:
