@@ -92,8 +92,14 @@ void PythonModel::free(const std::string& name) {
 Ingredients PythonModel::candidates(const std::string& name) const {
   check_effect(name);
   std::string why_not;
-  auto all = unlocked(
-      [&, state = state()] { return find_effect(name)->candidates(state.realise(), &why_not); });
+  Ingredients standing;
+  for (const auto& one : whole_.ingredients)
+    if (one->name() == name) standing.push_back(one);
+  auto all = unlocked([&, state = state()] {
+    const Effect& effect = *find_effect(name);
+    return standing.empty() ? effect.candidates(state.realise(), &why_not)
+                            : effect.candidates_beside(state.realise(), standing, &why_not);
+  });
   if (all.empty()) bad_argument(fmt::format("{} cannot be added: {}", name, why_not), "another");
   return all;
 }
@@ -105,11 +111,12 @@ std::vector<std::string> PythonModel::variants(const std::string& effect) const 
 }
 
 void PythonModel::add(const std::string& name, const std::string& variant) {
-  Ingredients all = candidates(name);
+  check_effect(name);
   const Effect& effect = *find_effect(name);
   const auto there = ingredients();
   if (!effect.several() && std::find(there.begin(), there.end(), name) != there.end())
     bad_argument(fmt::format("the model has {} already", name), "set its parameters");
+  Ingredients all = candidates(name);
   auto chosen = variant.empty() ? all.front() : unlocked([&, state = state()] {
     return effect.candidate(state.realise(), variant);
   });
@@ -120,6 +127,11 @@ void PythonModel::add(const std::string& name, const std::string& variant) {
     bad_argument(fmt::format("{} changes the mesh, and with it the whole model", name),
                  "fit, and add it to the run: Run.add()");
   const auto parameters = chosen->parameters();
+  for (const Parameter& mine : parameters)
+    for (const Parameter& one : whole_.parameters())
+      if (one.name == mine.name)
+        bad_argument(fmt::format("the model has '{}' already", mine.name),
+                     "set it, or add another variant");
   const auto before = values_.size();
   values_.conservativeResize(before + static_cast<Eigen::Index>(parameters.size()));
   for (size_t i = 0; i < parameters.size(); ++i)

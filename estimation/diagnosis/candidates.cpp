@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <set>
 
@@ -25,9 +26,12 @@ Ingredients not_yet_in(const ModelForm& form, const Ingredients& candidates) {
   return out;
 }
 
-bool already_in(const ModelForm& form, const std::string& name) {
-  return std::any_of(form.ingredients.begin(), form.ingredients.end(),
-                     [&](const auto& ingredient) { return ingredient->name() == name; });
+/// Those of this name in the model.
+Ingredients standing_of(const ModelForm& form, const std::string& name) {
+  Ingredients out;
+  std::copy_if(form.ingredients.begin(), form.ingredients.end(), std::back_inserter(out),
+               [&](const auto& ingredient) { return ingredient->name() == name; });
+  return out;
 }
 
 /// Lengths of the columns of H, the same for those parameters of an ingredient that share a unit
@@ -67,11 +71,12 @@ std::vector<Candidate> collect_candidates(const Fitted& fitted, const DiagnosisO
   for (const Effect* effect : tested) {
     if (std::count(options.without.begin(), options.without.end(), effect->name())) continue;
     std::string why_not;
-    const bool again = already_in(fitted.form, effect->name());
-    Ingredients candidates;
-    if (!again || effect->several()) candidates = effect->candidates(model, &why_not);
-    if (again) candidates = not_yet_in(fitted.form, candidates);
-    if (again && candidates.empty()) why_not = "already in the model";
+    const Ingredients standing = standing_of(fitted.form, effect->name());
+    Ingredients candidates =
+        standing.empty()
+            ? effect->candidates(model, &why_not)
+            : not_yet_in(fitted.form, effect->candidates_beside(model, standing, &why_not));
+    if (!standing.empty() && candidates.empty()) why_not = "already in the model";
     if (candidates.empty()) {
       EffectScore score;
       score.effect = effect->name();

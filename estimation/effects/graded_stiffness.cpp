@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "estimation/effects/places.h"
+
 namespace hookeye {
 
 namespace {
@@ -121,12 +123,13 @@ std::shared_ptr<const Ingredient> layers(const Model& model, const Vector3d& acr
   return make_ingredient(std::move(spec));
 }
 
-std::shared_ptr<const Ingredient> ball(const Model& model) {
+std::shared_ptr<const Ingredient> ball(const Model& model, int place) {
   IngredientSpec spec;
   spec.name = "stiffness_field";
-  spec.variant = kBall;
+  spec.variant = as_place(kBall, place);
   spec.parameters = free_place(model);
   spec.parameters.push_back(thickness(model));
+  spec.parameters = of_place(std::move(spec.parameters), place);
   spec.touches = {.energy = true};
   spec.apply = [](const VectorXd& v, Model& m) {
     if (v[0] != 0.0) scale_energy(m, ball_field(*m.scene, v));
@@ -188,12 +191,13 @@ std::vector<Parameter> free_place(const Model& model) {
 }
 
 bool is_graded(const std::string& variant) {
-  return variant == kGradient || variant == kBall || starts_with(variant, kLayers);
+  return variant == kGradient || place_variant(variant).form == kBall ||
+         starts_with(variant, kLayers);
 }
 
 std::shared_ptr<const Ingredient> graded_form(const Model& model, const std::string& variant) {
   if (variant == kGradient) return gradient();
-  if (variant == kBall) return ball(model);
+  if (const auto [form, place] = place_variant(variant); form == kBall) return ball(model, place);
   const auto n = numbers_in(variant);
   if (!starts_with(variant, kLayers) || n.size() != 3) return nullptr;
   return layers(model, Vector3d(n[0], n[1], n[2]));
@@ -220,12 +224,12 @@ Effect::Further layers_like(const Model& model, const Vector3d& across, double a
   return {.form = layers(model, across), .values = values};
 }
 
-Effect::Further ball_like(const Model& model, const VectorXd& blob) {
+Effect::Further ball_like(const Model& model, const VectorXd& blob, int place) {
   VectorXd values(6);
   values << blob[0] / std::sqrt(8.0), blob.segment<3>(1),
       std::cbrt(6.0 * std::sqrt(EIGEN_PI)) * blob[4], 0.0;
   values[5] = 0.1 * values[4];
-  return {.form = ball(model), .values = values, .same_claim = true};
+  return {.form = ball(model, place), .values = values, .same_claim = true};
 }
 
 std::string graded_sentence(const Model& model, const Ingredient& ingredient,
@@ -238,7 +242,7 @@ std::string graded_sentence(const Model& model, const Ingredient& ingredient,
                        vector_text(g.norm() > 0.0 ? Vector3d(g.normalized()) : g),
                        figure(field.minCoeff()), figure(field.maxCoeff()));
   }
-  if (ingredient.variant() == kBall)
+  if (place_variant(ingredient.variant()).form == kBall)
     return fmt::format("a ball {} times as stiff as the rest, of radius {} {} around {}",
                        figure(std::exp(values[0])), figure(values[4]), length,
                        place_text(values.segment<3>(1), body_size(*model.scene).size));

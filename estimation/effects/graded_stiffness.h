@@ -22,7 +22,7 @@ std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& 
 Effect::Further layers_like(const Model& model, const Vector3d& across, double a);
 /// The ball, where it is most like a Gaussian of these values (free_place): of one integral over
 /// the body of its logarithm and of that squared.
-Effect::Further ball_like(const Model& model, const VectorXd& blob);
+Effect::Further ball_like(const Model& model, const VectorXd& blob, int place = 1);
 /// a, x, y, z, radius: one place of free amplitude in the log of the stiffness.
 std::vector<Parameter> free_place(const Model& model);
 std::string graded_sentence(const Model& model, const Ingredient& ingredient,

@@ -4,6 +4,7 @@
 
 #include "estimation/effects/graded_stiffness.h"
 #include "estimation/effects/own_directions.h"
+#include "estimation/effects/places.h"
 
 namespace hookeye {
 
@@ -11,6 +12,7 @@ namespace {
 
 const int kFieldBumps = 16, kBlobs = 16;
 const char* const kFreeBlob = "free blob";
+const char* const kFreeBall = "free ball";
 const char* const kHalves = "halves across";
 
 /// Element forces of what a field scales. At its null that is every part, for a candidate comes
@@ -73,7 +75,7 @@ std::pair<Blob, double> likest_blob(const TetMesh& mesh, const std::vector<Vecto
 
 /// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
 /// The refit may go on to one that changes along a direction, in two layers or within a ball
-/// (graded_stiffness.h).
+/// (graded_stiffness.h). Beside a place another may stand.
 class StiffnessField final : public Effect {
  public:
   std::string name() const override { return "stiffness_field"; }
@@ -84,8 +86,9 @@ class StiffnessField final : public Effect {
            "uneven cure, one half of a casting. A field can imitate much else (soft clamps, wrong "
            "loads), so it is believed only where one blob, or held-out examples, say the same. The "
            "refit goes on to a ball with an edge, to a stiffness that changes along a direction "
-           "and to two layers.";
+           "and to two layers. Beside one place another may stand.";
   }
+  bool several() const override { return true; }
 
   Ingredients candidates(const Model& model, std::string*) const override {
     const Scene& scene = *model.scene;
@@ -94,20 +97,37 @@ class StiffnessField final : public Effect {
     Ingredients all = {
         field(model, spread_centres(scene, kFieldBumps), bump_radius(scene, kFieldBumps), forces)};
     for (const Vector3d& c : spread_centres(scene, kBlobs))
-      all.push_back(blob(model, c, 0.12 * size, forces));
+      all.push_back(blob(model, c, 0.12 * size, forces, 1));
     const Eigen::Matrix3d axes = own_axes(scene.body->mesh);
     for (int axis = 0; axis < 3; ++axis) all.push_back(halves(model, axes.col(axis), forces));
     return all;
   }
 
+  /// Beside places, and nothing but places, one more.
+  Ingredients candidates_beside(const Model& model, const Ingredients& standing,
+                                std::string* why_not) const override {
+    Ingredients all;
+    if (!std::all_of(standing.begin(), standing.end(),
+                     [](const auto& one) { return is_place(one->variant()); })) {
+      if (why_not) *why_not = "already in the model";
+      return all;
+    }
+    auto forces = std::make_shared<ScaledForces>();
+    const double radius = 0.12 * body_size(*model.scene).size;
+    for (const Vector3d& c : spread_centres(*model.scene, kBlobs))
+      all.push_back(blob(model, c, radius, forces, next_place(standing)));
+    return all;
+  }
+
   std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                             const std::string& variant) const override {
-    if (variant == kFreeBlob) return free_blob(model);
+    const auto [form, nth] = place_variant(variant);
+    if (form == kFreeBlob) return free_blob(model, nth);
     if (auto graded = graded_form(model, variant)) return graded;
     if (const auto across = across_of(variant))
       return halves(model, *across, std::make_shared<ScaledForces>());
-    if (const auto place = blob_in(variant))
-      return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>());
+    if (const auto place = blob_in(form))
+      return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>(), nth);
     const auto n = numbers_in(variant);
     if (!starts_with(variant, "field") || n.size() < 4 || n.size() % 3 != 1) return nullptr;
     std::vector<Vector3d> centres;
@@ -123,10 +143,11 @@ class StiffnessField final : public Effect {
       values = layers.values;
       return layers.form;
     }
-    const auto place = blob_in(scored->variant());
+    const auto [form, nth] = place_variant(scored->variant());
+    const auto place = blob_in(form);
     if (!place) return scored;
     values = freed(*place, values[0]);
-    return free_blob(model);
+    return free_blob(model, nth);
   }
 
   /// The one blob that is most like the field but for its mean.
@@ -139,12 +160,14 @@ class StiffnessField final : public Effect {
       centres.emplace_back(n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]);
     const auto [place, amplitude] = likest_blob(model.scene->body->mesh, centres, n[0], values);
     values = freed(place, amplitude);
-    return free_blob(model);
+    return free_blob(model, 1);
   }
 
   std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
                                      const VectorXd& values) const override {
     if (is_graded(refitted.variant())) return {};
+    const auto [form, nth] = place_variant(refitted.variant());
+    if (nth > 1) return {ball_like(model, values, nth)};
     Model one = model, with = model;
     one.energy.parts.resize(1);
     with.energy.parts.resize(1);
@@ -154,7 +177,7 @@ class StiffnessField final : public Effect {
       factor = (before.array() > 0.0).select(factor.cwiseQuotient(before), 1.0);
     if (factor.size() == 0) factor = VectorXd::Ones(model.scene->body->mesh.size());
     auto all = further_grades(model, factor.array().log());
-    if (refitted.variant() == kFreeBlob) all.insert(all.begin(), ball_like(model, values));
+    if (form == kFreeBlob) all.insert(all.begin(), ball_like(model, values));
     return all;
   }
 
@@ -168,7 +191,8 @@ class StiffnessField final : public Effect {
       const Effect::Further layers = layers_like(model, *across, values[0]);
       return graded_sentence(model, *layers.form, layers.values);
     }
-    const Blob place = blob_of(ingredient, values);
+    const Blob place = values.size() == 5 ? blob_of(ingredient, values)
+                                          : *blob_in(place_variant(ingredient.variant()).form);
     return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
                        values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
                        figure(place.radius), model.scene->capture.units.length,
@@ -176,6 +200,12 @@ class StiffnessField final : public Effect {
   }
 
  private:
+  /// Free ones: a fixed one's derivative scales all parts that have weights, another place's too.
+  static bool is_place(const std::string& variant) {
+    const std::string form = place_variant(variant).form;
+    return form == kFreeBlob || form == kFreeBall;
+  }
+
   static Parameter amplitude(const std::string& label) {
     return {label, "", "log of the stiffness factor", 0.0, -4.0, 4.0, 0.3, false};
   }
@@ -218,11 +248,11 @@ class StiffnessField final : public Effect {
   }
 
   std::shared_ptr<const Ingredient> blob(const Model& model, const Vector3d& centre, double radius,
-                                         std::shared_ptr<ScaledForces> forces) const {
+                                         std::shared_ptr<ScaledForces> forces, int place) const {
     radius = std::stod(fmt::format("{:.3g}", radius));
     IngredientSpec spec;
-    spec.variant = blob_text({centre, radius});
-    spec.parameters = {amplitude("stiffness_field.a")};
+    spec.variant = as_place(blob_text({centre, radius}), place);
+    spec.parameters = of_place({amplitude("stiffness_field.a")}, place);
     return linear(std::move(spec), {gaussian_bump(model.scene->body->mesh, centre, radius)},
                   std::move(forces));
   }
@@ -248,11 +278,11 @@ class StiffnessField final : public Effect {
                   std::move(forces));
   }
 
-  std::shared_ptr<const Ingredient> free_blob(const Model& model) const {
+  std::shared_ptr<const Ingredient> free_blob(const Model& model, int place) const {
     IngredientSpec spec;
     spec.name = name();
-    spec.variant = kFreeBlob;
-    spec.parameters = free_place(model);
+    spec.variant = as_place(kFreeBlob, place);
+    spec.parameters = of_place(free_place(model), place);
     spec.touches = {.energy = true};
     spec.apply = [](const VectorXd& v, Model& m) {
       if (v[0] == 0.0) return;

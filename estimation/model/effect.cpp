@@ -16,6 +16,13 @@ std::shared_ptr<const Ingredient> Effect::candidate(const Model& model,
   return nullptr;
 }
 
+Ingredients Effect::candidates_beside(const Model& model, const Ingredients&,
+                                      std::string* why_not) const {
+  if (several()) return candidates(model, why_not);
+  if (why_not) *why_not = "already in the model";
+  return {};
+}
+
 std::shared_ptr<const Ingredient> Effect::rebuild(const Model&, const std::string&) const {
   return nullptr;
 }

@@ -33,6 +33,11 @@ class Effect {
   /// Whether a model may hold it more than once, each time with parameters of their own names: two
   /// cameras that were knocked, the loads of two examples.
   virtual bool several() const { return false; }
+  /// What may stand beside those of its own that the model holds already (`standing`, not empty;
+  /// `model` has them). Those whose parameters' names are taken are left out by who asks. Default:
+  /// candidates() where it may stand more than once, else none.
+  virtual Ingredients candidates_beside(const Model& model, const Ingredients& standing,
+                                        std::string* why_not) const;
   /// Candidate for write/read: by variant(). Null when the variant is not one of this effect's.
   std::shared_ptr<const Ingredient> candidate(const Model& model, const std::string& variant) const;
   /// Builds what candidates() does not list (refit forms) or lists only for the very same mesh;

@@ -21,7 +21,7 @@ namespace {
 /// from one example on and again from another, no name stands twice.
 TEST(Catalogue, FormsThatMayStandTogetherShareNoName) {
   for (const Effect* effect : catalogue()) {
-    if (!effect->several()) continue;
+    if (!effect->several() || effect->name() == "stiffness_field") continue;
     std::map<std::string, std::string> of;
     for (const auto& one : effect->candidates(base_model(), nullptr))
       for (const Parameter& p : one->parameters()) {
@@ -30,6 +30,39 @@ TEST(Catalogue, FormsThatMayStandTogetherShareNoName) {
                            << "]";
       }
   }
+}
+
+/// Places are numbered as they come.
+TEST(StiffnessField, BesidePlacesOneMoreMayStand) {
+  const Effect& field = *find_effect("stiffness_field");
+  Ingredients standing;
+  std::set<std::string> names;
+  for (int place = 1; place <= 3; ++place) {
+    const auto all = standing.empty() ? field.candidates(base_model(), nullptr)
+                                      : field.candidates_beside(base_model(), standing, nullptr);
+    const auto blob = std::find_if(
+        all.begin(), all.end(), [](const auto& one) { return one->variant().starts_with("blob"); });
+    ASSERT_NE(blob, all.end());
+    VectorXd values = VectorXd::Constant(1, 0.5);
+    const auto free = field.refit_form(base_model(), *blob, values);
+    EXPECT_EQ(free->variant(),
+              place == 1 ? "free blob" : "free blob, place " + std::to_string(place));
+    const auto ball = field.further_forms(base_model(), *free, values).front();
+    for (const auto& form : {*blob, free, ball.form}) {
+      const auto again = field.candidate(base_model(), form->variant());
+      ASSERT_TRUE(again) << form->variant();
+      EXPECT_EQ(again->parameters().front().name, form->parameters().front().name);
+    }
+    for (const Parameter& p : ball.form->parameters())
+      EXPECT_TRUE(names.insert(p.name).second) << p.name;
+    standing.push_back(place == 1 ? free : ball.form);
+  }
+  EXPECT_TRUE(names.count("stiffness_field.place2.thickness"));
+  // gradients and fields are all over the body
+  for (const char* variant : {"free gradient", "free layers across (0, 0, 1)"})
+    EXPECT_TRUE(
+        field.candidates_beside(base_model(), {field.candidate(base_model(), variant)}, nullptr)
+            .empty());
 }
 
 /// From the start, names are plain.

@@ -104,5 +104,24 @@ TEST(EffectsOnEffects, HaveTheirDerivatives) {
   }
 }
 
+/// A place beside a place scales what came between them too.
+TEST(EffectsOnEffects, APlaceBesideAPlaceHasItsDerivative) {
+  Crowded crowded(block_scene());
+  const Effect& field = *find_effect("stiffness_field");
+  const auto first = field.candidate(base_model(), "free ball");
+  crowded.form = base_form(crowded.scene);
+  crowded.p = crowded.form.initial();
+  crowded.add(first, some_values(*first));
+  const auto stiffening = find_effect("strain_stiffening")->candidates(base_model(), nullptr);
+  crowded.add(stiffening.front(), some_values(*stiffening.front()));
+  const Model model = crowded.form.realise(crowded.p);
+  const VectorXd q = deformed_state(*crowded.scene);
+  const Ingredients beside = field.candidates_beside(model, {first}, nullptr);
+  ASSERT_EQ(beside.size(), 16u);
+  for (size_t i = 0; i < beside.size(); i += 5) EXPECT_GT(crowded.check(beside[i], q), 0);
+  crowded.add(beside.front(), VectorXd::Constant(1, 0.7));
+  EXPECT_GT(crowded.check(nullptr, q), 5);
+}
+
 }  // namespace
 }  // namespace hookeye::test
