@@ -136,11 +136,23 @@ function missing(): Told {
     `is not named: ${whyNotNamed(first, now)}`};
 }
 
+/** Parameters of the effect that stands at `at`. One that stands more than once (two places, two cameras) has its own names
+ *  each time, alike but for the last part. */
+function parametersOf(standing: string[], at: number, all: ParameterValue[]): ParameterValue[] {
+  const effect = standing[at];
+  const own = all.filter((p) => p.name === effect || p.name.startsWith(effect + '.'));
+  if (standing.filter((one) => one === effect).length < 2) return own;
+  const group = (p: ParameterValue) => p.name.slice(0, p.name.lastIndexOf('.'));
+  const groups = [...new Set(own.map(group))];
+  const mine = groups[standing.slice(0, at).filter((one) => one === effect).length];
+  return own.filter((p) => group(p) === mine);
+}
+
 /** An effect's own parameters: the largest with its interval, of the others as many as a tab has room for
  *  when it stands `alone`. */
-function valuesOf(effect: string, all: ParameterValue[], alone: boolean): string {
+function valuesOf(effect: string, own: ParameterValue[], alone: boolean): string {
   if (isNumerical(effect)) return 'a finer mesh';
-  const [main, ...others] = all.filter((p) => p.name === effect || p.name.startsWith(effect + '.'))
+  const [main, ...others] = [...own]
     .sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
   if (!main) return `${spaced(effect)}: no parameter of its own`;
   const {value, interval} = around(main.value, main.low, main.high);
@@ -157,7 +169,7 @@ function refitted(newest: StepEntry): Told {
   const takenBack = told.name.startsWith('without-');
   const standing = told.effects ?? (takenBack ? [] : [told.added]);
   const alone = standing.filter((effect) => !isNumerical(effect)).length < 2;
-  const values = standing.map((effect) => valuesOf(effect, told.parameters, alone)).join('; ');
+  const values = standing.map((effect, at) => valuesOf(effect, parametersOf(standing, at, told.parameters), alone)).join('; ');
   return {
     headline: takenBack ? `− ${spaced(told.added)}` : standing.map((effect) => `+ ${spaced(effect)}`).join(' '),
     sentence: values ? `refitted from the photos: ${values}` : 'no added effect is left',
