@@ -65,26 +65,6 @@ VectorXd layers_field(const Scene& scene, const Vector3d& across, const VectorXd
                  [&](const Vector3d& X) { return (n.dot(X - centre) - values[3]) / values[4]; });
 }
 
-/// Within a ball; values a, its centre, radius, thickness of its edge.
-VectorXd ball_field(const Scene& scene, const VectorXd& values) {
-  const Vector3d centre = values.segment<3>(1);
-  return stepped(scene.body->mesh, values[0],
-                 [&](const Vector3d& X) { return (values[4] - (X - centre).norm()) / values[5]; });
-}
-
-/// Over which a jump is smeared: thinner is a jump to every mesh, thicker than the body a gradient.
-Parameter thickness(const Model& model) {
-  const double size = body_size(*model.scene).size;
-  return {"stiffness_field.thickness",
-          model.scene->capture.units.length,
-          "over which the stiffness changes",
-          0.05 * size,
-          0.01 * size,
-          size,
-          0.05 * size,
-          true};
-}
-
 std::shared_ptr<const Ingredient> gradient() {
   IngredientSpec spec;
   spec.name = "stiffness_field";
@@ -115,7 +95,7 @@ std::shared_ptr<const Ingredient> layers(const Model& model, const Vector3d& acr
       {"stiffness_field.angle2", "rad", "second angle of the plane", 0.0, -3.2, 3.2, 0.2, false},
       {"stiffness_field.offset", length, "place of the plane from the body's middle", 0.0,
        -0.5 * body.size, 0.5 * body.size, 0.1 * body.size, false},
-      thickness(model)};
+      edge_thickness(model)};
   spec.touches = {.energy = true};
   spec.apply = [across](const VectorXd& v, Model& m) {
     if (v[0] != 0.0) scale_energy(m, layers_field(*m.scene, across, v));
@@ -128,7 +108,7 @@ std::shared_ptr<const Ingredient> ball(const Model& model, int place) {
   spec.name = "stiffness_field";
   spec.variant = as_place(kBall, place);
   spec.parameters = free_place(model);
-  spec.parameters.push_back(thickness(model));
+  spec.parameters.push_back(edge_thickness(model));
   spec.parameters = of_place(std::move(spec.parameters), place);
   spec.touches = {.energy = true};
   spec.apply = [](const VectorXd& v, Model& m) {
@@ -174,6 +154,24 @@ void scale_energy(Model& model, const VectorXd& log_factor) {
   const VectorXd factor = log_factor.array().exp();
   for (auto& part : model.energy.parts)
     part.weight = part.weight.size() == 0 ? factor : VectorXd(part.weight.cwiseProduct(factor));
+}
+
+Parameter edge_thickness(const Model& model) {
+  const double size = body_size(*model.scene).size;
+  return {"stiffness_field.thickness",
+          model.scene->capture.units.length,
+          "over which the stiffness changes",
+          0.05 * size,
+          0.01 * size,
+          size,
+          0.05 * size,
+          true};
+}
+
+VectorXd ball_field(const Scene& scene, const VectorXd& values) {
+  const Vector3d centre = values.segment<3>(1);
+  return stepped(scene.body->mesh, values[0],
+                 [&](const Vector3d& X) { return (values[4] - (X - centre).norm()) / values[5]; });
 }
 
 std::vector<Parameter> free_place(const Model& model) {

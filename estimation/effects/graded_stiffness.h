@@ -25,6 +25,12 @@ Effect::Further layers_like(const Model& model, const Vector3d& across, double a
 Effect::Further ball_like(const Model& model, const VectorXd& blob, int place = 1);
 /// a, x, y, z, radius: one place of free amplitude in the log of the stiffness.
 std::vector<Parameter> free_place(const Model& model);
+/// Over which a ball's edge is smeared: thinner is a jump to every mesh, thicker than the body a
+/// gradient.
+Parameter edge_thickness(const Model& model);
+/// Log of the stiffness, element by element, within a ball; values a, its centre, radius,
+/// thickness.
+VectorXd ball_field(const Scene& scene, const VectorXd& values);
 std::string graded_sentence(const Model& model, const Ingredient& ingredient,
                             const VectorXd& values);
 

@@ -9,7 +9,7 @@ namespace hookeye {
 
 namespace {
 
-const std::string kPlace = ", place ";
+const std::string kPlace = ", place ", kPrefix = ".place";
 
 }  // namespace
 
@@ -30,19 +30,22 @@ std::string as_place(const std::string& form, int place) {
 std::vector<Parameter> of_place(std::vector<Parameter> parameters, int place) {
   if (place > 1)
     for (Parameter& one : parameters)
-      one.name.insert(one.name.find('.'), fmt::format(".place{}", place));
+      one.name.insert(one.name.find('.'), fmt::format("{}{}", kPrefix, place));
   return parameters;
 }
 
 int next_place(const Ingredients& standing) {
-  const auto taken = [&](int place) {
-    return std::any_of(standing.begin(), standing.end(), [&](const auto& one) {
-      return place_variant(one->variant()).place == place;
-    });
-  };
-  int place = 1;
-  while (taken(place)) ++place;
-  return place;
+  int last = 1;
+  for (const auto& one : standing)
+    for (const Parameter& parameter : one->parameters()) {
+      const std::string& name = parameter.name;
+      const size_t at = name.find(kPrefix);
+      if (at == std::string::npos) continue;
+      int place = 0;
+      std::from_chars(name.data() + at + kPrefix.size(), name.data() + name.size(), place);
+      last = std::max(last, place);
+    }
+  return last + 1;
 }
 
 }  // namespace hookeye

@@ -15,7 +15,7 @@ PlaceVariant place_variant(const std::string& variant);
 std::string as_place(const std::string& form, int place);
 /// "EFFECT.a" as "EFFECT.place2.a"; of place 1 they stay plain.
 std::vector<Parameter> of_place(std::vector<Parameter> parameters, int place);
-/// The least number that none of `standing` has.
+/// The number after the largest that a parameter of `standing` has.
 int next_place(const Ingredients& standing);
 
 }  // namespace hookeye

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-
 #include "estimation/effects/graded_stiffness.h"
 #include "estimation/effects/own_directions.h"
 #include "estimation/effects/places.h"
+#include "estimation/effects/stiffness_places.h"
 
 namespace hookeye {
 
@@ -31,47 +30,6 @@ struct ScaledForces {
     return element_forces(model.scene->body->mesh, scaled, q);
   }};
 };
-
-/// The one Gaussian place, and its amplitude, that least squares over the volume put nearest to the
-/// sum of all bumps: anywhere in the body, for a place between bumps is shared out among them, and
-/// from half to 1.4 times as wide as they. The rest is a constant and the same amplitude in all
-/// bumps, which is none: they overlap where the body is thick, and hardly at its edges.
-std::pair<Blob, double> likest_blob(const TetMesh& mesh, const std::vector<Vector3d>& centres,
-                                    double radius, const VectorXd& values) {
-  constexpr Eigen::Index kPlaces = 1000;
-  const VectorXd w = element_volumes(mesh).cwiseSqrt();
-  const auto bump = [&](const Vector3d& centre, double r) {
-    return w.cwiseProduct(gaussian_bump(mesh, centre, r)).eval();
-  };
-  VectorXd field = VectorXd::Zero(mesh.size());
-  Eigen::MatrixXd rest(mesh.size(), 2);
-  rest << w, field;
-  for (size_t i = 0; i < centres.size(); ++i) {
-    const VectorXd one = bump(centres[i], radius);
-    field += values[static_cast<Eigen::Index>(i)] * one;
-    rest.col(1) += one;
-  }
-  const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(rest).householderQ() *
-                            Eigen::MatrixXd::Identity(mesh.size(), 2);
-  field -= Q * (Q.transpose() * field);
-  std::vector<Vector3d> places = centres;
-  const Matrix3Xd elements = element_centres(mesh);
-  const Eigen::Index stride = (elements.cols() + kPlaces - 1) / kPlaces;
-  for (Eigen::Index e = 0; e < elements.cols(); e += stride) places.emplace_back(elements.col(e));
-  std::pair<Blob, double> likest{{centres.front(), radius}, 0.0};
-  double most = 0.0;
-  for (double share : {0.5, 0.7, 1.0, 1.4})
-    for (const Vector3d& place : places) {
-      const VectorXd one = bump(place, share * radius);
-      const double square = one.squaredNorm() - (Q.transpose() * one).squaredNorm();
-      const double along = one.dot(field);
-      // what is hardly more than the rest says nothing
-      if (square < 1e-3 * one.squaredNorm() || along * along <= most * square) continue;
-      most = along * along / square;
-      likest = {{place, share * radius}, along / square};
-    }
-  return likest;
-}
 
 /// Energy weights exp(sum_i a_i phi_i(X)), phi_i Gaussian bumps: stiffness varies over the body.
 /// The refit may go on to one that changes along a direction, in two layers or within a ball
@@ -124,15 +82,14 @@ class StiffnessField final : public Effect {
     const auto [form, nth] = place_variant(variant);
     if (form == kFreeBlob) return free_blob(model, nth);
     if (auto graded = graded_form(model, variant)) return graded;
+    if (auto places = places_form(model, variant)) return places;
     if (const auto across = across_of(variant))
       return halves(model, *across, std::make_shared<ScaledForces>());
     if (const auto place = blob_in(form))
       return blob(model, place->centre, place->radius, std::make_shared<ScaledForces>(), nth);
-    const auto n = numbers_in(variant);
-    if (!starts_with(variant, "field") || n.size() < 4 || n.size() % 3 != 1) return nullptr;
-    std::vector<Vector3d> centres;
-    for (size_t i = 1; i + 2 < n.size(); i += 3) centres.emplace_back(n[i], n[i + 1], n[i + 2]);
-    return field(model, centres, n[0], std::make_shared<ScaledForces>());
+    const auto bumps = bumps_in(variant);
+    if (!bumps) return nullptr;
+    return field(model, bumps->centres, bumps->radius, std::make_shared<ScaledForces>());
   }
 
   std::shared_ptr<const Ingredient> refit_form(const Model& model,
@@ -153,12 +110,10 @@ class StiffnessField final : public Effect {
   /// The one blob that is most like the field but for its mean.
   std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
                                                  VectorXd& values) const override {
-    const auto n = numbers_in(refitted.variant());
-    if (!starts_with(refitted.variant(), "field") || n.size() < 4) return nullptr;
-    std::vector<Vector3d> centres;
-    for (Eigen::Index i = 0; i < values.size(); ++i)
-      centres.emplace_back(n[3 * i + 1], n[3 * i + 2], n[3 * i + 3]);
-    const auto [place, amplitude] = likest_blob(model.scene->body->mesh, centres, n[0], values);
+    const auto bumps = bumps_in(refitted.variant());
+    if (!bumps) return nullptr;
+    const auto [place, amplitude] =
+        likest_place(model.scene->body->mesh, bumps->centres, bumps->radius, values);
     values = freed(place, amplitude);
     return free_blob(model, 1);
   }
@@ -166,6 +121,10 @@ class StiffnessField final : public Effect {
   std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
                                      const VectorXd& values) const override {
     if (is_graded(refitted.variant())) return {};
+    if (is_places(refitted.variant())) {
+      const auto balls = balls_like(model, refitted, values);
+      return balls ? std::vector<Further>{*balls} : std::vector<Further>{};
+    }
     const auto [form, nth] = place_variant(refitted.variant());
     if (nth > 1) return {ball_like(model, values, nth)};
     Model one = model, with = model;
@@ -177,6 +136,9 @@ class StiffnessField final : public Effect {
       factor = (before.array() > 0.0).select(factor.cwiseQuotient(before), 1.0);
     if (factor.size() == 0) factor = VectorXd::Ones(model.scene->body->mesh.size());
     auto all = further_grades(model, factor.array().log());
+    if (const auto bumps = bumps_in(refitted.variant()))
+      if (auto places = places_like(model, bumps->centres, bumps->radius, values))
+        all.insert(all.begin(), std::move(*places));
     if (form == kFreeBlob) all.insert(all.begin(), ball_like(model, values));
     return all;
   }
@@ -186,6 +148,7 @@ class StiffnessField final : public Effect {
     if (starts_with(ingredient.variant(), "field"))
       return fmt::format("stiffness varies over the body by factors from {} to {}",
                          figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
+    if (is_places(ingredient.variant())) return places_sentence(model, ingredient, values);
     if (is_graded(ingredient.variant())) return graded_sentence(model, ingredient, values);
     if (const auto across = across_of(ingredient.variant())) {
       const Effect::Further layers = layers_like(model, *across, values[0]);
@@ -203,7 +166,19 @@ class StiffnessField final : public Effect {
   /// Free ones: a fixed one's derivative scales all parts that have weights, another place's too.
   static bool is_place(const std::string& variant) {
     const std::string form = place_variant(variant).form;
-    return form == kFreeBlob || form == kFreeBall;
+    return form == kFreeBlob || form == kFreeBall || is_places(variant);
+  }
+
+  struct Bumps {
+    double radius;
+    std::vector<Vector3d> centres;
+  };
+  static std::optional<Bumps> bumps_in(const std::string& variant) {
+    const auto n = numbers_in(variant);
+    if (!starts_with(variant, "field") || n.size() < 4 || n.size() % 3 != 1) return {};
+    Bumps out{n[0], {}};
+    for (size_t i = 1; i + 2 < n.size(); i += 3) out.centres.emplace_back(n[i], n[i + 1], n[i + 2]);
+    return out;
   }
 
   static Parameter amplitude(const std::string& label) {

@@ -46,7 +46,7 @@ TEST(StiffnessField, BesidePlacesOneMoreMayStand) {
     VectorXd values = VectorXd::Constant(1, 0.5);
     const auto free = field.refit_form(base_model(), *blob, values);
     EXPECT_EQ(free->variant(),
-              place == 1 ? "free blob" : "free blob, place " + std::to_string(place));
+              place == 1 ? std::string("free blob") : "free blob, place " + std::to_string(place));
     const auto ball = field.further_forms(base_model(), *free, values).front();
     for (const auto& form : {*blob, free, ball.form}) {
       const auto again = field.candidate(base_model(), form->variant());
@@ -309,6 +309,50 @@ TEST(KeptStiffness, IsThatOfTheElementsThatHaveTheLaw) {
   EXPECT_NEAR(kept[0], 1.5 * form.initial()[0], 1e-12);
   weight.setZero();
   EXPECT_EQ(with_stiffness_of(model, form, form.initial()), form.initial());
+}
+
+/// A field that is high in two places is like two, and in one like none of several.
+TEST(StiffnessField, SeveralPlacesAreFoundInAField) {
+  const Effect& effect = *find_effect("stiffness_field");
+  const auto field = effect.candidates(base_model(), nullptr).front();
+  const auto n = numbers_in(field->variant());
+  std::vector<Vector3d> centres;
+  for (size_t i = 1; i + 2 < n.size(); i += 3) centres.emplace_back(n[i], n[i + 1], n[i + 2]);
+  // what bumps say, at most, of Gaussians as wide as they, by least squares over the elements
+  const TetMesh& mesh = base_model().scene->body->mesh;
+  const auto [low, high] = std::minmax_element(
+      centres.begin(), centres.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
+  const std::vector<Vector3d> told = {*low, *high};
+  VectorXd log_factor = VectorXd::Zero(mesh.size());
+  for (const Vector3d& c : told) log_factor += 1.2 * gaussian_bump(mesh, c, n[0]);
+  Eigen::MatrixXd bumps(mesh.size(), centres.size());
+  for (size_t i = 0; i < centres.size(); ++i)
+    bumps.col(static_cast<Eigen::Index>(i)) = gaussian_bump(mesh, centres[i], n[0]);
+  const VectorXd values = bumps.householderQr().solve(log_factor);
+  const auto further = effect.further_forms(base_model(), *field, values);
+  ASSERT_FALSE(further.empty());
+  ASSERT_EQ(further.front().form->variant(), "2 free blobs");
+  std::set<size_t> found;
+  for (int k = 0; k < 2; ++k) {
+    const Vector3d at = further.front().values.segment<3>(5 * k + 1);
+    for (size_t i = 0; i < told.size(); ++i)
+      if ((at - told[i]).norm() < 0.5 * n[0]) found.insert(i);
+  }
+  EXPECT_EQ(found.size(), 2u);
+
+  const auto balls =
+      effect.further_forms(base_model(), *further.front().form, further.front().values);
+  ASSERT_EQ(balls.size(), 1u);
+  EXPECT_EQ(balls.front().form->variant(), "2 free balls");
+  EXPECT_TRUE(balls.front().same_claim);
+  EXPECT_EQ(balls.front().values.size(), 11);
+  const auto beside = effect.candidates_beside(base_model(), {balls.front().form}, nullptr);
+  ASSERT_FALSE(beside.empty());
+  EXPECT_EQ(beside.front()->parameters().front().name, "stiffness_field.place3.a");
+
+  const VectorXd one = VectorXd::Unit(static_cast<Eigen::Index>(centres.size()), 4);
+  EXPECT_EQ(effect.further_forms(base_model(), *field, one).front().form->variant(),
+            "free gradient");
 }
 
 /// The integral over space of the logarithm, and of that squared, are the Gaussian's.
