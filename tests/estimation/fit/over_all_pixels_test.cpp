@@ -7,8 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <regex>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/input_error.h"
+#include "core/text_file.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "estimation/output/pixels_json.h"
 #include "tests/estimation/large_photos.h"
@@ -104,6 +109,61 @@ TEST(OverAllPixels, SumsAndPicturesAreThoseOfWholePhotosWhateverTheTiles) {
       EXPECT_GT(4.0 * a.count, 0.8 * a.taken_count) << "no gaps between tiles";
       EXPECT_NEAR(a.r2 / a.count, 1.0, 0.3);
     }
+}
+
+/// The capture with another text: whole, and read in part.
+struct Retold {
+  std::shared_ptr<const Scene> whole, part;
+};
+Retold retold(const std::string& name,
+              const std::vector<std::pair<std::string, std::string>>& changes) {
+  const auto told = large_photos().scene->capture.file;
+  std::string text = read_text(told);
+  for (const auto& [from, to] : changes) text = std::regex_replace(text, std::regex(from), to);
+  const auto file = told.parent_path() / (name + ".yaml");
+  write_text(file, text);
+  Limits limits;
+  limits.fit.brightness_cell = 0.0;  // its cells are of the size that is read
+  Retold out;
+  out.whole = load_scene(read_capture(file), true, limits);
+  limits.fit.pixels = 2e4;
+  limits.fit.pixels_keep = 0.3;
+  out.part = load_scene(read_capture(file), true, limits);
+  return out;
+}
+
+/// Sums of all pixels are those of the whole photos, at the values that are told.
+void expect_same_sums(const Retold& scenes) {
+  ASSERT_TRUE(scenes.part->in_part());
+  const auto sums_of = [](const std::shared_ptr<const Scene>& scene, bool all_pixels) {
+    Workspace workspace(scene);
+    EvaluationOptions options;
+    options.all_pixels = options.pictures = all_pixels;
+    const ModelForm form = base_form(scene);
+    return std::get<Evaluation>(workspace.evaluate(form, form.initial(), options));
+  };
+  const Evaluation all = sums_of(scenes.whole, false), taken = sums_of(scenes.part, true);
+  int compared = 0;
+  for (size_t e = 0; e < all.examples.size(); ++e)
+    for (size_t k = 0; k < all.examples[e].photos.size(); ++k) {
+      const PhotoEvaluation& seen = all.examples[e].photos[k];
+      const PhotoEvaluation& photo = taken.examples[e].photos.at(k);
+      EXPECT_NEAR(photo.taken_count, seen.count, 0.001 * seen.count);
+      EXPECT_NEAR(photo.taken_r2, seen.r2, 0.002 * seen.r2);
+      EXPECT_NEAR(photo.sums.JtJ(0, 0), seen.sums.JtJ(0, 0), 0.002 * seen.sums.JtJ(0, 0) + 1e-9);
+      ++compared;
+    }
+  EXPECT_GT(compared, 0);
+}
+
+TEST(OverAllPixels, ATextureThatIsAPhotoIsTheTakenOne) {
+  expect_same_sums(
+      retold("rest_texture", {{"texture: \\{image[^}]*\\}", "texture: {from: rest}"}}));
+}
+
+TEST(OverAllPixels, SilhouettesAreComparedAsTheyWereTaken) {
+  expect_same_sums(retold(
+      "silhouettes", {{"(cam[01]): (photos/[a-z_01.]*)", "$1: {file: $2, kind: silhouette}"}}));
 }
 
 TEST(OverAllPixels, TheSameBytesOnOneThread) {
