@@ -170,6 +170,11 @@ void add_common_options(CLI::App& command, Session& session) {
   command.add_flag("--json", session.json, "One JSON document on standard output");
   command.add_option("--threads", session.threads, "Cores to use (default: all)")
       ->check(counting_number());
+  command
+      .add_option("--memory", session.memory,
+                  "Memory to use at most, as 4G (default: half of what is free for photos, all of "
+                  "it for the solver)")
+      ->transform(memory_size());
   command.add_flag("-v,--verbose", session.verbose, "More about what is going on");
 }
 
@@ -199,6 +204,7 @@ int run_program(int argc, char** argv) {
     return report_usage(app, session, error);
   }
   set_up_log(session.verbose);
+  set_memory_limit(session.memory);
   const auto threads =
       session.threads > 0
           ? static_cast<size_t>(session.threads)

@@ -18,11 +18,6 @@ namespace {
 constexpr int kBarWidth = 24;
 std::atomic<bool> bar_on_line{false};
 
-bool is_terminal() {
-  const char* kind = std::getenv("TERM");
-  return ::isatty(STDERR_FILENO) != 0 && kind != nullptr && std::string_view(kind) != "dumb";
-}
-
 size_t terminal_width() {
   winsize size{};
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col - 1u
@@ -31,10 +26,15 @@ size_t terminal_width() {
 
 }  // namespace
 
+bool Progress::on_terminal() {
+  const char* kind = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) != 0 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
 Progress::Progress(std::string title, int total)
     : title_(std::move(title)),
       total_(total),
-      terminal_(is_terminal()),
+      terminal_(on_terminal()),
       start_(Clock::now()),
       counted_from_(start_),
       shown_(start_ - std::chrono::hours(1)) {

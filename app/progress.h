@@ -22,6 +22,9 @@ class Progress {
   /// Sets the count of finished steps (and the total, where it has changed).
   void set(int done, int total, const std::string& note = {});
 
+  /// Whether it would be a bar.
+  static bool on_terminal();
+
   /// Clears the bar so that a log line can be printed; the bar returns with the next step.
   static void clear_line();
 

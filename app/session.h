@@ -25,7 +25,8 @@ namespace hookeye {
 struct Session {
   bool json = false;
   bool verbose = false;
-  int threads = 0;  ///< 0: all cores
+  int threads = 0;      ///< 0: all cores
+  double memory = 0.0;  ///< [bytes] at most; 0: as memory_budget() says
   /// What stands behind `--` on the command line, for a command that hands it on.
   std::vector<std::string> handed_on;
   int status = 0;  ///< exit status of work that was done and in which something failed

@@ -9,6 +9,8 @@
 #include <limits>
 #include <string>
 
+#include "core/memory_left.h"
+
 namespace hookeye {
 
 /// A whole number from 1 that an int holds.
@@ -34,6 +36,20 @@ inline CLI::Validator above_zero() {
         return good ? std::string() : fmt::format("a number above zero is expected, not {}", text);
       },
       "POSITIVE");
+}
+
+/// At least 200 MB, as "4G"; stored in bytes.
+inline CLI::Validator memory_size() {
+  return CLI::Validator(
+      [](std::string& text) {
+        constexpr double kLeast = 2e8;  // below it not even a small capture is fitted
+        const auto bytes = bytes_in(text);
+        if (!bytes || *bytes < kLeast)
+          return fmt::format("a size from 200M is expected, as 4G or 1.5GB, not {}", text);
+        text = fmt::format("{:.0f}", *bytes);
+        return std::string();
+      },
+      "SIZE");
 }
 
 }  // namespace hookeye

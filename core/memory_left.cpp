@@ -3,11 +3,18 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cctype>
+#include <cmath>
 #include <condition_variable>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <optional>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace hookeye {
 namespace {
@@ -104,6 +111,17 @@ double allowed_by_ulimit(const fs::path& root) {
   return limit - 1024.0 * number_behind(root / "proc/self/status", "VmSize:").value_or(0.0);
 }
 
+double told_limit = kUnlimited;  ///< `--memory`
+
+/// What is filled counts, and what was given back to the C library does not.
+double allowed_by_option(const fs::path& root) {
+  if (told_limit == kUnlimited) return told_limit;
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+  return told_limit - 1024.0 * number_behind(root / "proc/self/status", "VmRSS:").value_or(0.0);
+}
+
 std::mutex claims_mutex;
 std::condition_variable claim_ended;
 double claimed = 0.0;  ///< by claims that are under way
@@ -124,8 +142,35 @@ MemoryLeft memory_left(const fs::path& root) {
   };
   also(allowed_by_groups(root), "the control group (cgroup)");
   also(allowed_by_ulimit(root), "`ulimit -v`");
+  also(allowed_by_option(root), "`--memory`");
   least.bytes = std::max(0.0, least.bytes);
   return least;
+}
+
+void set_memory_limit(double bytes) { told_limit = bytes > 0.0 ? bytes : kUnlimited; }
+
+double memory_budget() {
+  static const double kHalf = 0.5 * memory_left().bytes;
+  return told_limit == kUnlimited ? kHalf : told_limit;
+}
+
+std::optional<double> bytes_in(const std::string& text) {
+  size_t end = 0;
+  double value = 0.0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    return {};
+  }
+  std::string unit;
+  for (const char c : text.substr(end))
+    if (c != ' ') unit += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  static const std::map<std::string, double> kUnits = {
+      {"", 1.0},   {"B", 1.0}, {"K", 1e3},  {"KB", 1e3}, {"M", 1e6},
+      {"MB", 1e6}, {"G", 1e9}, {"GB", 1e9}, {"T", 1e12}, {"TB", 1e12}};
+  const auto found = kUnits.find(unit);
+  if (found == kUnits.end() || !std::isfinite(value) || value <= 0.0) return {};
+  return value * found->second;
 }
 
 std::string memory_text(double bytes) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <string>
 
 namespace hookeye {
@@ -14,9 +15,18 @@ struct MemoryLeft {
 };
 
 /// The least of what the machine has available without swapping, of what the process's control
-/// groups (versions 1 and 2) allow, and of RLIMIT_AS. Infinite where nothing tells. `root`: the
-/// folder in which proc and sys lie.
+/// groups (versions 1 and 2) allow, of RLIMIT_AS, and of set_memory_limit(). Infinite where nothing
+/// tells. `root`: the folder in which proc and sys lie.
 MemoryLeft memory_left(const std::filesystem::path& root = "/");
+
+/// At most so many bytes for the whole process, if more than zero (`--memory`): memory_left() heeds
+/// it. Set once, before anything is worked out.
+void set_memory_limit(double bytes);
+/// That limit; where none is set half of what machine and groups leave at the first call.
+double memory_budget();
+/// "4G", "1.5 GB", "300M" (powers of 1000, as in messages) or a number of bytes. Empty: none of
+/// these.
+std::optional<double> bytes_in(const std::string& text);
 
 /// "14.2 GB", "310 MB".
 std::string memory_text(double bytes);

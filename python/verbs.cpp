@@ -122,6 +122,7 @@ void add_to_run(OpenedRun& opened, const std::string& effect, bool take_back,
   record(run, step, command);
   opened.forget();
   diagnose_newest(run, bench, step, options.diagnosis);
+  record_all_pixels(run, bench, step, quiet);
   warn_of_end(step.fitted);
   listener.finished(step.name, step.fitted.evaluation.chi(false));
 }

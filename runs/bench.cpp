@@ -3,7 +3,9 @@
 #include "core/json_file.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
+#include "estimation/fit/over_all_pixels.h"
 #include "estimation/model/doubts.h"
+#include "estimation/output/pixels_json.h"
 #include "runs/failed.h"
 
 namespace hookeye {
@@ -101,6 +103,8 @@ Step step_of(const Run& run, Bench& bench, size_t index, const FitOptions& optio
   step.fitted = value_or_fail(assess(bench.workspace, form, p, options));
   step.fitted.converged = entry.value("converged", true);
   step.fitted.iterations = entry.value("iterations", 0);
+  if (auto known = all_pixels_in(entry.value("all_pixels", nlohmann::json()), form.parameters()))
+    take_all_pixels(std::move(*known), &step.fitted);
   return step;
 }
 

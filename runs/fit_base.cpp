@@ -40,6 +40,7 @@ Step fit_base(Run& run, Bench& bench, const BaseFit& wanted, const FitOptions& o
   record(run, step, wanted.command);
   const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
   run.update([&](nlohmann::json& timeline) { tell_floor(timeline, floor); });
+  record_all_pixels(run, bench, step, options);
   return step;
 }
 

@@ -59,9 +59,9 @@ void append_work(const Run& run, const CommandWork& work) {
 
 }  // namespace
 
-std::vector<CommandWork> work_of(const Run& run) {
+std::vector<CommandWork> work_of(const std::filesystem::path& run) {
   std::vector<CommandWork> out;
-  std::ifstream file(run.folder() / kWorkFile);
+  std::ifstream file(run / kWorkFile);
   for (std::string line; std::getline(file, line);) {
     std::string damage;
     const auto told = parse_json(line, damage);
@@ -79,6 +79,22 @@ std::vector<CommandWork> work_of(const Run& run) {
     } catch (const nlohmann::json::exception&) {
       continue;
     }
+  }
+  return out;
+}
+
+nlohmann::ordered_json work_json(const std::vector<CommandWork>& all) {
+  auto out = nlohmann::ordered_json::array();
+  for (const CommandWork& work : all) {
+    nlohmann::ordered_json cpu;
+    for (int s = 0; s < kWorkStages; ++s)
+      for (int p = 0; p < kWorkParts; ++p)
+        cpu[name_of(static_cast<WorkStage>(s))][name_of(static_cast<WorkPart>(p))] =
+            work.table.cpu_s[s][p];
+    out.push_back({{"first_step", work.first_step},
+                   {"steps", work.steps},
+                   {"wall_s", work.table.wall_s},
+                   {"cpu_s", std::move(cpu)}});
   }
   return out;
 }

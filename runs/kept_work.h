@@ -39,6 +39,8 @@ struct CommandWork {
 };
 
 /// What RUN/work.jsonl tells, in the order of the commands; lines that are damaged are left out.
-std::vector<CommandWork> work_of(const Run& run);
+std::vector<CommandWork> work_of(const std::filesystem::path& run);
+/// [{first_step, steps, wall_s, cpu_s: {STAGE: {PART: seconds}}}].
+nlohmann::ordered_json work_json(const std::vector<CommandWork>& all);
 
 }  // namespace hookeye

@@ -8,7 +8,9 @@
 #include "core/work_clock.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/fit/at_floor.h"
+#include "estimation/fit/over_all_pixels.h"
 #include "estimation/output/page_data.h"
+#include "estimation/output/pixels_json.h"
 #include "estimation/output/removed.h"
 #include "estimation/output/step_json.h"
 #include "estimation/search/contest.h"
@@ -18,6 +20,8 @@
 #include "runs/versions.h"
 
 namespace hookeye {
+
+using nlohmann::json;
 
 std::vector<std::string> tied_in(const nlohmann::json& step, const Limits& limits) {
   std::vector<std::string> tied;
@@ -80,6 +84,30 @@ Step with_displaced(Bench& bench, Step step, const std::atomic<bool>* cancel) {
     if (auto failure = displace_again(bench.workspace, step.fitted, cancel, step.diagnosis))
       fail(std::move(*failure));
   return step;
+}
+
+void record_all_pixels(Run& run, Bench& bench, Step& step, const FitOptions& options) {
+  const auto known = all_pixels_in(run.timeline().at("steps").back().value("all_pixels", json()),
+                                   step.fitted.form.parameters());
+  if (known) {
+    take_all_pixels(*known, &step.fitted);
+    return;
+  }
+  auto result = value_or_fail(over_all_pixels(bench.workspace, step.fitted, options));
+  if (!result) return;
+  step.fitted.low = result->low, step.fitted.high = result->high;
+  step.fitted.all_pixels = result->all_pixels;
+  Step whole = step;
+  whole.fitted = std::move(*result);
+  const WorkingAt stage(WorkStage::pictures);
+  const auto folder = run.steps().back();
+  for (const auto& [name, write] : step_files(*whole.fitted.form.scene, whole))
+    if (name != "removed") run.add_file(folder, name, write, true);
+  const json entry = timeline_entry(whole);
+  run.update([&](json& timeline) {
+    for (const char* key : {"parameters", "all_pixels", "undetermined"})
+      timeline["steps"].back()[key] = entry.at(key);
+  });
 }
 
 void record_diagnosis(Run& run, const Step& step) {

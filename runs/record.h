@@ -19,6 +19,11 @@ std::vector<std::string> tied_in(const nlohmann::json& step, const Limits& limit
 /// Who stood in its contest.
 Contested contested_in(const nlohmann::json& step);
 
+/// Where photos were read in part: the newest step, which is `step`, over all pixels
+/// (over_all_pixels.h). Its files that follow from that are made anew; its entry and `step` get the
+/// intervals, and the entry `all_pixels`. Once a step: what is on record is taken as it is.
+void record_all_pixels(Run& run, Bench& bench, Step& step, const FitOptions& options);
+
 /// Writes the step's folder and the timeline's entry, which keeps the command that made it. The
 /// run's verdict goes: it was about the step before. So does `search`, unless the step is of it.
 std::filesystem::path record(Run& run, const Step& step, const std::string& command,

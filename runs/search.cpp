@@ -227,6 +227,7 @@ Discovery discover_into(Run& run, Bench& bench, const SearchRequest& wanted, boo
     if (found.all) timeline["fitted_to_all"] = to_json(*found.all);
     tell_floor(timeline, found.floor);
   });
+  record_all_pixels(run, bench, found.steps.back(), wanted.options.fit);
   tell_tested(run, bench, found.steps.back().fitted, wanted);
   return found;
 }

@@ -78,6 +78,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   const Floor floor = measure_floor(*step.fitted.form.scene, step.fitted.evaluation);
   spdlog::info("diagnosing the new step");
   diagnose_newest(run, bench, step, options.diagnosis);
+  record_all_pixels(run, bench, step, options.fit);
   session.document = run.timeline()["steps"].back();
   say_answer(run, session);
   say_outcome(current, step, floor, arguments.request.take_back, session);

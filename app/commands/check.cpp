@@ -9,6 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/commands/run_support.h"
+#include "app/progress.h"
 #include "core/scope.h"
 #include "estimation/model/model.h"
 
@@ -310,11 +311,18 @@ struct CheckOptions {
   bool quick = false;
 };
 
+/// A bar for those who watch; empty: nobody does.
+std::function<void(int, int)> bar(const char* note, const Session& session) {
+  if (session.json || !Progress::on_terminal()) return {};
+  const auto progress = std::make_shared<Progress>("check", 0);
+  return [progress, note](int done, int of) { progress->set(done, of, note); };
+}
+
 /// Looks at the photos; draws where a folder is told.
 void look(const Scene& scene, const CheckOptions& options, Session& session) {
   InspectionOptions how;
   how.first_guess = !options.quick;
-  const Inspection seen = inspect(scene, how, options.out);
+  const Inspection seen = inspect(scene, how, options.out, bar("photos looked at", session));
   describe_inspection(scene, seen, session);
   say_inspection(scene, seen, session);
   if (!options.out.empty() && !seen.sheet.empty())
@@ -337,7 +345,8 @@ void run_check(const CheckOptions& options, Session& session) {
                 {"force", capture.units.force},
                 {"stress", capture.units.stress()}};
   d["materials"] = describe_materials(capture);
-  const auto scene = load_scene_to_look_at(capture, InspectionOptions{}.look_px);
+  const auto scene =
+      load_scene_to_look_at(capture, InspectionOptions{}.look_px, bar("photos read", session));
   const ModelForm form = base_form(scene);
   const Model model = form.realise(form.initial());
   warn_of_doubts(*scene, session);

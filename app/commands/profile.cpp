@@ -45,24 +45,14 @@ std::string told(const CommandWork& work) {
 
 void run_profile(const std::string& folder, Session& session) {
   const Run run = open_run(folder, false);
-  const std::vector<CommandWork> all = work_of(run);
+  const std::vector<CommandWork> all = work_of(run.folder());
   if (all.empty())
     throw InputError({folder}, "nothing is on record of where this run's time went",
                      "run another command on it: fit, add, discover and diagnose keep it");
-  session.document["commands"] = nlohmann::ordered_json::array();
-  for (const CommandWork& work : all) {
-    nlohmann::ordered_json cpu;
-    for (int s = 0; s < kWorkStages; ++s)
-      for (int p = 0; p < kWorkParts; ++p)
-        cpu[name_of(static_cast<WorkStage>(s))][name_of(static_cast<WorkPart>(p))] =
-            work.table.cpu_s[s][p];
-    session.document["commands"].push_back({{"first_step", work.first_step},
-                                            {"steps", work.steps},
-                                            {"wall_s", work.table.wall_s},
-                                            {"cpu_s", std::move(cpu)}});
+  session.document["commands"] = work_json(all);
+  for (const CommandWork& work : all)
     session.say("{}: {:.1f} s, {:.1f} CPU-seconds\n{}\n", told(work), work.table.wall_s,
                 work.table.total(), work_table(work.table));
-  }
 }
 
 }  // namespace

@@ -137,6 +137,7 @@ void RefitJob::refit(const AddRequest& request) {
                      request.take_back ? " --take-back" : ""));
   stage("diagnosing the new step");
   diagnose_newest(run, *bench_, step, wanted.diagnosis);
+  record_all_pixels(run, *bench_, step, quiet);
   finish("done",
          fmt::format("Normalised residual {:.4g} → {:.4g} on the fitted photos.",
                      current.fitted.evaluation.chi(false), step.fitted.evaluation.chi(false)));

@@ -86,7 +86,7 @@ def command_page(man, name):
     out.append(f"```text\n{synopsis}\n```\n")
     for heading in ("ARGUMENTS", "OPTIONS"):
         rows = [f"| {cell(term)} | {cell(meaning)} |" for term, meaning in entries(parts.get(heading, []))
-                if term not in ("`-h`, `--help`", "`--json`", "`-v`, `--verbose`") and not term.startswith("`--threads`")]
+                if term not in ("`-h`, `--help`", "`--json`", "`-v`, `--verbose`") and not term.startswith(("`--threads`", "`--memory`"))]
         if rows:
             out.append("\n".join([f"| {heading.lower().rstrip('s')} | meaning |", "|---|---|", *rows]) + "\n")
     return "\n".join(out)
@@ -100,7 +100,7 @@ def commands_page(program):
     names = [name.removeprefix("hookeye-") for name in mans]
     head = ["# Commands\n", "This page is made from the program's own definitions, as its man pages and `--help` are.\n",
             "Every command takes `--json` (one JSON document on standard output), `--threads N` (cores to use; all unless said), "
-            "`-v` (more about what is going on) and `-h`.\n",
+            "`--memory 4G` (at most), `-v` (more about what is going on) and `-h`.\n",
             "| exit status | meaning |\n|---|---|\n| 0 | done |\n| 1 | internal error |\n| 2 | bad input |\n"
             "| 3 | the numbers failed |\n| 130 | stopped by Ctrl-C; all that is finished is kept |\n"]
     return "\n".join(head + [command_page(mans[f"hookeye-{name}"], name) for name in names])

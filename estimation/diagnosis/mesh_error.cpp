@@ -150,13 +150,8 @@ double imitated_by_mesh(const Fitted& fitted, const DiagnosisSums& sums,
 }
 
 void reach_for_mesh(Fitted& fitted, const Diagnosis& diagnosis) {
-  const auto parameters = fitted.form.parameters();
   fitted.mesh_reach = diagnosis.mesh_shift;
-  for (int i = 0; i < fitted.mesh_reach.size(); ++i) {
-    const double reach = fitted.mesh_reach[i];
-    double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
-    end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
-  }
+  widen_by_mesh(fitted);
 }
 
 }  // namespace hookeye

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 
+#include "estimation/evaluation/all_pixels.h"
 #include "estimation/evaluation/columns.h"
 #include "estimation/evaluation/field_evaluation.h"
 #include "estimation/evaluation/photo_evaluation.h"
@@ -354,8 +355,12 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     }
     advance();
   };
-  const auto for_each = [](const std::vector<int>& examples, const auto& body) {
-    tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) { body(examples[i]); });
+  const auto for_each = [&](const std::vector<int>& examples, const auto& body) {
+    const auto one = [&](size_t i) { body(examples[i]); };
+    if (options.all_pixels)
+      few_at_once(examples.size(), one);
+    else
+      tbb::parallel_for(size_t{0}, examples.size(), one);
   };
   // All look at the reference state. Without one every example goes on to its photos by itself, and
   // no core waits for the slowest equilibrium.

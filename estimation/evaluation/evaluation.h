@@ -31,7 +31,11 @@ struct EvaluationOptions {
   /// Residuals made linear in the motion (registration.h): `sums`, their cost and the pictures.
   /// Where only pictures are asked for, `sums` alone are of those.
   bool registered = false;
-  int level = 0;             ///< pyramid level: 0 = full size, each level halves
+  int level = 0;  ///< pyramid level: 0 = full size, each level halves
+  /// Photos that are read halved or in part of their tiles are compared in all pixels that the
+  /// camera took (PhotoEvaluation says what is of those). Reads their files again.
+  bool all_pixels = false;
+  int tile_px = 1024;  ///< of those: side of the tiles, a multiple of 16; memory follows it
   bool single_rays = false;  ///< at full size one ray a pixel: quicker, and aliased
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
@@ -60,6 +64,9 @@ struct PhotoEvaluation {
   /// Pictures of textured photos only: variance_after_free_motion() of the aligned pictures.
   double free_variance = 1.0;
   double motion_px = 0.0;  ///< registered: rms motion between model and photo
+  /// all_pixels: the same as r2 and count of the pixels that the camera took, as are `sums`. All
+  /// else is of pixels of the size that is read, without those between tiles being left out.
+  double taken_r2 = 0.0, taken_count = 0.0;
   double chi() const;
 };
 

@@ -38,6 +38,36 @@ double misfit_scale(const Evaluation& evaluation) {
   return std::max(1.0, 1.4826 * static_cast<double>(sample[sample.size() / 2]));
 }
 
+VectorXd errors_of(const ParameterCovariance& covariance) {
+  VectorXd out = covariance.determined.diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (Eigen::Index i = 0; i < out.size(); ++i)
+    if (covariance.open[static_cast<size_t>(i)]) out[i] = 0.0;
+  return out;
+}
+
+void tell_intervals(const VectorXd& error, const VectorXd& about, Fitted* fitted) {
+  const auto parameters = fitted->form.parameters();
+  const VectorXd& p = fitted->p;
+  fitted->low = fitted->high = p;
+  for (int i = 0; i < p.size(); ++i) {
+    const double half = kNormal95 * error[i];
+    // positive parameters: the interval is symmetric in the logarithm
+    fitted->low[i] = parameters[i].positive ? about[i] * std::exp(-half / p[i]) : about[i] - half;
+    fitted->high[i] = parameters[i].positive ? about[i] * std::exp(half / p[i]) : about[i] + half;
+    // nothing in the data holds it: anything may be
+    if (half == 0.0) fitted->low[i] = parameters[i].low, fitted->high[i] = parameters[i].high;
+  }
+}
+
+void widen_by_mesh(Fitted& fitted) {
+  const auto parameters = fitted.form.parameters();
+  for (int i = 0; i < fitted.mesh_reach.size(); ++i) {
+    const double reach = fitted.mesh_reach[i];
+    double& end = (reach < 0.0 ? fitted.low : fitted.high)[i];
+    end = parameters[i].positive ? end * std::exp(reach / fitted.p[i]) : end + reach;
+  }
+}
+
 namespace {
 
 bool is_cancelled(const FitOptions& options) { return options.cancel && options.cancel->load(); }
@@ -60,16 +90,7 @@ std::variant<Fitted, NumericalFailure> assess_anew(Workspace& workspace, const M
   const auto parameters = form.parameters();
   const ParameterCovariance covariance = parameter_covariance(out.evaluation, parameters, p);
   out.undetermined = covariance.directions;
-  out.low = out.high = p;
-  for (int i = 0; i < p.size(); ++i) {
-    const double half = kNormal95 * std::sqrt(std::max(0.0, covariance.determined(i, i)));
-    // positive parameters: the interval is symmetric in the logarithm
-    out.low[i] = parameters[i].positive ? p[i] * std::exp(-half / p[i]) : p[i] - half;
-    out.high[i] = parameters[i].positive ? p[i] * std::exp(half / p[i]) : p[i] + half;
-    // nothing in the data holds it: anything may be
-    if (half == 0.0 || covariance.open[i])
-      out.low[i] = parameters[i].low, out.high[i] = parameters[i].high;
-  }
+  tell_intervals(errors_of(covariance), p, &out);
   return out;
 }
 

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "estimation/evaluation/evaluation.h"
+#include "estimation/evaluation/normal_equations.h"
 #include "estimation/fit/decision.h"
 
 namespace hookeye {
@@ -58,6 +58,17 @@ struct RefinementStage {
   bool kept = false;
 };
 
+/// What all pixels say of a model that was fitted to photos read in part (over_all_pixels.h).
+struct AllPixels {
+  VectorXd value;       ///< where they would have the parameters, to first order
+  VectorXd error;       ///< standard errors by all pixels, as intervals have them
+  VectorXd read_error;  ///< the same by the pixels that are read
+  VectorXd added;       ///< what noise adds to the standard error where only those are
+  double share = 1.0;   ///< of the pixels of the size that is read, those that the fit has seen
+  double pixels = 0.0, read_pixels = 0.0;  ///< as taken, and as read, that count in fitted examples
+  double chi_fit = 0.0, chi_validate = 0.0;  ///< of the pixels as they were taken
+};
+
 /// A fitted model with its pictures and normal equations at full size.
 struct Fitted {
   ModelForm form;
@@ -65,6 +76,7 @@ struct Fitted {
   /// 95 % intervals, not fooled by correlated residuals; of the mesh they know once
   /// reach_for_mesh() has been there.
   VectorXd low, high;
+  std::optional<AllPixels> all_pixels;  ///< low and high are then about its values
   /// What the intervals have more on one side because of the mesh; empty: nothing.
   VectorXd mesh_reach;
   std::vector<std::string> undetermined;  ///< sentences: what these data cannot fix
@@ -95,6 +107,13 @@ std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
 /// The starting point again without moving anything: pictures, intervals, what is undetermined.
 std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
                                               const VectorXd& p, const FitOptions& options = {});
+
+/// Standard errors; 0: nothing in the data holds the parameter.
+VectorXd errors_of(const ParameterCovariance& covariance);
+/// The fitted model's low and high from those, about its own values or those of all pixels. And
+/// what mesh_reach widens them by.
+void tell_intervals(const VectorXd& error, const VectorXd& about, Fitted* fitted);
+void widen_by_mesh(Fitted& fitted);
 
 /// Misfit that Huber's threshold is measured in: 1.48 median |r| of the fitted photos' pictures.
 double misfit_scale(const Evaluation& evaluation);

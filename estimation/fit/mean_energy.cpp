@@ -64,6 +64,7 @@ EnergyNeighbourhood::EnergyNeighbourhood(const Fitted& fitted)
   const ParameterCovariance known =
       parameter_covariance(fitted.evaluation, fitted.form.parameters(), fitted.p);
   covariance_ = known.all();
+  if (fitted.all_pixels) shift_ = fitted.all_pixels->value - fitted.p;
   undetermined_ = known.undetermined;
   Eigen::Index k = 0;
   for (const auto& ingredient : fitted.form.ingredients)
@@ -97,6 +98,7 @@ EnergyNeighbourhood::Spread EnergyNeighbourhood::spread(const VectorXd& gradient
   out.open = std::sqrt(std::max(0.0, gradient.dot(undetermined_ * gradient))) > std::abs(value);
   for (const auto& one : beside_)
     out.fitted |= std::abs(gradient[one.index]) * one.apart > 1e-11 * std::abs(value);
+  if (shift_.size()) out.shift = gradient.dot(shift_);
   if (mesh_reach_.size()) out.reach = gradient.dot(mesh_reach_);
   return out;
 }

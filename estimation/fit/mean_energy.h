@@ -55,11 +55,12 @@ class EnergyNeighbourhood {
   std::vector<BothSides<MeanEnergy>> means(int of = -1) const;
   Eigen::Index parameters() const { return covariance_.rows(); }
 
-  /// Half a 95 % interval to first order; what an ever finer mesh would add to the value
+  /// Half a 95 % interval to first order; by how much the value moves to where all pixels have it
+  /// (Fitted::all_pixels); what an ever finer mesh would add to the value
   /// (Fitted::mesh_reach); whether it depends on a fitted number, and on one that the data leave
   /// open.
   struct Spread {
-    double half = 0.0, reach = 0.0;
+    double half = 0.0, shift = 0.0, reach = 0.0;
     bool fitted = false, open = false;
   };
   /// `value`: what the data leave open by more than that is open; what moves by no more than
@@ -69,7 +70,7 @@ class EnergyNeighbourhood {
  private:
   Model model_;
   Eigen::MatrixXd covariance_, undetermined_;
-  VectorXd mesh_reach_;
+  VectorXd mesh_reach_, shift_;
   std::vector<BothSides<EnergyModel>> beside_;
 };
 

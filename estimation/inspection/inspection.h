@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -79,8 +80,10 @@ struct Inspection {
 };
 
 /// Looks at every photo, then asks every question of estimation/inspection/questions. With `folder`
-/// (made where it is not there) draws EXAMPLE_CAMERA.png and contact_sheet.png into it.
+/// (made where it is not there) draws EXAMPLE_CAMERA.png and contact_sheet.png into it. `looked`:
+/// photos that are looked at, of all; may be empty.
 Inspection inspect(const Scene& scene, const InspectionOptions& options = {},
-                   const std::filesystem::path& folder = {});
+                   const std::filesystem::path& folder = {},
+                   const std::function<void(int done, int of)>& looked = {});
 
 }  // namespace hookeye

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -31,6 +32,8 @@ struct Scene : std::enable_shared_from_this<Scene> {
   std::shared_ptr<const TetMesh> mesh() const { return {body, &body->mesh}; }
   int example_index(const std::string& name) const;  ///< -1: none
   int halvings_of(const std::string& camera) const;  ///< of its photos when they were read
+  bool in_part(const std::string& camera) const;     ///< PhotoReading::in_part() of its photos
+  bool in_part() const;                              ///< of any camera's
 };
 
 /// One example under the present parameter values.
@@ -125,8 +128,11 @@ bool is_rest(const ExampleSpec& example);
 std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos = true,
                                         const Limits& limits = {});
 /// The same with photos halved until their longer side is at most `longest_px`, and without their
-/// sigma: for pictures and looks, not for fits.
-std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int longest_px);
+/// sigma: for pictures and looks, not for fits. `progress`: photos that are read, of all; called by
+/// any thread, several at once.
+using PhotosRead = std::function<void(int done, int of)>;
+std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int longest_px,
+                                                   const PhotosRead& progress = {});
 /// The capture without the examples that nothing may see (use: test).
 Capture without_tests(Capture capture);
 /// `scene`, which was made without them, with the test examples of `whole` behind its own. Reads

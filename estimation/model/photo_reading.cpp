@@ -75,21 +75,6 @@ std::vector<T> cut(const std::vector<T>& values, int width, const PhotoWindow& w
   return out;
 }
 
-Image cut(const Image& image, const PhotoWindow& window) {
-  return {window.width, window.height, 1, cut(image.values, image.width, window)};
-}
-
-void cut_photo(Photo& photo, const PhotoWindow& window) {
-  const int width = photo.planes.front()->width, height = photo.planes.front()->height;
-  if (window.empty() || window.x < 0 || window.y < 0 || window.x + window.width > width ||
-      window.y + window.height > height)
-    return;
-  photo.valid = cut(*photo.valid, width, window);
-  for (auto& plane : photo.planes) plane = cut(plane, window);
-  for (auto& sigma : photo.sigma) sigma = cut(sigma, window);
-  for (auto& backdrop : photo.backdrop) backdrop = cut(backdrop, window);
-}
-
 /// 0 to 1, the same whatever the processor and whichever other tiles there are.
 double drawn(const std::string& name, int column, int row) {
   const std::string mark = fingerprint_of(fmt::format("{} {} {}", name, column, row));
@@ -111,6 +96,21 @@ void keep_tiles(Photo& photo, double share, const std::string& name) {
 }
 
 }  // namespace
+
+Image cut(const Image& image, const PhotoWindow& window) {
+  return {window.width, window.height, 1, cut(image.values, image.width, window)};
+}
+
+void cut(Photo& photo, const PhotoWindow& window) {
+  const int width = photo.planes.front()->width, height = photo.planes.front()->height;
+  if (window.empty() || window.x < 0 || window.y < 0 || window.x + window.width > width ||
+      window.y + window.height > height)
+    return;
+  photo.valid = cut(*photo.valid, width, window);
+  for (auto& plane : photo.planes) plane = cut(plane, window);
+  for (auto& sigma : photo.sigma) sigma = cut(sigma, window);
+  for (auto& backdrop : photo.backdrop) backdrop = cut(backdrop, window);
+}
 
 double told_of_motion(const Photo& photo, int plane, int halvings) {
   PhotoPlane at{photo.planes[plane], photo.sigma[plane], photo.valid, nullptr};
@@ -142,6 +142,30 @@ PhotoReading reading_of(const Photo& photo, const Camera& camera, const SurfaceM
     out.body_px = most;
   }
   return out;
+}
+
+PhotoReading within_memory(PhotoReading reading, const Camera& camera, const SurfaceMesh& surface,
+                           double photos, double planes, double bytes) {
+  // Value and sigma of every plane, and what counts; a third more for the coarse levels.
+  const double of_pixel = (2.0 * sizeof(float) * planes + 1.0) * 4.0 / 3.0;
+  for (; reading.halvings < kMostHalvings; ++reading.halvings) {
+    const int width = camera.width >> reading.halvings, height = camera.height >> reading.halvings;
+    const PhotoWindow body = window_of_body(camera, surface, reading.halvings);
+    const PhotoWindow room = with_margin(body, width, height);
+    const double pixels = room.empty() ? double(width) * height : double(room.width) * room.height;
+    if (photos * pixels * of_pixel <= bytes) break;
+    // Bodies move: what a window leaves out is a guess until all photos are read.
+    reading.for_memory = true;
+    reading.share = 1.0;
+    reading.body_px /= 4.0;
+  }
+  return reading;
+}
+
+double decoding_bytes(const Camera& camera) {
+  // Of three channels the codes, the values and the means of neighbours; plane and sigma, what
+  // counts.
+  return double(camera.width) * camera.height * (3 * 9.0 + 10.0);
 }
 
 PhotoWindow PhotoWindow::with(const PhotoWindow& other) const {
@@ -217,6 +241,13 @@ Camera as_read(const Camera& camera, const PhotoReading& reading) {
   return out;
 }
 
+Camera as_taken(const Camera& read, const PhotoReading& reading) {
+  const int side = 1 << reading.halvings;
+  Camera out = read.resized(side);
+  out.width = read.width * side, out.height = read.height * side;
+  return out;
+}
+
 Photo as_read(Photo photo, const PhotoReading& reading, const std::string& name) {
   for (int i = 0; i < reading.halvings; ++i) {
     photo.valid =
@@ -225,7 +256,7 @@ Photo as_read(Photo photo, const PhotoReading& reading, const std::string& name)
     for (auto& sigma : photo.sigma) sigma = halved_sigma(sigma);
     for (auto& backdrop : photo.backdrop) backdrop = halved(backdrop);
   }
-  cut_photo(photo, reading.window);
+  cut(photo, reading.window);
   if (reading.share < 1.0) keep_tiles(photo, reading.share, name);
   return photo;
 }
@@ -238,6 +269,7 @@ std::string described(const std::string& camera, const PhotoReading& reading) {
   if (reading.share < 1.0)
     how += fmt::format("{}in {:.0f} % of their tiles", how.empty() ? "" : ", and ",
                        100.0 * reading.share);
+  if (reading.for_memory) how += ", as memory (--memory) allows no more";
   if (!reading.window.empty())
     how += fmt::format("{}in the {} x {} pixels where the body is or anything changes",
                        how.empty() ? "" : ", ", reading.window.width, reading.window.height);

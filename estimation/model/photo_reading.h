@@ -28,6 +28,10 @@ struct PhotoReading {
   /// Of the halved photo; empty: all of it. What lies beyond stands still in all photos of the
   /// camera and is not the body.
   PhotoWindow window;
+  int taken_width = 0, taken_height = 0;  ///< [px] of the photo as the camera took it
+  /// Some of what the camera took of the body does not count by itself.
+  bool in_part() const { return halvings > 0 || share < 1.0; }
+  bool for_memory = false;  ///< the last halvings were for want of it
   bool whole() const { return halvings == 0 && share == 1.0 && window.empty(); }
 };
 
@@ -40,6 +44,13 @@ constexpr int kTile = 64;  ///< side of a tile [px of the read photo]
 /// limits.pixels_keep of the information stays; then by tiles. `photo`: one of the camera's.
 PhotoReading reading_of(const Photo& photo, const Camera& camera, const SurfaceMesh& surface,
                         const FitLimits& limits);
+
+/// Halved further as long as `bytes` are too few for so many photos of the camera. `planes`: of a
+/// photo.
+PhotoReading within_memory(PhotoReading reading, const Camera& camera, const SurfaceMesh& surface,
+                           double photos, double planes, double bytes);
+/// What a photo of so many pixels takes while it is decoded, and weighed [bytes].
+double decoding_bytes(const Camera& camera);
 
 /// Information of a motion along either axis that a plane has after so many halvings, per square
 /// pixel of the whole photo: sums of squared slope over variance, less what noise adds to the
@@ -55,8 +66,15 @@ PhotoWindow changed_between(const Photo& one, const Photo& other);
 PhotoWindow with_margin(const PhotoWindow& window, int width, int height);
 
 Camera as_read(const Camera& camera, const PhotoReading& reading);
+/// The other way round, where it stands now: of the taken photo cut to the same window.
+Camera as_taken(const Camera& read, const PhotoReading& reading);
 /// `name`: the draw of tiles, another for each photo.
 Photo as_read(Photo photo, const PhotoReading& reading, const std::string& name);
+
+/// The part of a picture that the window shows.
+Image cut(const Image& image, const PhotoWindow& window);
+/// The same of all of a photo's; a window that is empty or not within it cuts nothing.
+void cut(Photo& photo, const PhotoWindow& window);
 
 /// "photos of camera left are read at 1/2 of their width ..."
 std::string described(const std::string& camera, const PhotoReading& reading);

@@ -7,6 +7,7 @@
 #include <exception>
 #include <set>
 
+#include "core/memory_left.h"
 #include "core/work_clock.h"
 #include "estimation/model/field_points.h"
 #include "estimation/model/model.h"
@@ -91,12 +92,18 @@ std::map<std::string, const PhotoSpec*> deciding_photos(const std::vector<Wanted
 
 /// In the order of `all`, a few at a time: a photo of 12 Mpx takes some hundred MB until it is
 /// halved. The first of several faults is the one told.
+struct ReadAs {
+  PhotoReadings readings;
+  bool sigma = true;    ///< nobody weighs the residuals of what is looked at
+  PhotosRead progress;  ///< may be empty
+};
 std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& capture,
-                            const PhotoReadings& readings) {
+                            const ReadAs& as) {
   constexpr int kAtOnce = 4;
   std::vector<Photo> out(all.size());
   std::vector<std::exception_ptr> faults(all.size());
   std::atomic<bool> failed = false;
+  std::atomic<int> done = 0;
   const auto read = [&](size_t i) {
     if (failed) return;
     const Working part(WorkPart::reading);
@@ -104,15 +111,18 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
       const PhotoSpec& spec = *all[i].spec;
       const Camera& camera = capture.camera(spec.camera);
       check_large_enough(spec, camera);
+      const MemoryClaim claim(decoding_bytes(camera));
       out[i] = read_photo(spec, camera);
-      const auto reading = readings.find(spec.camera);
-      if (reading != readings.end())
+      const auto reading = as.readings.find(spec.camera);
+      if (!as.sigma) out[i].sigma.clear();
+      if (reading != as.readings.end())
         out[i] =
             as_read(std::move(out[i]), reading->second, all[i].example->name + "/" + spec.camera);
     } catch (...) {
       faults[i] = std::current_exception();
       failed = true;
     }
+    if (as.progress) as.progress(++done, static_cast<int>(all.size()));
   };
   tbb::task_arena few(std::min(kAtOnce, tbb::this_task_arena::max_concurrency()));
   few.execute([&] { tbb::parallel_for(size_t{0}, all.size(), read, tbb::simple_partitioner()); });
@@ -133,8 +143,8 @@ std::vector<std::vector<Photo>> by_example(std::vector<Photo> all, const Capture
 }
 
 /// Photos of the capture's examples, by example.
-std::vector<std::vector<Photo>> photos_of(const Capture& capture, const PhotoReadings& readings) {
-  return by_example(read_all(wanted_photos(capture), capture, readings), capture);
+std::vector<std::vector<Photo>> photos_of(const Capture& capture, const ReadAs& as) {
+  return by_example(read_all(wanted_photos(capture), capture, as), capture);
 }
 
 /// What of the halved photos of one camera may show the body: where it lies at rest, and where any
@@ -145,6 +155,25 @@ PhotoWindow window_of(const std::vector<Photo>& photos, size_t deciding, const C
   PhotoWindow window = window_of_body(camera, body.surface.mesh, halvings);
   for (const Photo& photo : photos) window = window.with(changed_between(photo, photos[deciding]));
   return with_margin(window, camera.width >> halvings, camera.height >> halvings);
+}
+
+/// `photos`: of all cameras.
+PhotoReading reading_of_camera(const PhotoSpec& deciding, const Camera& camera, const Body& body,
+                               const FitLimits& limits, size_t photos) {
+  constexpr double kOfBudget = 0.5;  // the other half: solver, derivatives, pictures
+  const MemoryClaim claim(decoding_bytes(camera));
+  const Photo photo = read_photo(deciding, camera);
+  const SurfaceMesh& surface = body.surface.mesh;
+  PhotoReading out = reading_of(photo, camera, surface, limits);
+  const int before = out.halvings;
+  out = within_memory(out, camera, surface, static_cast<double>(photos),
+                      static_cast<double>(photo.planes.size()), kOfBudget * memory_budget());
+  if (out.halvings > before && photo.kind == PhotoSpec::Kind::image) {
+    const int plane = photo.planes.size() == 3 ? 1 : 0;
+    const double all = told_of_motion(photo, plane, 0);
+    out.kept = all > 0.0 ? std::min(1.0, told_of_motion(photo, plane, out.halvings) / all) : 0.0;
+  }
+  return out;
 }
 
 /// Reads the photos of large cameras, one camera after the other, and all others as they are.
@@ -159,8 +188,7 @@ ReadPhotos read_as_needed(const Capture& capture, const Body& body, const FitLim
     const Camera& camera = capture.camera(name);
     const bool large = limits.pixels > 0.0 && double(camera.width) * camera.height > limits.pixels;
     PhotoReading reading;
-    if (large)
-      reading = reading_of(read_photo(*deciding, camera), camera, body.surface.mesh, limits);
+    if (large) reading = reading_of_camera(*deciding, camera, body, limits, all.size());
     PhotoReading halved_only;
     halved_only.halvings = reading.halvings;
     std::vector<Wanted> own;
@@ -171,7 +199,7 @@ ReadPhotos read_as_needed(const Capture& capture, const Body& body, const FitLim
       if (all[i].spec == deciding) first = own.size();
       own.push_back(all[i]), place.push_back(i);
     }
-    std::vector<Photo> photos = read_all(own, capture, {{name, halved_only}});
+    std::vector<Photo> photos = read_all(own, capture, {{{name, halved_only}}, true, {}});
     if (large) reading.window = window_of(photos, first, camera, reading.halvings, body, capture);
     PhotoReading rest = reading;
     rest.halvings = 0;
@@ -193,6 +221,16 @@ int Scene::example_index(const std::string& name) const {
 int Scene::halvings_of(const std::string& camera) const {
   const auto reading = readings.find(camera);
   return reading == readings.end() ? 0 : reading->second.halvings;
+}
+
+bool Scene::in_part(const std::string& camera) const {
+  const auto reading = readings.find(camera);
+  return reading != readings.end() && reading->second.in_part();
+}
+
+bool Scene::in_part() const {
+  return std::any_of(readings.begin(), readings.end(),
+                     [](const auto& one) { return one.second.in_part(); });
 }
 
 bool is_rest(const ExampleSpec& example) {
@@ -227,8 +265,10 @@ std::shared_ptr<Scene> bare_scene(const Capture& capture, const Limits& limits) 
 void take_readings(PhotoReadings readings, Scene* scene) {
   scene->readings = std::move(readings);
   for (Camera& camera : scene->capture.cameras)
-    if (const auto reading = scene->readings.find(camera.name); reading != scene->readings.end())
+    if (const auto reading = scene->readings.find(camera.name); reading != scene->readings.end()) {
+      reading->second.taken_width = camera.width, reading->second.taken_height = camera.height;
       camera = as_read(camera, reading->second);
+    }
 }
 
 }  // namespace
@@ -243,7 +283,8 @@ std::shared_ptr<const Scene> load_scene(const Capture& capture, bool with_photos
   return scene;
 }
 
-std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int longest_px) {
+std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int longest_px,
+                                                   const PhotosRead& progress) {
   auto scene = bare_scene(capture, {});
   PhotoReadings readings;
   for (const Camera& camera : capture.cameras) {
@@ -252,11 +293,8 @@ std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int l
       ++reading.halvings;
     if (reading.halvings > 0) readings[camera.name] = reading;
   }
-  scene->photos = photos_of(capture, readings);
+  scene->photos = photos_of(capture, {readings, false, progress});
   take_readings(std::move(readings), scene.get());
-  // Nobody weighs the residuals of what is looked at.
-  for (auto& photos : scene->photos)
-    for (Photo& photo : photos) photo.sigma.clear();
   return scene;
 }
 
@@ -273,7 +311,8 @@ std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole
     out->capture.examples.push_back(example);
     check_fields(*out, example);
   }
-  for (auto& photos : photos_of(tests, scene.readings)) out->photos.push_back(std::move(photos));
+  for (auto& photos : photos_of(tests, {scene.readings, true, {}}))
+    out->photos.push_back(std::move(photos));
   return out;
 }
 

@@ -57,8 +57,8 @@ json row(const Parameter& named, double value, const Spread& spread) {
   out["known"] = !spread.fitted ? "given" : spread.open ? "open" : "fitted";
   if (!spread.fitted || spread.open) return out;
   // As those of the fit (fit.cpp): symmetric in the logarithm where the value is positive.
-  const double below = -spread.half + std::min(spread.reach, 0.0);
-  const double above = spread.half + std::max(spread.reach, 0.0);
+  const double below = spread.shift - spread.half + std::min(spread.reach, 0.0);
+  const double above = spread.shift + spread.half + std::max(spread.reach, 0.0);
   const bool log = named.positive && value > 0.0;
   out["low"] = log ? value * std::exp(below / value) : value + below;
   out["high"] = log ? value * std::exp(above / value) : value + above;

@@ -20,6 +20,7 @@
 #include "estimation/output/field_output.h"
 #include "estimation/output/material_card.h"
 #include "estimation/output/page_data.h"
+#include "estimation/output/pixels_json.h"
 #include "estimation/output/removed.h"
 #include "estimation/search/verdict.h"
 
@@ -54,6 +55,7 @@ json timeline_entry(const Step& step) {
                 {"parameters",
                  parameters_json(fitted.form.parameters(), fitted.p, &fitted.low, &fitted.high)},
                 {"diagnosis", json::array()}};
+  if (fitted.all_pixels) entry["all_pixels"] = all_pixels_json(fitted);
   if (!step.diagnosis.effects.empty()) {
     const json diagnosis = to_json(step.diagnosis);
     entry["gate"] = diagnosis["gate"];
@@ -152,19 +154,6 @@ void tell_material(const Scene& scene, const Fitted& fitted, json& out) {
   out["material"] = material_card(scene, fitted, near);
 }
 
-json readings_json(const PhotoReadings& readings) {
-  json out = json::object();
-  for (const auto& [camera, reading] : readings) {
-    const PhotoWindow& window = reading.window;
-    out[camera] = {{"width_over", 1 << reading.halvings},
-                   {"motion_kept", reading.kept},
-                   {"tiles", reading.share},
-                   {"body_px", reading.body_px}};
-    if (!window.empty()) out[camera]["window"] = {window.x, window.y, window.width, window.height};
-  }
-  return out;
-}
-
 }  // namespace
 
 json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
@@ -225,6 +214,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
         {"times", most.times},
         {"use", most.held_out ? "validate" : "fit"},
         {"its_own", at_floor(fitted, floor) && !explains_photos(fitted, floor)}};
+  if (fitted.all_pixels) out["all_pixels"] = all_pixels_json(fitted);
   tell_material(scene, fitted, out);
   out["ellipticity"] = lost_ellipticity(scene, fitted);
   if (json additive = additive_metrics(fitted); !additive.is_null())
@@ -254,14 +244,10 @@ std::string parameters_csv(const Fitted& fitted) {
 
 namespace {
 
-void write_photo(const std::filesystem::path& folder, const Scene& scene, const Model& model,
-                 const PhotoEvaluation& photo) {
-  const std::string name = photo_name(scene, photo);
+void write_compare(const std::filesystem::path& file, const Scene& scene, const Model& model,
+                   const PhotoEvaluation& photo) {
   const Photo& shown = scene.photos[photo.example][photo.photo];
-  write_image(folder / "residuals" / (name + ".exr"), photo.residual);
-  write_residual_png(folder / "residuals" / (name + ".png"), photo.residual);
-  write_compare_picture(folder / "compare" / (name + ".png"), shown.planes[photo.plane], photo,
-                        name,
+  write_compare_picture(file, shown.planes[photo.plane], photo, photo_name(scene, photo),
                         length_per_px(scene, model.examples[photo.example].photos[photo.photo]),
                         scene.capture.units.length);
 }
@@ -340,24 +326,53 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
 
 }  // namespace
 
-void write_step(const std::filesystem::path& folder, const Scene& scene, const Step& step) {
+StepFiles step_files(const Scene& scene, const Step& step) {
+  using std::filesystem::path;
   const Fitted& fitted = step.fitted;
-  const Model model = fitted.form.realise(fitted.p);
-  for (const char* sub : {"residuals", "compare", "deformed"})
-    std::filesystem::create_directories(folder / sub);
-  write_text(folder / "model.yaml", write_model(fitted.form, fitted.p, catalogue()));
-  const Floor floor = measure_floor(scene, fitted.evaluation);
-  write_text(folder / "metrics.json", metrics(scene, fitted, floor).dump(1) + "\n");
+  const auto model = std::make_shared<const Model>(fitted.form.realise(fitted.p));
+  StepFiles out;
+  out["model.yaml"] = [&](const path& file) {
+    write_text(file, write_model(fitted.form, fitted.p, catalogue()));
+  };
+  out["metrics.json"] = [&](const path& file) {
+    const Floor floor = measure_floor(scene, fitted.evaluation);
+    write_text(file, metrics(scene, fitted, floor).dump(1) + "\n");
+  };
   if (!step.diagnosis.effects.empty())
-    write_text(folder / "diagnosis.json", diagnosis_json(step).dump(1) + "\n");
-  if (has_pictures(step.diagnosis)) write_removed(folder / "removed", step);
-  write_text(folder / "parameters.csv", parameters_csv(fitted));
-  for (const auto& example : fitted.evaluation.examples) {
-    for (const auto& photo : example.photos) write_photo(folder, scene, model, photo);
-    write_deformed(folder / "deformed" / (scene.capture.examples[example.example].name + ".vtu"),
-                   scene, fitted.form, model, example);
-  }
-  write_page_data(folder / "page", scene, model, fitted);
+    out["diagnosis.json"] = [&](const path& file) {
+      write_text(file, diagnosis_json(step).dump(1) + "\n");
+    };
+  if (has_pictures(step.diagnosis))
+    out["removed"] = [&](const path& folder) { write_removed(folder, step); };
+  out["parameters.csv"] = [&](const path& file) { write_text(file, parameters_csv(fitted)); };
+  const auto each_photo = [&](const path& folder, const auto& write) {
+    std::filesystem::create_directories(folder);
+    for (const auto& example : fitted.evaluation.examples)
+      for (const auto& photo : example.photos) write(folder / photo_name(scene, photo), photo);
+  };
+  out["residuals"] = [&, each_photo](const path& folder) {
+    each_photo(folder, [](const path& stem, const PhotoEvaluation& photo) {
+      write_image(stem.string() + ".exr", photo.residual);
+      write_residual_png(stem.string() + ".png", photo.residual);
+    });
+  };
+  out["compare"] = [&, model, each_photo](const path& folder) {
+    each_photo(folder, [&](const path& stem, const PhotoEvaluation& photo) {
+      write_compare(stem.string() + ".png", scene, *model, photo);
+    });
+  };
+  out["deformed"] = [&, model](const path& folder) {
+    std::filesystem::create_directories(folder);
+    for (const auto& example : fitted.evaluation.examples)
+      write_deformed(folder / (scene.capture.examples[example.example].name + ".vtu"), scene,
+                     fitted.form, *model, example);
+  };
+  out["page"] = [&, model](const path& folder) { write_page_data(folder, scene, *model, fitted); };
+  return out;
+}
+
+void write_step(const std::filesystem::path& folder, const Scene& scene, const Step& step) {
+  for (const auto& [name, write] : step_files(scene, step)) write(folder / name);
 }
 
 }  // namespace hookeye

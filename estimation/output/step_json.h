@@ -1,7 +1,11 @@
 // The figures of a step as product.md's JSON.
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "estimation/search/discover.h"
 
@@ -26,5 +30,8 @@ std::string parameters_csv(const Fitted& fitted);
 /// residuals/EXAMPLE-CAMERA.{exr,png}, compare/EXAMPLE-CAMERA.png, deformed/EXAMPLE.vtu, and what
 /// the page draws: page/ (page_data.h).
 void write_step(const std::filesystem::path& folder, const Scene& scene, const Step& step);
+/// Those by name, with what writes each; scene and step outlive it.
+using StepFiles = std::map<std::string, std::function<void(const std::filesystem::path&)>>;
+StepFiles step_files(const Scene& scene, const Step& step);
 
 }  // namespace hookeye

@@ -13,6 +13,7 @@
 #include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis.h"
 #include "estimation/fit/at_floor.h"
+#include "estimation/output/pixels_json.h"
 #include "estimation/search/verdict.h"
 #include "runs/report/inside.h"
 #include "runs/run_limits.h"
@@ -299,6 +300,7 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
               {"headline", "not judged yet"},
               {"sentence", "No step is finished"},
               {"misfit", ""},
+              {"pixels", ""},
               {"tested", ""}};
   const json steps = timeline.is_object() ? timeline.value("steps", json::array()) : json::array();
   if (steps.empty() || !steps.back().is_object()) return out;
@@ -314,6 +316,7 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
   }
   out["tested"] = tested_sentence(timeline, step, floor);
   const json told = timeline.contains("floor") ? timeline["floor"] : json::object();
+  out["pixels"] = all_pixels_in_words(step.value("all_pixels", json()));
   out["misfit"] = misfit_sentence(step, metrics, floor, string_in(told, "source"));
   return out;
 }
@@ -372,10 +375,11 @@ std::string material_text(const json& material) {
 
 std::string answer_text(const json& answer) {
   const std::string headline = string_in(answer, "headline"), misfit = string_in(answer, "misfit"),
-                    tested = string_in(answer, "tested");
+                    tested = string_in(answer, "tested"), pixels = string_in(answer, "pixels");
   return material_text(answer.at("material")) +
          wrapped(fmt::format("verdict: {}. {}", headline, string_in(answer, "sentence"))) +
          (misfit.empty() ? "" : wrapped("misfit: " + misfit)) +
+         (pixels.empty() ? "" : wrapped("pixels: " + pixels)) +
          (tested.empty() ? "" : wrapped("test: " + tested));
 }
 

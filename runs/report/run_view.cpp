@@ -12,6 +12,7 @@
 #include "core/json_file.h"
 #include "core/text_file.h"
 #include "runs/decision_log.h"
+#include "runs/kept_work.h"
 #include "runs/report/answer.h"
 #include "runs/report/encode_png.h"
 #include "runs/report/facts.h"
@@ -287,6 +288,7 @@ json RunView::document(int shrink_old, int shrink_new) {
               {"photos", photos_json(faults, shrink_new)},
               {"capture", capture_ ? capture_facts(*capture_) : json()},
               {"practice", capture_ ? reporting_table(*capture_) : json::array()}};
+  if (inside(folder_, folder_ / "work.jsonl")) out["work"] = work_json(work_of(folder_));
   out["faults"] = std::move(faults);
   const json none;
   out["answer"] = answer_of(timeline, out["steps"].empty() ? none : out["steps"].back()["metrics"],

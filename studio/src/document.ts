@@ -75,6 +75,10 @@ export interface Metrics {
   /** The camera that keeps most over the floor of its own rest photos; whether it alone keeps the photos from being
    *  explained. */
   most_over_floor?: {camera: string; times: number; use: string; its_own?: boolean};
+  /** How photos of many pixels were read, by camera; left out by older programs. */
+  read?: Record<string, {width_over: number; motion_kept: number; tiles: number}>;
+  /** What all pixels say of a model that was fitted to a part of them. */
+  all_pixels?: AllPixels;
   measured: Measured[];
   undetermined: string[];
   converged: boolean;
@@ -83,6 +87,22 @@ export interface Metrics {
   energy?: EnergyCurve[];
   ellipticity?: {smallest: number; elements_lost: number; example: string} | null;
   additive?: unknown;  // there: `energy` has the addends of an additive material
+}
+export interface AllPixels {
+  share: number;
+  pixels: number;
+  read_pixels: number;
+  chi_fit: number;
+  chi_validate: number | null;
+  /** `moved`: by how much all pixels would move it. `added_by_reading`: to the standard error, in quadrature. */
+  parameters: {name: string; value: number; moved: number; standard_error: number; standard_error_read: number; added_by_reading: number}[];
+}
+/** Where the time of one command went (runs/kept_work.h): CPU-seconds by stage and part. */
+export interface CommandWork {
+  first_step: number;
+  steps: number;
+  wall_s: number;
+  cpu_s: Record<string, Record<string, number>>;
 }
 export interface Measured {
   example: string;
@@ -245,6 +265,8 @@ export interface PageDocument {
   photos: PhotoEntry[];
   capture: CaptureFacts | null;
   practice: {name: string; value: string}[];
+  /** Left out by older programs. */
+  work?: CommandWork[];
   faults: string[];
   reduction?: string;
 }

@@ -64,6 +64,9 @@ TEST_F(Cli, NumbersOutOfRangeAreToldInWords) {
     EXPECT_EQ(result.err, "hookeye check: --threads: a whole number from 1 is expected, not " +
                               number + "\n  hookeye check --help tells what is right\n");
   }
+  for (const std::string size : {"0", "4X", "much", "1M"})
+    EXPECT_THAT(hookeye("check . --memory " + size).err,
+                HasSubstr("--memory: a size from 200M is expected, as 4G or 1.5GB, not " + size));
   EXPECT_THAT(hookeye("plan run --most 0").err, HasSubstr("a whole number from 1 is expected"));
   for (const std::string number : {"0", "-1", "nan", "inf"})
     EXPECT_THAT(hookeye("mesh cube.obj -o b.vtu --edge " + number).err,

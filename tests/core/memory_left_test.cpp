@@ -31,6 +31,28 @@ class MemoryLeftTest : public testing::Test {
 
 TEST_F(MemoryLeftTest, NothingTold) { EXPECT_TRUE(std::isinf(left().bytes)); }
 
+TEST_F(MemoryLeftTest, AsTheOptionTells) {
+  write("proc/meminfo", "MemAvailable:   20000000 kB\n");
+  write("proc/self/status", "Name: a\nVmRSS:    1000000 kB\n");
+  set_memory_limit(4e9);
+  const MemoryLeft told = left();
+  const double budget = memory_budget();
+  set_memory_limit(0.0);
+  EXPECT_EQ(told.bytes, 4e9 - 1.024e9) << "less what the process holds";
+  EXPECT_EQ(told.of, "`--memory`");
+  EXPECT_EQ(budget, 4e9);
+  EXPECT_EQ(left().of, "this machine") << "no limit any more";
+}
+
+TEST(BytesIn, Units) {
+  EXPECT_EQ(bytes_in("4G"), 4e9);
+  EXPECT_EQ(bytes_in("1.5 gb"), 1.5e9);
+  EXPECT_EQ(bytes_in("300M"), 3e8);
+  EXPECT_EQ(bytes_in("1000000"), 1e6);
+  for (const char* wrong : {"", "much", "4X", "-1G", "0", "nan", "inf", "1e999", "4G5"})
+    EXPECT_FALSE(bytes_in(wrong).has_value()) << wrong;
+}
+
 TEST_F(MemoryLeftTest, OfTheMachine) {
   write("proc/meminfo",
         "MemTotal:       24000000 kB\nMemFree:         1000000 kB\nMemAvailable:   20000000 kB\n");

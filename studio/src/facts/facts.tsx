@@ -6,6 +6,7 @@ import {bytesOf} from '../parts';
 import {floor, floorSource, run, step, stepIndex, timelineOf, units} from '../state';
 import {Wide} from '../widgets';
 import {Glossary} from './glossary';
+import {Work, pixelRows} from './work';
 
 /** One component of the displacement of a cell of 16 px, from what noise and gradients leave open. */
 function displacementResolution(perPx: number): [string, string][] {
@@ -23,6 +24,7 @@ function practiceRows(perPx: number): [string, string][] {
     ['Noise floor', `normalised residual ${figure(floor.value.chi, 4)}, from ${floorSource(floor.value.source)}`],
     ...run.value.practice.map((r): [string, string] => [r.name, r.value]),
     ...displacementResolution(perPx),
+    ...pixelRows(),
   ];
   if (metrics)
     rows.push(['Spatial resolution',
@@ -91,6 +93,7 @@ export function Facts() {
         </> : <p class="empty">The capture could not be read.</p>}
         <h3>Files{step.value ? ` of ${step.value.folder}` : ''}</h3>
         <Files />
+        <Work />
       </section>
     </div>
   );

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "estimation/evaluation/evaluation.h"
-#include "tests/estimation/small_capture.h"
+#include "tests/estimation/large_photos.h"
 
 namespace hookeye::test {
 namespace {
@@ -54,41 +54,6 @@ TEST(PhotoReading, NoiseTellsNothing) {
   std::normal_distribution<float> noise(0.4f, 0.01f);
   for (float& value : blank.planes[0].own().values) value = noise(engine);
   EXPECT_LT(told_of_motion(blank, 0, 0), 0.02 * told_of_motion(speckled(16.0), 0, 0));
-}
-
-/// Two cameras of 400 x 520 px.
-const SmallScene& large_photos() {
-  static const SmallScene scene({.recipe = R"(hookeye_recipe: 1
-seed: 5
-title: large photos
-body:
-  shape: block
-  size: [20, 16, 34]
-  bumps: 0.05
-  facet: 7
-  mesh: {edge: 8}
-  density: 1.07e-9
-  texture: {texel: 0.12, speckle: 1.4}
-material:
-  law: neo-hookean
-  true: {mu: 0.02, kappa_over_mu: 10}
-  told: {mu: 0.017}
-  fit: [mu]
-cameras: {count: 2, size: [400, 520], distance: 8, focal: 1900}
-examples:
-  rest: {}
-  pull: {force: [0, 0, 0.3]}
-  poke: {use: validate, force: [-0.008, 0.01, 0.12]}
-truth: {edge_factor: 1, rays_per_axis: 3, visibility_rays: 64}
-)"});
-  return scene;
-}
-
-std::shared_ptr<const Scene> read_with(double pixels, double keep) {
-  Limits limits;
-  limits.fit.pixels = pixels;
-  limits.fit.pixels_keep = keep;
-  return load_scene(read_capture(large_photos().scene->capture.file), true, limits);
 }
 
 struct Found {
@@ -223,6 +188,20 @@ TEST(PhotoReading, CameraAndPhotoAreCutAlike) {
   for (const int at : {0, 7, 20})
     EXPECT_EQ(cut.planes[0]->at(at, at),
               halved_photo.planes[0]->at(at + reading.window.x, at + reading.window.y));
+}
+
+TEST(PhotoReading, MemoryIsKeptByHalvingFurther) {
+  const Capture capture = read_capture(large_photos().scene->capture.file);
+  const SurfaceMesh& surface = large_photos().scene->body->surface.mesh;
+  const auto read_within = [&](double bytes) {
+    return within_memory({}, capture.cameras[0], surface, 100.0, 1.0, bytes);
+  };
+  EXPECT_TRUE(read_within(1e9).whole());
+  const PhotoReading once = read_within(1e8);  // 400 x 520 px, 12 bytes each, of 100 photos
+  EXPECT_EQ(once.halvings, 1);
+  EXPECT_TRUE(once.for_memory);
+  EXPECT_THAT(described("left", once), ::testing::HasSubstr("--memory"));
+  EXPECT_GT(read_within(1e7).halvings, once.halvings);
 }
 
 TEST(PhotoReading, TheDrawIsThePhotosOwn) {
