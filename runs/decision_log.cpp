@@ -78,6 +78,7 @@ constexpr Meaning kMeanings[] = {
     {Asked::dropped, "*", "difference {0}; at least {1}"},
     {Asked::swapped, "*", "difference {0}; it takes {1}"},
     {Asked::tied, "*", "difference {0}; a tie from {1} up"},
+    {Asked::scored, "*", "score {0}; no fit of it exceeds {1}"},
     {Asked::ended, "floor.at", "residual {0}; explained from {1} down"},
     {Asked::ended, "floor.chance", "given up: {0}; at most {1}"},
 };

@@ -43,6 +43,8 @@ std::pair<const char*, const char*> words_of(Asked asked) {
       return {"stand together", "do not stand together"};
     case Asked::ended:
       return {"explained", "not explained"};
+    case Asked::scored:
+      return {"best by the score in the shadow", "not the best by the score in the shadow"};
   }
   return {"yes", "no"};
 }
@@ -98,6 +100,7 @@ std::string all_of(const std::vector<Decision>& decisions, const std::string& ef
 std::string ends_of(const std::vector<Decision>& decisions) {
   std::vector<const Decision*> last;
   for (const Decision& one : decisions) {
+    if (one.asked == Asked::scored) continue;  // how_sure()
     const auto same = std::find_if(last.begin(), last.end(), [&](const Decision* other) {
       return other->candidate == one.candidate;
     });
@@ -128,6 +131,32 @@ std::string ends_of(const std::vector<Decision>& decisions) {
   return out;
 }
 
+/// The models that were fitted beyond a step's, by falling score; "": none was scored.
+std::string how_sure(const std::vector<Decision>& decisions) {
+  std::vector<const Decision*> scored;
+  for (const Decision& one : decisions)
+    if (one.asked == Asked::scored && one.parts.contains("sure") &&
+        one.parts.contains("below_best"))
+      scored.push_back(&one);
+  if (scored.size() < 2) return {};
+  std::stable_sort(scored.begin(), scored.end(), [](const Decision* a, const Decision* b) {
+    return a->parts.at("below_best") > b->parts.at("below_best");
+  });
+  std::string out = wrapped(
+      "How sure, by a score that decides nothing yet (share among all models fitted so far; log "
+      "evidence below the best; the present score over this step's model):");
+  for (const Decision* one : scored) {
+    const auto old = one->parts.find("old");
+    out +=
+        wrapped(fmt::format("{}: {:.2g} %, {:.1f}{}",
+                            one->candidate.empty() ? "the capture's own model" : one->candidate,
+                            100.0 * one->parts.at("sure"), one->parts.at("below_best"),
+                            old == one->parts.end() ? "" : fmt::format("; {:+.1f}", old->second)),
+                2);
+  }
+  return out;
+}
+
 void run_explain(const ExplainArguments& arguments, Session& session) {
   if (!arguments.effect.empty()) check_effect(arguments.effect);
   const Run run = open_run(arguments.run, false);
@@ -144,8 +173,8 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
       if (arguments.effect.empty() || is_about(one, arguments.effect))
         told["decisions"].push_back(nlohmann::ordered_json(to_json(one)));
     session.document["steps"].push_back(std::move(told));
-    const std::string text =
-        arguments.effect.empty() ? ends_of(decisions) : all_of(decisions, arguments.effect);
+    const std::string text = arguments.effect.empty() ? ends_of(decisions) + how_sure(decisions)
+                                                      : all_of(decisions, arguments.effect);
     if (text.empty()) continue;
     if (!about) session.say("{}\n", wrapped(kHowToRead));
     about = true;

@@ -11,9 +11,9 @@ namespace hookeye {
 
 namespace {
 
-constexpr std::array<const char*, 11> kAsked = {"named",  "screened", "refitted", "ranked",
+constexpr std::array<const char*, 12> kAsked = {"named",  "screened", "refitted", "ranked",
                                                 "stands", "widened",  "dropped",  "swapped",
-                                                "tied",   "paired",   "ended"};
+                                                "tied",   "paired",   "ended",    "scored"};
 
 double number_or_nan(const nlohmann::json& line, const char* key) {
   const nlohmann::json& value = line.at(key);
@@ -42,15 +42,17 @@ bool tell(const Decided& decided, Decision decision, SourceLine where) {
 }
 
 nlohmann::json to_json(const Decision& decision) {
-  return {{"asked", to_string(decision.asked)},
-          {"candidate", decision.candidate},
-          {"accepted", decision.accepted},
-          {"value", number_or_null(decision.by.value)},
-          {"limit", number_or_null(decision.by.limit)},
-          {"option", decision.by.option},
-          {"why", decision.why},
-          {"where", decision.where},
-          {"cpu_s", decision.cpu_s}};
+  nlohmann::json out = {{"asked", to_string(decision.asked)},
+                        {"candidate", decision.candidate},
+                        {"accepted", decision.accepted},
+                        {"value", number_or_null(decision.by.value)},
+                        {"limit", number_or_null(decision.by.limit)},
+                        {"option", decision.by.option},
+                        {"why", decision.why},
+                        {"where", decision.where},
+                        {"cpu_s", decision.cpu_s}};
+  for (const auto& [name, value] : decision.parts) out["parts"][name] = number_or_null(value);
+  return out;
 }
 
 Decision decision_from_json(const nlohmann::json& line) {
@@ -64,6 +66,9 @@ Decision decision_from_json(const nlohmann::json& line) {
   out.by = {number_or_nan(line, "value"), number_or_nan(line, "limit"), line.at("option")};
   out.why = line.at("why");
   out.where = line.at("where");
+  if (line.contains("parts"))
+    for (const auto& part : line.at("parts").items())
+      out.parts[part.key()] = number_or_nan(line.at("parts"), part.key().c_str());
   out.cpu_s = line.value("cpu_s", 0.0);
   return out;
 }

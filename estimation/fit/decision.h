@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -33,6 +34,7 @@ enum class Asked {
   tied,      ///< can it be told from the one that was chosen?
   paired,    ///< do two together explain what one does not?
   ended,     ///< how did the search end?
+  scored,    ///< what is the model worth by the score that decides nothing yet (score.h)?
 };
 const char* to_string(Asked asked);
 
@@ -52,8 +54,9 @@ struct Decision {
   std::string candidate;  ///< "gravity", "creep as 'levels off'"; "": the model
   bool accepted = false;
   Compared by;
-  std::string why;     ///< one plain clause
-  std::string where;   ///< FILE:LINE of the rule; tell() knows it
+  std::string why;                      ///< one plain clause
+  std::string where;                    ///< FILE:LINE of the rule; tell() knows it
+  std::map<std::string, double> parts;  ///< other numbers of the same model, by name
   double cpu_s = 0.0;  ///< worked since the decision before it; whoever keeps it knows
 
   Decision() = default;

@@ -14,6 +14,7 @@
 #include "estimation/search/last_questions.h"
 #include "estimation/search/measured_explained.h"
 #include "estimation/search/pairs.h"
+#include "estimation/search/shadow.h"
 #include "estimation/search/swaps.h"
 #include "estimation/search/widening.h"
 
@@ -43,9 +44,10 @@ class Search {
   Search(Workspace& workspace, const DiscoverOptions& options, const DiscoverEvents& events)
       : workspace_(workspace),
         options_(of_rivals(options)),
-        events_(events),
+        shadow_(workspace, options_.fit),
+        events_(watched(events)),
         base_(base_form(workspace.scene().shared_from_this()).ingredients.size()),
-        wider_(workspace, options_.fit, events) {}
+        wider_(workspace, options_.fit, events_) {}
 
   std::variant<Discovery, NumericalFailure> run(Step first) {
     out_.tie = options_.tie;
@@ -80,6 +82,17 @@ class Search {
   }
 
  private:
+  /// Every refit is scored beside, too.
+  DiscoverEvents watched(DiscoverEvents events) {
+    events.refitted = [this, told = events.refitted](
+                          const std::string& effect,
+                          const std::variant<Fitted, NumericalFailure>& result) {
+      if (told) told(effect, result);
+      if (const auto* fitted = std::get_if<Fitted>(&result)) shadow_.refitted(*fitted);
+    };
+    return events;
+  }
+
   /// Whether there is a step more.
   using WentOn = std::variant<bool, NumericalFailure>;
 
@@ -97,6 +110,7 @@ class Search {
   }
 
   std::optional<NumericalFailure> diagnose_newest() {
+    shadow_.tell_all(options_.fit.decided);
     Step& step = newest();
     auto diagnosis = diagnose(workspace_, step.fitted, options_.diagnosis);
     if (auto* failure = std::get_if<NumericalFailure>(&diagnosis)) return *failure;
@@ -106,6 +120,7 @@ class Search {
     if (events_.step) events_.step(step);
     for (const Decision& one : naming_decisions(step.diagnosis)) tell(options_.fit.decided, one);
     drop_pictures(step.fitted);
+    shadow_.follow(step);
     return {};
   }
 
@@ -189,12 +204,15 @@ class Search {
 
   void tell_ranks(const Contest& contest) const {
     const double best = contest.refits.front().score;
-    for (const Refit& one : contest.refits)
-      tell(options_.fit.decided, {Asked::ranked,
-                                  one.effect,
-                                  &one == &contest.refits.front(),
-                                  {one.score - best, 0.0, ""},
-                                  "penalised log likelihood over that of the best refit"});
+    for (const Refit& one : contest.refits) {
+      Decision decision{Asked::ranked,
+                        one.effect,
+                        &one == &contest.refits.front(),
+                        {one.score - best, 0.0, ""},
+                        "penalised log likelihood over that of the best refit"};
+      if (const auto below = shadow_.below_best(one.fitted)) decision.parts["below_best"] = *below;
+      tell(options_.fit.decided, std::move(decision));
+    }
   }
 
   void add_two(const Refit& first, Contest& contest, Step second) {
@@ -341,6 +359,7 @@ class Search {
   }
 
   Discovery finish() {
+    shadow_.tell_all(options_.fit.decided);
     std::string why;
     const Step& last = newest();
     out_.missing = effects_in(last.fitted.form);
@@ -363,7 +382,8 @@ class Search {
 
   Workspace& workspace_;
   const DiscoverOptions options_;
-  const DiscoverEvents& events_;
+  Shadow shadow_;  ///< of all refits; decides nothing
+  const DiscoverEvents events_;
   const size_t base_;  ///< ingredients of the capture's own model
   Discovery out_;
   Refusal refused_;             ///< why the best of the last contest was not added

@@ -194,7 +194,7 @@ export interface TimelineStep {
 }
 /** One line of decisions.jsonl (estimation/fit/decision.h). */
 export interface DecisionLine {
-  asked: 'named' | 'screened' | 'refitted' | 'ranked' | 'stands' | 'widened' | 'dropped' | 'swapped' | 'tied' | 'paired' | 'ended';
+  asked: 'named' | 'screened' | 'refitted' | 'ranked' | 'stands' | 'widened' | 'dropped' | 'swapped' | 'tied' | 'paired' | 'ended' | 'scored';
   candidate: string;
   accepted: boolean;
   value: number | null;

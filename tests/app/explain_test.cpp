@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <fstream>
+#include <map>
 
 #include "app/fitted_run.h"
 
@@ -65,6 +66,28 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
   EXPECT_EQ(first.at("asked"), "named");
   EXPECT_EQ(first.at("candidate"), "swelling");
   EXPECT_EQ(hookeye("explain run gravty").status, 2);
+
+  // The score in the shadow: the truth is first by it too, its terms add up, so do differences.
+  EXPECT_THAT(all.out, HasSubstr("How sure, by a score"));
+  const json base = json::parse(hookeye("explain run --json").out).at("steps").at(0);
+  std::map<std::string, json> scored;
+  for (const json& line : base.at("decisions"))
+    if (line.at("asked") == "scored") scored[line.at("candidate")] = line;
+  ASSERT_GE(scored.size(), 2u);
+  for (const auto& [model, line] : scored) {
+    const json& parts = line.at("parts");
+    const double total = line.at("value");
+    EXPECT_LE(total, line.at("limit").get<double>()) << model;
+    EXPECT_NEAR(total,
+                parts.at("fitted").get<double>() + parts.at("held_out").get<double>() +
+                    parts.at("prior").get<double>(),
+                1e-6);
+    EXPECT_NEAR(total - scored.at("gravity").at("value").get<double>(),
+                parts.at("below_best").get<double>() -
+                    scored.at("gravity").at("parts").at("below_best").get<double>(),
+                1e-6);
+  }
+  EXPECT_EQ(scored.at("gravity").at("parts").at("below_best"), 0.0);
 
   // Where the time went: its parts are those of the work, and a damaged line hides no other.
   std::ofstream(folder_ / "run/work.jsonl", std::ios::app) << "{\n";

@@ -16,6 +16,7 @@ const outcomes: Record<DecisionLine['asked'], [string, string]> = {
   tied: ['cannot be told from it', 'can be told from it'],
   paired: ['stand together', 'do not stand together'],
   ended: ['explained', 'not explained'],
+  scored: ['best by the score in the shadow', 'not the best by it'],
 };
 const outcome = (one: DecisionLine): string => outcomes[one.asked][one.accepted ? 0 : 1];
 
@@ -40,7 +41,8 @@ function Line(props: {of: DecisionLine; branch: string}) {
 }
 
 export function Tried() {
-  const all = step.value?.decisions ?? [];
+  // A score that decides nothing is no branch of what was tried.
+  const all = (step.value?.decisions ?? []).filter((one) => one.asked !== 'scored');
   const branches = new Map<string, DecisionLine[]>();
   for (const one of all) branches.set(branchOf(one), [...(branches.get(branchOf(one)) ?? []), one]);
   // Who did not stand out was asked nothing more.

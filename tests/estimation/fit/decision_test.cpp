@@ -17,9 +17,10 @@ TEST(Decision, KnowsTheLineThatToldIt) {
 }
 
 TEST(Decision, ComesBackAsItWasWritten) {
-  for (int k = 0; k <= static_cast<int>(Asked::ended); ++k) {
+  for (int k = 0; k <= static_cast<int>(Asked::scored); ++k) {
     Decision one{static_cast<Asked>(k), "creep as 'x'", k % 2 == 0, {}, "because"};
     one.where = "a.cpp:3";
+    if (k % 3 == 0) one.parts = {{"fitted", -1.5}, {"sure", 0.25}};
     const Decision back = decision_from_json(nlohmann::json::parse(to_json(one).dump()));
     EXPECT_EQ(back.asked, one.asked);
     EXPECT_EQ(back.accepted, one.accepted);

@@ -1,0 +1,200 @@
+// The score that decides nothing yet: one function of a model, bounded, with priors of typical
+// size.
+#include "estimation/search/score.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "estimation/effects/catalogue.h"
+#include "estimation/effects/typical_sizes.h"
+#include "tests/estimation/effects_scene.h"
+
+namespace hookeye {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Photos whose cells are linear in some columns, and what models of some of them leave there.
+class LinearPhotos {
+ public:
+  explicit LinearPhotos(unsigned seed) : engine_(seed) {
+    for (int k = 0; k < kPhotos; ++k) {
+      J_.push_back(drawn(kCells, kColumns));
+      r_.push_back(drawn(kCells, 1));
+    }
+  }
+  void put_in(int column, double size) {
+    for (int k = 0; k < kPhotos; ++k) r_[static_cast<size_t>(k)] -= size * photo(k).col(column);
+  }
+  /// The model with these columns, fitted to all photos but the last.
+  ScoredModel fitted(const std::vector<int>& columns, double log_prior = 0.0) const {
+    const auto m = static_cast<Eigen::Index>(columns.size());
+    MatrixXd H = MatrixXd::Zero(m, m);
+    VectorXd s = VectorXd::Zero(m);
+    for (int k = 0; k + 1 < kPhotos; ++k) {
+      const MatrixXd own = photo(k)(Eigen::all, columns);
+      H += own.transpose() * own;
+      s += own.transpose() * r_[static_cast<size_t>(k)];
+    }
+    const VectorXd t = -H.ldlt().solve(s);
+    ScoredModel out;
+    out.log_prior = log_prior;
+    for (Eigen::Index i = 0; i < m; ++i) out.columns.push_back({-t[i], 0.3, false, false, false});
+    for (int k = 0; k < kPhotos; ++k) {
+      const MatrixXd own = photo(k)(Eigen::all, columns);
+      const VectorXd left = r_[static_cast<size_t>(k)] + own * t;
+      SeenPart part;
+      part.kind = SeenPart::Kind::textured;
+      part.held_out = k + 1 == kPhotos;
+      part.count = part.effective = kCells;
+      part.variance = left.squaredNorm() / kCells;
+      part.H = own.transpose() * own;
+      part.s = own.transpose() * left;
+      out.misfit += part.variance;
+      out.seen.push_back(std::move(part));
+    }
+    return out;
+  }
+
+ private:
+  static constexpr int kPhotos = 4, kCells = 150, kColumns = 5;
+  const MatrixXd& photo(int k) const { return J_[static_cast<size_t>(k)]; }
+  MatrixXd drawn(int rows, int columns) {
+    std::normal_distribution<double> normal;
+    MatrixXd out(rows, columns);
+    for (double& x : out.reshaped()) x = normal(engine_);
+    return out;
+  }
+  std::mt19937 engine_;
+  std::vector<MatrixXd> J_;
+  std::vector<VectorXd> r_;
+};
+
+TEST(ModelScore, TheTruthIsFirstAndDifferencesAddUp) {
+  int first = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    LinearPhotos photos(seed);
+    photos.put_in(2, 0.3);
+    const ScoredModel none = photos.fitted({0}), right = photos.fitted({0, 2}),
+                      wrong = photos.fitted({0, 3}), wider = photos.fitted({0, 2, 4});
+    const ResidualNoise noise = estimate_noise(wider.seen, Floor{});
+    const auto of = [&](const ScoredModel& model) { return score(model, noise).total(); };
+    first += of(right) > of(none) && of(right) > of(wrong) && of(right) > of(wider);
+    // Whoever else is asked in between: the same number, bit for bit.
+    const double alone = of(right);
+    (void)of(wrong);
+    EXPECT_EQ(of(right), alone);
+    EXPECT_NEAR((of(right) - of(wrong)) + (of(wrong) - of(none)), of(right) - of(none), 1e-9);
+  }
+  EXPECT_GE(first, 36);
+}
+
+TEST(ModelScore, NoFittedModelExceedsItsCeiling) {
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    LinearPhotos photos(seed);
+    const std::vector<std::vector<int>> models = {{0}, {0, 1}, {0, 1, 2, 3, 4}};
+    for (const auto& columns : models) {
+      const ScoredModel model = photos.fitted(columns, -2.0);
+      const ModelScore of = score(model, estimate_noise(model.seen, Floor{}));
+      EXPECT_LT(of.total(), of.ceiling);
+      EXPECT_EQ(of.prior, -2.0);
+    }
+  }
+}
+
+TEST(ResidualNoise, IsNeverBelowTheNoiseAndTrustsARimLess) {
+  SeenPart texture;
+  texture.kind = SeenPart::Kind::textured;
+  texture.camera = "front";
+  texture.count = 300.0, texture.effective = 60.0, texture.information = 3e4,
+  texture.variance = 0.8;
+  SeenPart rim = texture;
+  rim.kind = SeenPart::Kind::silhouette;
+  Floor floor;
+  floor.cell_inflation = 10.0;
+  const ResidualNoise noise = estimate_noise({texture, rim}, floor);
+  EXPECT_EQ(noise.parts[0].variance, 1.0);
+  EXPECT_EQ(noise.parts[1].variance, 1.0);
+  EXPECT_NEAR(noise.parts[0].count, 30.0, 1e-9);  // rest photos: ten cells count as one
+  // A rim tells its own correlation, and a quarter of a pixel is 2.5 deviations of a cell.
+  EXPECT_NEAR(noise.parts[1].count, 60.0 / (1.0 + 6.25), 1e-9);
+  // What misses more than the floor is no noise; what misses less shows that the floor is lower.
+  floor.chi = 1.5, floor.cell_variance = 2.0;
+  floor.by_camera["front"] = 3.0;
+  const auto variance = [&](double left) {
+    texture.variance = left;
+    return estimate_noise({texture}, floor).parts[0].variance;
+  };
+  EXPECT_EQ(variance(30.0), 8.0);
+  EXPECT_EQ(variance(1.7), 1.7);
+  EXPECT_EQ(variance(0.1), 1.0);
+}
+
+/// A contour is no cell: what a column removes there is not taken from what cells have as noise.
+TEST(ResidualNoise, CellsKeepTheirNoiseWhateverColumnsRemove) {
+  SeenPart part;
+  part.kind = SeenPart::Kind::textured;
+  part.count = part.effective = 100.0, part.variance = 1.5;
+  part.H = MatrixXd::Constant(1, 1, 4.0);
+  part.s = VectorXd::Constant(1, 60.0);  // removes 900, of 150 that cells have
+  const auto sums = in_noise({part}, {{{1.0, 100.0, 1.0}}}, false);
+  EXPECT_NEAR(sums[0].r2, 900.0 + 100.0, 1e-9);
+}
+
+TEST(Posterior, IsASoftmax) {
+  const auto sure = posterior({-1000.0, -1000.0 - std::log(3.0), -2000.0});
+  EXPECT_NEAR(sure[0], 0.75, 1e-12);
+  EXPECT_NEAR(sure[1], 0.25, 1e-12);
+  EXPECT_EQ(sure[2], 0.0);
+}
+
+/// Every effect says how large it is as a rule, in the unit of its parameters.
+TEST(TypicalSizes, AreThoseOfTheCatalogueInTheirUnits) {
+  for (const TypicalSize& one : typical_sizes()) {
+    EXPECT_NE(find_effect(one.effect), nullptr) << one.effect;
+    EXPECT_GT(one.size, 0.0) << one.effect << one.parameter;
+    EXPECT_FALSE(one.reason.empty() || one.source.empty()) << one.effect << one.parameter;
+  }
+  std::set<std::string> without;
+  for (const Effect* effect : catalogue()) {
+    bool any = false;
+    for (const auto& form : effect->candidates(test::base_model(), nullptr))
+      for (const Parameter& parameter : form->parameters()) {
+        const auto prior = size_prior(effect->name(), parameter);
+        any = any || prior;
+        for (const TypicalSize& one : typical_sizes()) {
+          if (prior && one.effect == effect->name() &&
+              parameter.name.ends_with("." + one.parameter) && one.unit != "typical" &&
+              one.unit != "log") {
+            EXPECT_EQ(one.unit, parameter.unit) << parameter.name;
+          }
+        }
+      }
+    // A plane's stiffness may be anything: it takes unit information.
+    if (!any && !effect->candidates(test::base_model(), nullptr).empty())
+      without.insert(effect->name());
+  }
+  EXPECT_EQ(without, std::set<std::string>{"floor_contact"});
+}
+
+TEST(TypicalSizes, TwelvePercentOfSwellingIsHardToBelieve) {
+  const Parameter s = find_effect("swelling")
+                          ->candidates(test::base_model(), nullptr)
+                          .front()
+                          ->parameters()
+                          .front();
+  const SizePrior prior = size_prior("swelling", s).value();
+  const auto cost = [&](double value) {
+    return 0.5 * std::pow((value / s.typical - prior.mean) / prior.deviation, 2);
+  };
+  EXPECT_LT(cost(0.01), 0.5);
+  EXPECT_GT(cost(0.12), 15.0);
+}
+
+}  // namespace
+}  // namespace hookeye
