@@ -153,7 +153,8 @@ class FebioReader {
 
   void hold(const XmlNode& condition, int i, const Told& value, bool relative) {
     const Place place = file_.place(condition);
-    if (relative && !file_.deck.steps.empty() && !before_.contains({set_of(condition).at(0), i}))
+    const std::vector<int>& nodes = set_of(condition);
+    if (relative && !file_.deck.steps.empty() && !nodes.empty() && !before_.contains({nodes[0], i}))
       file_.deck.say(place,
                      "what moves on from the step before was free there: it counts from rest");
     const std::string set = file_.key_of(str(condition.attribute("node_set")));

@@ -58,6 +58,21 @@ int FebioFile::id_of(const XmlNode& node) const {
   return whole(str(node.attribute("id")), place(node));
 }
 
+std::string FebioFile::key_of(const std::string& set) const {
+  const std::string key = capitals(stem_ + ":" + set);
+  const auto at = alias_.find(key);
+  return at == alias_.end() ? key : at->second;
+}
+
+void FebioFile::keep(const std::string& name, LabelSet set) {
+  const std::string key = capitals(stem_ + ":" + name);
+  const auto [at, fresh] = first_.try_emplace(set.members, key);
+  if (fresh)
+    deck.node_sets[key] = std::move(set);
+  else
+    alias_[key] = at->second;
+}
+
 FebioMesh::FebioMesh(FebioFile& file) : file_(file), splitter_(file.deck) {
   add_nodes_and_elements();
   add_sets();
@@ -165,10 +180,11 @@ void FebioMesh::keep_set(const std::string& name, const std::vector<int>& member
       file_.fault(node, fmt::format("set `{}` names node {}, which is not there", name, label),
                   "a node of <Nodes>");
   in_order_[name] = members;
-  LabelSet& set = file_.deck.node_sets[file_.key_of(name)];
+  LabelSet set;
   set.name = name.starts_with("@surface:") ? name.substr(9) : name;
   set.place = file_.place(node);
   set.members.insert(members.begin(), members.end());
+  file_.keep(name, std::move(set));
 }
 
 /// Sides of tetrahedra that a triangle or a quadrilateral is.

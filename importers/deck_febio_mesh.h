@@ -30,8 +30,11 @@ class FebioFile {
   std::vector<double> numbers(const XmlNode& node, size_t count) const;
   std::vector<int> labels(const XmlNode& node) const;
   int id_of(const XmlNode& node) const;
-  /// Key of a node set in the deck: decks of one body may call two alike.
-  std::string key_of(const std::string& set) const { return capitals(stem_ + ":" + set); }
+  /// Key of a node set in the deck, of several of the same nodes that of the first. Decks of one
+  /// body may call two sets alike.
+  std::string key_of(const std::string& set) const;
+  /// Keeps a set for key_of().
+  void keep(const std::string& name, LabelSet set);
 
   Deck deck;
 
@@ -39,6 +42,8 @@ class FebioFile {
   XmlFile xml_;
   XmlNode top_;
   std::string stem_;
+  std::map<std::set<int>, std::string> first_;  ///< key by members
+  std::map<std::string, std::string> alias_;    ///< a set's key, of the first of its members
 };
 
 /// <Mesh>: nodes, elements, node sets and surfaces.
