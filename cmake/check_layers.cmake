@@ -1,7 +1,7 @@
 # cmake -DROOT=FOLDER -P check_layers.cmake: an include may only go down.
 #   core <- capture_io <- meshing <- simulation, render <- estimation <- runs <- app
 #                 meshing <- importers <- proposal <- app      runs, importers <- python
-#   capture_io <- calibration <- app      estimation/model <- exporters <- app
+#   capture_io <- calibration <- app      estimation/evaluation <- exporters <- app
 #   estimation/inspection <- placing <- app      runs <- batch <- app; of the layers below, batch stands
 #   on core, capture_io and runs alone
 # Inside estimation/ (all of them on images and model, but for images itself):
@@ -21,7 +21,7 @@ set(below_importers core capture_io meshing)
 set(below_proposal core capture_io meshing importers)
 set(below_calibration core capture_io)
 set(below_placing core capture_io meshing render estimation)
-set(below_exporters core capture_io meshing simulation estimation)
+set(below_exporters core capture_io meshing simulation render estimation)
 set(below_runs core capture_io meshing simulation render estimation)
 set(below_batch core capture_io runs)
 set(below_app core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch)
@@ -60,8 +60,8 @@ foreach(layer IN LISTS layers)
         fault("${source} includes ${path}: write the path from the top folder")
       elseif(first IN_LIST layers AND NOT first STREQUAL layer AND NOT first IN_LIST below_${layer})
         fault("${source} includes ${path}: ${layer} stands on (${below_${layer}})")
-      elseif(layer STREQUAL "exporters" AND path MATCHES "^estimation/" AND NOT path MATCHES "^estimation/model/")
-        fault("${source} includes ${path}: of estimation exporters stands on (model)")
+      elseif(layer STREQUAL "exporters" AND path MATCHES "^estimation/" AND NOT path MATCHES "^estimation/(images|model|evaluation)/")
+        fault("${source} includes ${path}: of estimation exporters stands on (evaluation) and what is below it")
       elseif(layer STREQUAL "placing" AND path MATCHES "^estimation/" AND
              NOT path MATCHES "^estimation/(images|model|evaluation|inspection)/")
         fault("${source} includes ${path}: of estimation placing stands on (inspection) and what is below it")

@@ -90,6 +90,7 @@ std::string readme(const Exporter& exporter, const SolverModel& model, const Exp
 
 Exported export_model(const Exporter& exporter, const SolverModel& model) {
   Exported out = exporter.write(model);
+  if (exporter.of_pictures()) return out;
   if (exporter.name() != "json") {
     out.lacks.insert(out.lacks.begin(), model.lacks.begin(), model.lacks.end());
     for (const SolverCase& one : model.cases)

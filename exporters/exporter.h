@@ -24,6 +24,8 @@ class Exporter {
   virtual ~Exporter() = default;
   virtual std::string name() const = 0;   ///< as behind --to
   virtual std::string title() const = 0;  ///< what it writes, for people
+  /// It tells what cameras and fields see (SolverModel::seen), and no mesh, material or load.
+  virtual bool of_pictures() const { return false; }
   virtual Exported write(const SolverModel& model) const = 0;
 };
 
@@ -32,7 +34,8 @@ const std::vector<const Exporter*>& exporters();
 /// By its name; null where there is none.
 const Exporter* find_exporter(const std::string& name);
 
-/// Files of `exporter`, README.txt and the displacements found here, CASE.csv, among them.
+/// Files of `exporter`; of one for solvers README.txt and the displacements found here, CASE.csv,
+/// among them.
 Exported export_model(const Exporter& exporter, const SolverModel& model);
 
 }  // namespace hookeye

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimation/model/model.h"
+#include "exporters/seen_surface.h"
 #include "simulation/made_of.h"
 
 namespace hookeye {
@@ -79,7 +80,8 @@ struct SolverModel {
   std::vector<std::pair<std::string, const Region*>> regions;  ///< those with nodes
   std::vector<SolverCase> cases;
   std::vector<Added> added;
-  std::vector<std::string> lacks;  ///< what no SolverMaterial can say, in sentences
+  std::vector<std::string> lacks;   ///< what no SolverMaterial can say, in sentences
+  std::optional<SeenSurface> seen;  ///< for exporters that are of pictures
 
   const TetMesh& mesh() const { return body->mesh; }
 };

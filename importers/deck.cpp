@@ -1,8 +1,8 @@
-// Decks of Abaqus and CalculiX as body.inp, body.yaml and examples.yaml.
+// Decks of Abaqus, CalculiX and FEBio as body.inp, body.yaml and examples.yaml.
 //
-// Written from the keyword manuals of both programs. The text goes through four hands: cards
-// (deck_cards), what they tell (deck_reader, deck_mesh, deck_law), regions (deck_patches), load
-// cases (deck_cases).
+// Written from the manuals of the programs. The text goes through four hands: cards (deck_cards),
+// what they tell (deck_reader, deck_mesh, deck_law; of FEBio deck_febio), regions (deck_patches),
+// load cases (deck_cases).
 #include "importers/deck.h"
 
 #include <fmt/format.h>
@@ -13,6 +13,7 @@
 #include "capture_io/camera_text.h"
 #include "core/text_file.h"
 #include "importers/deck_cases.h"
+#include "importers/deck_febio.h"
 #include "importers/detail.h"
 
 namespace hookeye {
@@ -155,14 +156,16 @@ void try_capture(const ImportedDeck& out, const fs::path& scratch, const Place& 
 }  // namespace
 }  // namespace solver_deck
 
-bool is_deck(const std::filesystem::path& file) { return detail::has_ending(file, {".inp"}); }
+bool is_deck(const std::filesystem::path& file) {
+  return detail::has_ending(file, {".inp", ".feb"});
+}
 
 ImportedDeck import_decks(const std::vector<std::filesystem::path>& decks,
                           const std::filesystem::path& scratch) {
   using namespace solver_deck;
   Deck deck;
   for (const fs::path& file : decks) {
-    Deck one = read_deck(file);
+    Deck one = detail::has_ending(file, {".feb"}) ? read_febio(file) : read_deck(file);
     name_steps(one, file);
     if (&file == &decks.front())
       deck = std::move(one);

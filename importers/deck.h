@@ -1,4 +1,5 @@
-// Decks of Abaqus and CalculiX: the body, its material, supports and loads, as parts of a capture.
+// Decks of Abaqus, CalculiX and FEBio: the body, its material, supports and loads, as parts of a
+// capture.
 #pragma once
 
 #include <filesystem>

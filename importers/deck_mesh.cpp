@@ -4,11 +4,24 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cctype>
 
-#include "importers/deck_model.h"
+#include "importers/deck_split.h"
 
 namespace hookeye::solver_deck {
 namespace {
+
+/// Corners of side 1 to 4 of a tetrahedron.
+constexpr int kSides[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
+
+/// Corners of solids that are split, by the type of the element; 0: it is none.
+int corners_of_solid(const std::string& type) {
+  const auto is = [&](const std::string& name) {  // "C3D8R", and not "C3D80"
+    return type.starts_with(name) && (type.size() == name.size() ||
+                                      !std::isdigit(static_cast<unsigned char>(type[name.size()])));
+  };
+  return is("C3D8") ? 8 : is("C3D6") ? 6 : 0;
+}
 
 const char* const kOnePart = "one part with one instance at most";
 
@@ -48,6 +61,58 @@ void fill_range(const CardLine& line, std::set<int>& members) {
 }
 
 }  // namespace
+
+std::array<int, 3> tetrahedron_side(const std::vector<int>& nodes, int side) {
+  std::array<int, 3> out{};
+  for (size_t k = 0; k < 3; ++k) out[k] = nodes[static_cast<size_t>(kSides[side - 1][k])];
+  return out;
+}
+
+void LabelSet::add(const LabelSet& other) {
+  members.insert(other.members.begin(), other.members.end());
+  solids.insert(other.solids.begin(), other.solids.end());
+}
+
+std::set<Side> sides_called(const Deck& deck, const std::string& name, int side,
+                            const Place& place) {
+  std::set<Side> out;
+  const auto add = [&](int element) {
+    const bool solid = deck.split.contains(element);
+    const std::set<Side> own = deck.sides_of({element, side});
+    if (own.empty() || (!solid && side > 4))
+      throw InputError(place, fmt::format("element {} has no side {}", element, side),
+                       "sides 1 to 4 of tetrahedra, 1 to 5 of wedges, 1 to 6 of hexahedra");
+    out.insert(own.begin(), own.end());
+  };
+  if (is_label(name)) {
+    add(whole(name, place));
+    return out;
+  }
+  const LabelSet& set = set_called(deck, false, name, place);
+  std::set<int> of_solids;
+  for (const int solid : set.solids) {
+    add(solid);
+    of_solids.merge(deck.elements_of(solid));
+  }
+  for (const int element : set.members)
+    if (!of_solids.contains(element)) add(element);
+  return out;
+}
+
+std::set<int> Deck::elements_of(int label) const {
+  const auto at = split.find(label);
+  if (at == split.end()) return {label};
+  return {at->second.begin(), at->second.end()};
+}
+
+std::set<Side> Deck::sides_of(const Side& side) const {
+  if (!split.contains(side.first)) return {side};
+  const auto at = split_sides.find(side);
+  return at == split_sides.end() ? std::set<Side>{} : at->second;
+}
+
+MeshCards::MeshCards(Deck& deck) : deck_(deck), splitter_(std::make_unique<Splitter>(deck)) {}
+MeshCards::~MeshCards() = default;
 
 const LabelSet& set_called(const Deck& deck, bool of_nodes, const std::string& name,
                            const Place& place) {
@@ -138,18 +203,20 @@ void MeshCards::elements(const Card& card) {
   const std::string type = capitals(card.option("TYPE"));
   if (card.has("INPUT"))
     card.fault("elements in a file of their own are not read", "*INCLUDE, or all in one file");
-  const int per = type == "C3D4" || type == "C3D4H" ? 4 : type.starts_with("C3D10") ? 10 : 0;
+  const int corners = corners_of_solid(type);
+  const int per = type == "C3D4" || type == "C3D4H" ? 4 : type.starts_with("C3D10") ? 10 : corners;
   if (per == 0 && type.starts_with("C3D"))
     card.fault(fmt::format("elements of type {} are not read", type),
-               "tetrahedra, C3D4 or C3D10: mesh the part anew with them");
+               "C3D4, C3D10, C3D8 or C3D6: mesh the part anew with them");
   if (per == 0) {  // shells, springs, masses: no part of the volume
     if (left_out_.insert(type).second)
       deck_.say(card.place, fmt::format("elements of type {} are left out", type));
     return;
   }
-  if (deck_.per_element != 0 && deck_.per_element != per)
-    card.fault("C3D4 and C3D10 are mixed", "elements of one order");
-  deck_.per_element = per;
+  const int tetrahedron = per == 10 ? 10 : 4;
+  if (deck_.per_element != 0 && deck_.per_element != tetrahedron)
+    card.fault("linear and quadratic elements are mixed", "elements of one order");
+  deck_.per_element = tetrahedron;
   const std::string name = card.option("ELSET");
   LabelSet* set = name.empty() ? nullptr : &deck_.element_sets[capitals(name)];
   if (set && set->name.empty()) set->name = name, set->place = card.place;
@@ -167,10 +234,14 @@ void MeshCards::elements(const Card& card) {
             line.place,
             fmt::format("element {} names node {}, which is not there", labels[0], labels[k]),
             "nodes given by *NODE before");
-    if (!deck_.elements.try_emplace(labels[0], labels.begin() + 1, labels.end()).second)
+    if (corners > 0)
+      splitter_->add(labels[0], {labels.begin() + 1, labels.end()}, line.place);
+    else if (splitter_->has(labels[0]) ||
+             !deck_.elements.try_emplace(labels[0], labels.begin() + 1, labels.end()).second)
       throw InputError(line.place, fmt::format("element {} is there twice", labels[0]),
                        "each element once");
-    if (set) set->members.insert(labels[0]);
+    if (set) set->members.merge(deck_.elements_of(labels[0]));
+    if (set && corners > 0) set->solids.insert(labels[0]);
     labels.clear();
   }
   if (!labels.empty())
@@ -194,12 +265,19 @@ void MeshCards::set(const Card& card, bool of_nodes) {
         found.members.insert(whole(field, line.place));
         continue;
       }
-      const LabelSet& other = set_called(deck_, of_nodes, field, line.place);
-      found.members.insert(other.members.begin(), other.members.end());
+      found.add(set_called(deck_, of_nodes, field, line.place));
     }
   }
+  if (!of_nodes && !deck_.split.empty()) {
+    std::set<int> split;
+    for (const int label : found.members) {
+      if (deck_.split.contains(label)) found.solids.insert(label);
+      split.merge(deck_.elements_of(label));
+    }
+    found.members = std::move(split);
+  }
   if (open_ == "*ASSEMBLY" && !card.has("INSTANCE"))  // reference points, which are left out
-    found.members.clear();
+    found = {};
   if (of_nodes && card.has("ELSET"))
     for (const int element : set_called(deck_, false, card.option("ELSET"), card.place).members)
       if (const auto at = deck_.elements.find(element); at != deck_.elements.end())
@@ -209,7 +287,7 @@ void MeshCards::set(const Card& card, bool of_nodes) {
   if (in_assembly_ && !set.of_assembly) set = {};
   set.of_assembly = in_assembly_;
   if (set.name.empty()) set.name = name, set.place = card.place;
-  set.members.insert(found.members.begin(), found.members.end());
+  set.add(found);
 }
 
 void MeshCards::surface(const Card& card) {
@@ -222,15 +300,10 @@ void MeshCards::surface(const Card& card) {
   for (const CardLine& line : card.lines) {
     const std::vector<std::string> f = line.fields();
     const std::string side = f.size() > 1 ? capitals(f[1]) : "";
-    if (side.size() != 2 || side[0] != 'S' || side[1] < '1' || side[1] > '4')
+    if (side.size() != 2 || side[0] != 'S' || side[1] < '1' || side[1] > '6')
       throw InputError(line.place, "the side of an element is missing",
-                       "an element or its set, and S1 to S4");
-    if (is_label(f[0])) {
-      sides.insert({whole(f[0], line.place), side[1] - '0'});
-      continue;
-    }
-    for (const int element : set_called(deck_, false, f[0], line.place).members)
-      sides.insert({element, side[1] - '0'});
+                       "an element or its set, and S1 to S4 (of hexahedra S6)");
+    sides.merge(sides_called(deck_, f[0], side[1] - '0', line.place));
   }
 }
 
@@ -240,6 +313,7 @@ void MeshCards::finish(const Place& end) {
                      "*END " + open_.substr(1));
   if (deck_.elements.empty())
     throw InputError({end.file}, "the deck has no tetrahedra", "elements of type C3D4 or C3D10");
+  splitter_->say(end);
 }
 
 }  // namespace hookeye::solver_deck

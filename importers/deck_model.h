@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -15,12 +17,16 @@ namespace hookeye::solver_deck {
 struct LabelSet {
   std::string name;  ///< as the deck first spells it
   std::set<int> members;
+  std::set<int> solids;  ///< of elements: those among them that were split, by their own labels
   Place place;
   bool of_assembly = false;
+  void add(const LabelSet& other);
 };
 
-/// Side 1 to 4 of an element.
+/// Side of an element, from 1: of a tetrahedron 1 to 4.
 using Side = std::pair<int, int>;
+/// Labels of the corners of side 1 to 4 of a tetrahedron, as the programs count them.
+std::array<int, 3> tetrahedron_side(const std::vector<int>& nodes, int side);
 
 struct Law {
   std::string yaml;  ///< "{law: neo-hookean, mu: 0.05, kappa: 0.5}"; "": there is none
@@ -59,6 +65,9 @@ struct Deck {
   std::map<int, Eigen::Vector3d> nodes;
   std::map<int, std::vector<int>> elements;  ///< of 4 or 10 labels, in the order of the deck
   int per_element = 0;
+  /// What hexahedra and wedges became, by their labels: labels in `elements`, and by side theirs.
+  std::map<int, std::vector<int>> split;
+  std::map<Side, std::set<Side>> split_sides;
   std::map<std::string, LabelSet> node_sets, element_sets;
   std::map<std::string, std::set<Side>> surfaces;
   std::vector<DeckMaterial> materials;
@@ -69,15 +78,22 @@ struct Deck {
   void say(const Place& place, const std::string& text) {
     said.push_back(place.str() + ": " + text);
   }
+  /// `label`, or what it was split into.
+  std::set<int> elements_of(int label) const;
+  std::set<Side> sides_of(const Side& side) const;
+  bool has_element(int label) const { return elements.contains(label) || split.contains(label); }
 };
 
 /// Throws InputError with file and line.
 Deck read_deck(const std::filesystem::path& file);
 
+class Splitter;
+
 /// Nodes, elements, their sets and surfaces: true where the card is one of these.
 class MeshCards {
  public:
-  explicit MeshCards(Deck& deck) : deck_(deck) {}
+  explicit MeshCards(Deck& deck);
+  ~MeshCards();
   bool take(const Card& card);
   /// What can only be known at the end of the deck.
   void finish(const Place& end);
@@ -90,11 +106,16 @@ class MeshCards {
   void surface(const Card& card);
 
   Deck& deck_;
+  std::unique_ptr<Splitter> splitter_;
   int parts_ = 0, instances_ = 0;
   std::string open_;  ///< *PART, *INSTANCE, *ASSEMBLY that is not closed
   bool in_assembly_ = false;
   std::set<std::string> left_out_;  ///< types of elements that were told
 };
+
+/// Sides of tetrahedra behind side `side` of an element or of a set. Throws InputError at `place`.
+std::set<Side> sides_called(const Deck& deck, const std::string& name, int side,
+                            const Place& place);
 
 /// The set behind a name, "PART-1-1.TOP" too. Throws InputError at `place`.
 const LabelSet& set_called(const Deck& deck, bool of_nodes, const std::string& name,

@@ -15,8 +15,6 @@ namespace {
 
 /// More nodes apart than these are no clamp of single points.
 constexpr size_t kMostPoints = 12;
-/// Corners of side 1 to 4 of an element, as the programs count them.
-constexpr int kSides[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
 
 using Out = std::back_insert_iterator<std::string>;
 
@@ -220,7 +218,10 @@ std::set<int> Patches::faces_of(const std::set<Side>& sides, const Place& place)
     const auto at = face_of_.find(sorted(c[0], c[1], c[2]));
     if (at == face_of_.end())
       throw InputError(
-          place, fmt::format("side {} of element {} lies within the body", side.second, side.first),
+          place,
+          deck_.split.empty()
+              ? fmt::format("side {} of element {} lies within the body", side.second, side.first)
+              : "a side that is pressed lies within the body",
           "pressure on sides at the surface");
     faces.insert(at->second);
   }
@@ -228,10 +229,8 @@ std::set<int> Patches::faces_of(const std::set<Side>& sides, const Place& place)
 }
 
 std::array<int, 3> Patches::corners(const Side& side) const {
-  const std::vector<int>& nodes = deck_.elements.at(side.first);
-  std::array<int, 3> out{};
-  for (size_t k = 0; k < 3; ++k)
-    out[k] = column_.at(nodes[static_cast<size_t>(kSides[side.second - 1][k])]);
+  std::array<int, 3> out = tetrahedron_side(deck_.elements.at(side.first), side.second);
+  for (int& node : out) node = column_.at(node);
   return out;
 }
 

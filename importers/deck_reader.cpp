@@ -325,16 +325,17 @@ class DeckReader {
     for (const CardLine& line : card.lines) {
       const std::vector<std::string> f = line.fields();
       if (f.size() < 3)
-        throw InputError(line.place, "a load has too few fields", "elements, P1 to P4, value");
+        throw InputError(line.place, "a load has too few fields", "elements, P1 to P6, value");
       const std::string kind = capitals(f[1]);
       if (kind == "GRAV")
         gravity(f, factor, line.place);
       else if (card.word == "*DSLOAD" && kind == "P")
         for (const Side& side : surface_called(f[0], line.place))
           now_.pressures[side] = {factor * real(f[2], line.place), line.place};
-      else if (kind.size() == 2 && kind[0] == 'P' && kind[1] >= '1' && kind[1] <= '4')
-        for (const int element : elements_called(f[0], line.place))
-          now_.pressures[{element, kind[1] - '0'}] = {factor * real(f[2], line.place), line.place};
+      else if (kind.size() == 2 && kind[0] == 'P' && kind[1] >= '1' && kind[1] <= '6')
+        for (const Side& side :
+             sides_called(deck_, element_named(f[0], line.place), kind[1] - '0', line.place))
+          now_.pressures[side] = {factor * real(f[2], line.place), line.place};
       else
         deck_.say(line.place, fmt::format("a load of kind {} is left out", kind));
     }
@@ -350,12 +351,17 @@ class DeckReader {
     now_.gravity = factor * real(f[2], place) * along.normalized();
   }
 
+  /// The field, which is a set or an element that is there.
+  const std::string& element_named(const std::string& field, const Place& place) {
+    if (is_label(field) && !deck_.has_element(whole(field, place)))
+      throw InputError(place, fmt::format("there is no element {}", field), "one of the deck");
+    return field;
+  }
+
   std::set<int> elements_called(const std::string& field, const Place& place) {
-    if (!is_label(field)) return set_called(deck_, false, field, place).members;
-    const int label = whole(field, place);
-    if (!deck_.elements.contains(label))
-      throw InputError(place, fmt::format("there is no element {}", label), "one of the deck");
-    return {label};
+    if (!is_label(element_named(field, place)))
+      return set_called(deck_, false, field, place).members;
+    return deck_.elements_of(whole(field, place));
   }
 
   const std::set<Side>& surface_called(const std::string& name, const Place& place) {

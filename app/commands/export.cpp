@@ -5,11 +5,14 @@
 #include <filesystem>
 
 #include "app/commands/commands.h"
+#include "app/commands/export_seen.h"
 #include "app/commands/run_support.h"
 #include "app/commands/solve.h"
+#include "app/validators.h"
 #include "core/text_file.h"
 #include "estimation/effects/catalogue.h"
 #include "exporters/exporter.h"
+#include "runs/run_limits.h"
 
 namespace hookeye {
 namespace {
@@ -20,6 +23,7 @@ using Json = nlohmann::ordered_json;
 struct ExportOptions {
   std::string run, to, out;
   int step = -1;
+  SeenArguments seen;
 };
 
 /// The folder itself: a trailing slash has no name.
@@ -125,15 +129,20 @@ void run_export(const ExportOptions& options, Session& session) {
   const Exporter& exporter = *find_exporter(options.to);
   const fs::path folder = folder_of(options.out);
   refuse_full_folder(folder);
+  const SeenOptions seen = seen_options(options.seen);
   const Run run = open_run(options.run, false);
   const fs::path step = run.steps().at(step_index(run, options.step));
-  const auto scene = load_scene(without_tests(read_capture(run.capture())), false);
+  const auto scene = load_scene(without_tests(read_capture(run.capture())), exporter.of_pictures(),
+                                limits_of(run.timeline()));
   const auto [form, p] = read_model(step / "model.yaml", scene, catalogue());
   const Model model = form.realise(p);
   SolverModel solver = solver_model(model);
   solver.step = step.filename().string();
   solver.added = added_to(form, p);
-  find_equilibria(model, solver, session);
+  if (exporter.of_pictures())
+    solver.seen = look_at(form, p, seen);
+  else
+    find_equilibria(model, solver, session);
   const Exported exported = export_model(exporter, solver);
   write_folder(folder, exported);
   session.document = {{"hookeye", 1},
@@ -167,6 +176,15 @@ void add_export(CLI::App& app, CommandBody& chosen) {
   command->add_option("--to", options->to, "The program")->required()->check(CLI::IsMember(names));
   command->add_option("--step", options->step, "Number of the step (default: the newest)")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--grid", options->seen.grid_px, "dic: from point to point [px] (16)")
+      ->check(counting_number());
+  command->add_option("--window", options->seen.window, "dic: points across a strain window (5)")
+      ->check(CLI::Range(3, 99));
+  command->add_option("--gauge", options->seen.gauges, "dic: mean over this region (default: all)");
+  command->add_option("--line", options->seen.lines,
+                      "dic: extensometer between points of the body at rest, x,y,z:x,y,z");
+  command->add_option("--along", options->seen.along,
+                      "dic: what exx is along, x,y,z (default: the picture's right)");
   command->add_option("-o,--out", options->out, "Folder that is empty or does not exist")
       ->required();
   command->callback([&chosen, options] {

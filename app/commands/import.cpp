@@ -183,7 +183,8 @@ void add_import(CLI::App& app, CommandBody& chosen) {
   std::string kinds = "\nKinds of sources:\n";
   for (const Importer* importer : importers())
     kinds += fmt::format("  {:<12} {}\n", importer->name(), importer->title());
-  kinds += fmt::format("  {:<12} {}\n", "deck", "body, supports and loads of Abaqus or CalculiX");
+  kinds +=
+      fmt::format("  {:<12} {}\n", "deck", "body, supports and loads of Abaqus, CalculiX, FEBio");
   kinds += fmt::format("  {:<12} {}\n", "scan", "textured surface, obj with mtl or ply");
   command->footer(kinds);
   command

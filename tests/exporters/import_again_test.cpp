@@ -13,7 +13,8 @@ class Again {
     std::vector<std::filesystem::path> decks;
     for (const auto& [file, text] : exported.files) {
       write_text(decks_ / file, text);
-      if (file.ends_with(".inp") && file != "mesh.inp") decks.push_back(decks_ / file);
+      if (file.ends_with(".feb") || (file.ends_with(".inp") && file != "mesh.inp"))
+        decks.push_back(decks_ / file);
     }
     imported_ = import_decks(decks, scratch_.path());
     for (const auto& [file, text] : imported_.files) write_text(folder_ / file, text);
@@ -62,7 +63,7 @@ void expect_same_loading(const SolverModel& model, const SolverCase& told, const
 
 TEST(ImportAgain, TheBlockIsTheSame) {
   const Block block;
-  for (const char* program : {"calculix", "abaqus"}) {
+  for (const char* program : {"calculix", "abaqus", "febio"}) {
     const Again both(solver_model(block.model()), program);
     ASSERT_EQ(both.again().mesh().nodes(), both.told().mesh().nodes());
     EXPECT_LT((both.again().mesh().X - both.told().mesh().X).norm(), 1e-8);

@@ -247,9 +247,9 @@ TEST_F(DeckImport, FaultsHaveTheirLine) {
             "pull.inp:31: `fast` is no number\n  a number");
   EXPECT_EQ(with("*NODE,", "*PART, NAME=A\n*END PART\n*PART, NAME=B\n*NODE,"),
             "pull.inp:3: there is a second part\n  one part with one instance at most");
-  EXPECT_EQ(with("TYPE=C3D4", "TYPE=C3D8R"),
-            "pull.inp:10: elements of type C3D8R are not read\n"
-            "  tetrahedra, C3D4 or C3D10: mesh the part anew with them");
+  EXPECT_EQ(with("TYPE=C3D4", "TYPE=C3D20R"),
+            "pull.inp:10: elements of type C3D20R are not read\n"
+            "  C3D4, C3D10, C3D8 or C3D6: mesh the part anew with them");
   EXPECT_EQ(with("*STEP", "*TRANSFORM, NSET=Cover\n1, 0, 0, 0, 1, 0\n*STEP"),
             "pull.inp:27: *TRANSFORM is not obeyed\n"
             "  nodes, elements and supports written out, in the axes of the body");
