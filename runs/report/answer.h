@@ -8,9 +8,10 @@
 
 namespace hookeye {
 
-/// {material, headline, sentence, misfit}: the newest step's `material` (material_card.h), with the
-/// intervals of its diagnosis where there is one; the verdict in a word and in a plain sentence
-/// (what `discover` said, else what the step's own figures say); the misfit in a sentence.
+/// {material, headline, sentence, misfit, effects}: the newest step's `material` (material_card.h),
+/// with the intervals of its diagnosis where there is one; the verdict in a word and in a plain
+/// sentence (what `discover` said, else what the step's own figures say); the misfit in a sentence;
+/// what was added, with intervals (effect_values.h).
 /// `metrics`, `diagnosis`: the newest step's files, null where they are not there.
 nlohmann::json answer_of(const nlohmann::json& timeline, const nlohmann::json& metrics,
                          const nlohmann::json& diagnosis);
