@@ -7,6 +7,7 @@
 
 #include "batch/fleet_style.h"
 #include "batch/strip_plot.h"
+#include "runs/text.h"
 
 namespace hookeye {
 namespace {
@@ -256,23 +257,6 @@ std::string all_section(const Rows& rows) {
 }
 
 }  // namespace
-
-std::string html_text(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 std::string fleet_page(const Rows& rows, const BatchOrder& order) {
   std::string command = order.verb;

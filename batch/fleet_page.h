@@ -13,7 +13,4 @@ namespace hookeye {
 /// `rows`: as batch_rows() gives them (batch_index.h).
 std::string fleet_page(const std::vector<nlohmann::json>& rows, const BatchOrder& order);
 
-/// Text that may stand anywhere in HTML.
-std::string html_text(const std::string& text);
-
 }  // namespace hookeye

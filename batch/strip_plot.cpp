@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "batch/fleet_page.h"
+#include "runs/text.h"
 
 namespace hookeye {
 namespace {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -256,6 +257,16 @@ void refuse_unless_most_is_left(const SurfaceMesh& before, const SurfaceMesh& no
       "the surface of a body, or a larger --tolerance where its triangles do not meet");
 }
 
+/// NaN of what encloses no volume: triangles that are there twice or intersect do not matter.
+double volume_of(const SurfaceMesh& surface) {
+  SurfaceMesh once = surface;
+  detail::drop_repeated(once);
+  const SurfaceFaults faults = inspect(once);
+  return faults.open_edges.empty() && faults.crowded_edges.empty() && faults.inverted.empty()
+             ? std::abs(detail::six_volume(once)) / 6.0
+             : std::nan("");
+}
+
 }  // namespace
 
 /// How far the surfaces leave each other: corners of both, and the middles of the old edges. A hole
@@ -305,7 +316,11 @@ RepairedSurface repair(const SurfaceMesh& surface, const RepairOptions& options,
     repair.finish(fmt::format(", as remeshed to an edge of {:.4g}", options.edge),
                   "a smaller --edge, or none for the triangles as they are");
   }
-  return {repair.surface(), repair.said, detail::apart(surface, repair.surface())};
+  RepairedSurface out{repair.surface(), repair.said};
+  out.volume_before = volume_of(surface);
+  out.volume = detail::six_volume(out.surface) / 6.0;
+  out.moved = detail::apart(surface, out.surface);
+  return out;
 }
 
 }  // namespace hookeye

@@ -18,7 +18,9 @@ struct RepairOptions {
 struct RepairedSurface {
   SurfaceMesh surface;            ///< bounds a body; without texture coordinates
   std::vector<std::string> said;  ///< what was done, in order
-  double moved = 0.0;             ///< how far the old and the new surface leave each other [length]
+  /// [length^3]; NaN before where it had holes or triangles that disagree, and enclosed nothing.
+  double volume_before = 0.0, volume = 0.0;
+  double moved = 0.0;  ///< how far the old and the new surface leave each other [length]
 };
 
 /// Drops what is there twice, closes gaps, turns triangles to agree, fills holes, mends slivers,

@@ -160,6 +160,13 @@ std::string choice_rows(const json& before, const json& step, double floor, cons
   const auto over = [](const json& one, const char* key, double least) {
     return times_floor(number_in(one, key), least);
   };
+  // Half-size pictures have their floor from the model before, which may be off at rest, too: who
+  // is below it is not better than noise.
+  const auto screened = [&](const json& one, const char* key) {
+    constexpr double kRoundsToOne = 0.995;
+    const double half = number_in(one, "floor"), chi = number_in(one, key);
+    return chi > 0.0 && chi < kRoundsToOne * half ? std::string("floor") : over(one, key, half);
+  };
   size_t left_out = 0;
   for (const auto& one : step.at("raced")) {
     const std::string effect = one.at("effect");
@@ -169,10 +176,9 @@ std::string choice_rows(const json& before, const json& step, double floor, cons
       ++left_out;
       continue;
     }
-    const double half = number_in(one, "floor");
     rows.push_back({effect,
                     score.is_null() ? "-" : fmt::format("{:.1f}", number_in(score, "evidence")),
-                    over(one, "chi_fit", half), over(one, "chi_validate", half),
+                    screened(one, "chi_fit"), screened(one, "chi_validate"),
                     refit.is_null() ? "" : over(refit, "chi_fit", floor),
                     refit.is_null() ? "" : over(refit, "chi_validate", floor),
                     refit.is_null()   ? ""
@@ -320,10 +326,10 @@ std::string choice_table(const json& before, const json& step, double floor, con
   return "\n" +
          wrapped(fmt::format(
              "why {}: normalised residual over the noise floor with each effect that stood out "
-             "(screening: after one or two steps of a refit, on half-size photos, whose floor is "
-             "another; -: not screened, as it promised too little or had no equilibrium; blank: "
-             "not "
-             "refitted; behind: in the refits' penalised log likelihood, below {:.0f} is a tie)",
+             "(screening: after one or two steps of a refit, on half-size photos, over what those "
+             "at rest kept of the model before; floor: less than that; -: not screened, as it "
+             "promised too little or had no equilibrium; blank: not refitted; behind: in the "
+             "refits' penalised log likelihood, below {:.0f} is a tie)",
              added, limits.diagnosis.tie)) +
          choice_rows(before, step, floor, limits) +
          wrapped(sureness(step, floor, limits) + resemblance(before, added), 2);

@@ -138,4 +138,21 @@ std::string marked_bar(double value, double mark, double most, int width) {
   return out.insert(cells(mark), 1, '|');
 }
 
+std::string html_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
 }  // namespace hookeye

@@ -1,4 +1,4 @@
-// Text for a terminal of 100 columns: tables, sentences, bars.
+// Text for a terminal of 100 columns: tables, sentences, bars; and for HTML.
 #pragma once
 
 #include <cstddef>
@@ -21,5 +21,8 @@ std::string wrapped(const std::string& text, size_t indent = 0, size_t width = k
 std::string bar(double share, int width = 10);
 /// "###|####....": `value` on a scale that ends at `most`, with a mark where `mark` is.
 std::string marked_bar(double value, double mark, double most, int width = 14);
+
+/// Text that may stand anywhere in HTML.
+std::string html_text(const std::string& text);
 
 }  // namespace hookeye

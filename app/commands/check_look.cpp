@@ -7,6 +7,7 @@
 
 #include "core/base64.h"
 #include "core/text_file.h"
+#include "runs/text.h"
 
 namespace hookeye {
 namespace {
@@ -99,29 +100,12 @@ Json describe_warning(const CaptureWarning& warning) {
           {"seen", warning.seen},         {"right", warning.right}};
 }
 
-std::string html(const std::string& raw) {
-  std::string out;
-  for (const char c : raw) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string figure(const std::filesystem::path& picture, const std::string& caption) {
   const std::string bytes = read_text(picture);
   return fmt::format(
       "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption>"
       "</figure>\n",
-      html(caption), base64(bytes.data(), bytes.size()));
+      html_text(caption), base64(bytes.data(), bytes.size()));
 }
 
 std::string caption(const Scene& scene, const PhotoLook& look) {
@@ -237,12 +221,13 @@ std::filesystem::path write_inspection_page(const Scene& scene, const Inspection
   std::filesystem::create_directories(folder);
   std::string page = kHead;
   page += fmt::format("<h1>{}</h1>\n<p><code>{}</code></p>\n",
-                      html(scene.capture.title.empty() ? "check" : scene.capture.title),
-                      html(scene.capture.file.string()));
+                      html_text(scene.capture.title.empty() ? "check" : scene.capture.title),
+                      html_text(scene.capture.file.string()));
   page += inspection.warnings.empty() ? "<p>None of the usual slips was found.</p>\n" : "<ul>\n";
   for (const auto& warning : inspection.warnings)
-    page += fmt::format("<li><code>{}</code>: {}. <em>{}</em></li>\n", html(warning.place.str()),
-                        html(warning.seen), html(warning.right));
+    page +=
+        fmt::format("<li><code>{}</code>: {}. <em>{}</em></li>\n", html_text(warning.place.str()),
+                    html_text(warning.seen), html_text(warning.right));
   if (!inspection.warnings.empty()) page += "</ul>\n";
   page +=
       "<p>Orange: the model's outline; blue: at rest; green: held; magenta: loaded or moved. "

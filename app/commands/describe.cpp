@@ -63,6 +63,12 @@ std::string flat_tetrahedra_lines(const TetMesh& mesh, MeshedFrom from,
                 "What is narrower than the edge makes them: a smaller one (`--edge {:.2g}`) "
                 "has fewer",
                 0.5 * edge)
+      : from == MeshedFrom::repaired_surface
+          ? fmt::format(
+                "The repair keeps narrow triangles, and they make them: with `--edge {:.2g}` "
+                "beside `--repair` it remeshes them; look at how far that moves the surface, and "
+                "take a smaller edge where a rim matters",
+                edge)
           : fmt::format(
                 "Narrow triangles of the surface make them: `hookeye mesh {} --repair "
                 "--edge {:.2g} -o REMESHED.obj` remeshes it; look at how far it moves the "

@@ -13,7 +13,7 @@ namespace hookeye {
 nlohmann::ordered_json describe_mesh(const TetMesh& mesh);
 std::string mesh_lines(const TetMesh& mesh);
 /// Where a mesh comes from, which decides how its flat tetrahedra are mended.
-enum class MeshedFrom { surface, remeshed_surface, volume };
+enum class MeshedFrom { surface, repaired_surface, remeshed_surface, volume };
 /// Of flat tetrahedra: how many, where, whether they hurt and what mends them; empty: it is well.
 /// `surface`: the file's name, "" where nobody knows it.
 std::string flat_tetrahedra_lines(const TetMesh& mesh, MeshedFrom from,

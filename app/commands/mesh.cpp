@@ -1,5 +1,6 @@
 // hookeye mesh: a closed surface filled with tetrahedra.
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
@@ -28,6 +29,19 @@ void refuse_unless_writable(const MeshOptions& options) {
                    "-o " + std::filesystem::path(out).replace_extension(".vtu").string());
 }
 
+/// What a repair cuts off or fills in shows in the volume.
+void tell_volume(const RepairedSurface& repaired, Session& session) {
+  const double before = repaired.volume_before, now = repaired.volume;
+  session.document["volume"] = now;
+  session.document["volume_before"] =
+      std::isnan(before) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(before);
+  if (std::isnan(before))
+    session.say("  volume {:.6g} now; before, it enclosed none\n", now);
+  else
+    session.say("  volume {:.6g} -> {:.6g} ({:+.2g} %)\n", before, now,
+                before > 0.0 ? 100.0 * (now / before - 1.0) + 0.0 : 0.0);
+}
+
 /// The surface, mended by as little as it takes or repaired; what was done is told.
 SurfaceMesh body_surface(const MeshOptions& options, Session& session) {
   const Place place{options.surface};
@@ -49,6 +63,7 @@ SurfaceMesh body_surface(const MeshOptions& options, Session& session) {
   if (repaired.said.empty()) session.say("  nothing was wrong with the surface\n");
   session.say("  {} triangles now, at most {:.2g} from where they were\n",
               repaired.surface.triangles.size(), repaired.moved);
+  tell_volume(repaired, session);
   return repaired.surface;
 }
 
@@ -63,10 +78,10 @@ void tell_body(const TetMesh& mesh, const MeshOptions& options, Session& session
         "  the mesher was asked for angles of {:g} degrees and more (--min-angle) and reached "
         "{:.1f}\n",
         options.fill.min_dihedral_deg, reached.min_dihedral_deg);
-  const bool remeshed = options.repair && options.fill.edge > 0.0;
-  session.say("{}", flat_tetrahedra_lines(
-                        mesh, remeshed ? MeshedFrom::remeshed_surface : MeshedFrom::surface,
-                        options.surface));
+  const MeshedFrom from = !options.repair           ? MeshedFrom::surface
+                          : options.fill.edge > 0.0 ? MeshedFrom::remeshed_surface
+                                                    : MeshedFrom::repaired_surface;
+  session.say("{}", flat_tetrahedra_lines(mesh, from, options.surface));
 }
 
 void run_mesh(const MeshOptions& options, Session& session) {

@@ -11,6 +11,7 @@
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/plan/plan_json.h"
+#include "estimation/search/verdict.h"
 #include "runs/add_step.h"
 #include "runs/run_limits.h"
 
@@ -27,7 +28,8 @@ struct PlanArguments {
 };
 
 /// Index of the step whose model lacks what is still confused, and the effects: the newest one, or
-/// the one before an addition that other effects tied with.
+/// the one before an addition that other effects tied with. Where none leads, those of which the
+/// verdict says that they stand out by more than chance and cannot be named.
 struct Question {
   size_t step = 0;
   std::vector<std::string> effects;
@@ -44,6 +46,10 @@ Question question_of(const json& timeline, const Diagnosis& newest, const PlanAr
     const std::vector<std::string> tied = tied_in(steps[i], limits);
     if (tied.size() > 1) return {i - 1, tied};
   }
+  if (!out.effects.empty()) return out;
+  out.effects = cannot_be_told(newest);
+  if (out.effects.size() > kMostConfused) out.effects.resize(kMostConfused);
+  if (out.effects.size() == 1) out.effects.clear();
   return out;
 }
 

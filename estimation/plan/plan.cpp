@@ -16,15 +16,13 @@ double Separation::angle_deg() const {
 }
 
 std::vector<std::string> confused_effects(const Diagnosis& diagnosis) {
-  // More than four are a heap, not a question: the best of them.
-  constexpr size_t kMost = 4;
   std::vector<std::string> out = leaders(diagnosis);
-  if (out.size() > kMost) out.resize(kMost);
+  if (out.size() > kMostConfused) out.resize(kMostConfused);
   if (out.size() != 1) return out;
   for (const auto& score : diagnosis.effects)
     if (score.effect == out.front())
       for (const auto& other : score.confused_with)
-        if (out.size() < kMost) out.push_back(other.effect);
+        if (out.size() < kMostConfused) out.push_back(other.effect);
   return out;
 }
 
@@ -157,10 +155,17 @@ std::string summary(const Plan& plan) {
       return known + "; none of the further loads and views would separate them";
     return known + "; best: " + best.sentence;
   }
-  if (plan.untestable.empty())
-    return "these photos tell what leads from all else: no further load or view is needed";
+  // The diagnosis lists what is alike of all effects, be they there or not.
+  const std::string known =
+      plan.leader.empty()
+          ? fmt::format("no effect stands out, so there is none to tell from another{}",
+                        plan.alike ? " (what `confused with` lists would look alike if it were "
+                                     "there: `--between A,B` plans for two of those)"
+                                   : "")
+          : fmt::format("{} leads, and these photos tell it from all else", plan.leader);
+  if (plan.untestable.empty()) return known + ": no further load or view is needed";
   const bool helps = !plan.ratings.empty() && !plan.ratings.front().makes_testable.empty();
-  return fmt::format("nothing is confused; {} cannot be tested with these photos{}",
+  return fmt::format("{}; {} cannot be tested with these photos{}", known,
                      fmt::join(plan.untestable, ", "),
                      helps ? "; best: " + plan.ratings.front().sentence
                            : " and none of the further loads and views would change that");
@@ -180,6 +185,8 @@ std::variant<Plan, NumericalFailure> plan(const Fitted& fitted, const Diagnosis&
   out.tie = diagnosis.limits().tie;
   out.confused = options.between.empty() ? confused_effects(diagnosis) : options.between;
   if (out.confused.size() < 2) out.confused.clear();
+  if (const auto first = leaders(diagnosis); !first.empty()) out.leader = first.front();
+  for (const auto& score : diagnosis.effects) out.alike = out.alike || !score.confused_with.empty();
   for (const auto& score : diagnosis.effects)
     if (!score.testable && score.best) out.untestable.push_back(score.effect);
   if (out.confused.empty() && out.untestable.empty()) {

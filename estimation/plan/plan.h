@@ -56,8 +56,10 @@ struct PlanRating {
 };
 
 struct Plan {
-  std::vector<std::string> confused;    ///< effects to be separated
-  Separation now;                       ///< of them, with the photos there are
+  std::vector<std::string> confused;  ///< effects to be separated
+  std::string leader;                 ///< effect that leads; empty: none stands out
+  bool alike = false;  ///< effects that do not stand out change these photos nearly alike
+  Separation now;      ///< of them, with the photos there are
   std::vector<std::string> untestable;  ///< with the photos there are
   std::vector<PlanRating> ratings;      ///< best first; those that could not be rated last
   std::string sentence;
@@ -71,6 +73,9 @@ struct PlanOptions {
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(int done, int of)> progress;
 };
+
+/// More are a heap, not a question.
+constexpr size_t kMostConfused = 4;
 
 /// Effects of a diagnosis that nothing separates yet: leaders(), or, where there is one alone,
 /// those that imitate it (cosine above 0.9) too. Fewer than two: nothing is confused.

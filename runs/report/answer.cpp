@@ -15,6 +15,7 @@
 #include "estimation/fit/at_floor.h"
 #include "estimation/output/pixels_json.h"
 #include "estimation/search/verdict.h"
+#include "runs/report/effect_values.h"
 #include "runs/report/inside.h"
 #include "runs/run_limits.h"
 #include "runs/tables.h"
@@ -104,7 +105,8 @@ Left left_of(const json& step, const json& metrics, double floor, const Limits& 
 std::string with_words(const std::string& effect, const json& step) {
   for (const std::string& said : strings_in(step, "says"))
     if (said.starts_with(effect + ": "))
-      return fmt::format("{} ({})", effect, said.substr(effect.size() + 2));
+      return fmt::format("{} ({}{})", effect, said.substr(effect.size() + 2),
+                         factor_interval(effect_values(step), effect));
   return effect;
 }
 
@@ -301,10 +303,12 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
               {"sentence", "No step is finished"},
               {"misfit", ""},
               {"pixels", ""},
-              {"tested", ""}};
+              {"tested", ""},
+              {"effects", json::array()}};
   const json steps = timeline.is_object() ? timeline.value("steps", json::array()) : json::array();
   if (steps.empty() || !steps.back().is_object()) return out;
   const json& step = steps.back();
+  out["effects"] = effect_values(step);
   const double floor = floor_of(timeline, metrics);
   const Left left = left_of(step, metrics, floor, limits_of(timeline));
   if (timeline.contains("sentence")) {

@@ -145,13 +145,21 @@ export interface Material {
   depends: string[];
   yaml: string;
 }
-/** What a run has found (app/report/answer.h). */
+/** An effect in the newest step's model (runs/report/effect_values.h). */
+export interface FoundEffect {
+  effect: string;
+  says: string;
+  /** `factor`: it was fitted as its logarithm. */
+  values: (ParameterValue & {factor?: boolean})[];
+}
+/** What a run has found (runs/report/answer.h). */
 export interface Answer {
   material: Material | null;
   headline: string;
   sentence: string;
   misfit: string;
   tested?: string;
+  effects?: FoundEffect[];
   /** The material as plain text. */
   text: string;
 }

@@ -74,9 +74,11 @@ export function decidedBy(added: string, others: string[], margin: number): stri
   return `refits of ${all} decided for ${spaced(added)} over ${spaced(others[0])}, by ${figure(margin, 4)}`;
 }
 
-/** "0.23 / 0.21": fitted / held out. */
+/** "1.23 / floor": fitted / held out. */
 export function bothOf(tried: Decision['tried'][number]): string {
-  return figure(tried.fitted, 2) + (tried.heldOut === null ? '' : ` / ${figure(tried.heldOut, 2)}`);
+  // Half-size pictures have their floor from the model before: who is below it is not better than noise.
+  const over = (times: number): string => (times < 0.995 ? 'floor' : figure(times, 2));
+  return over(tried.fitted) + (tried.heldOut === null ? '' : ` / ${over(tried.heldOut)}`);
 }
 
 /** What the first steps of a refit came to, where more than one effect was tried. */
@@ -84,7 +86,7 @@ export function triedBy({added, tried}: Decision): string {
   const own = tried.find((t) => t.effect === added);
   const next = tried.find((t) => t.effect !== added);
   return own && next
-    ? `in the screening it leaves ${bothOf(own)} times the noise floor, ${spaced(next.effect)} ${bothOf(next)}` : '';
+    ? `in the screening it leaves ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)} (times the noise floor of half-size photos)` : '';
 }
 
 function sureness(effect: EffectScore, before: StepEntry): string {

@@ -25,6 +25,21 @@ export async function answerIsFirst(page, material, misfit) {
   assert.match(await page.textContent('.charts'), /Stress over stretch/);
 }
 
+/** What a step added has its values with their intervals on the card, as run.json has them. */
+export async function addedHasIntervals(page, step) {
+  await page.click('#tab-answer');
+  const rows = await page.$$eval('.found-values tbody tr', (all) => all.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  const own = step.parameters.filter((one) => one.name.startsWith(step.added + '.'));
+  assert.equal(rows.length, own.length);
+  own.forEach((one, i) => {
+    const [name, value, interval, unit] = rows[i];
+    assert.ok(name.startsWith(one.name.slice(step.added.length + 1)), name);
+    assert.ok(Math.abs(Number(value.replace('−', '-')) - one.value) <= 1e-3 * Math.abs(one.value), `${name}: ${value}`);
+    assert.match(interval, /\d \.\. \S*\d/);
+    assert.equal(unit, one.unit);
+  });
+}
+
 /** What stands above the view, on every tab. */
 export async function headerIsLow(page, verbs) {
   for (const verb of verbs) {

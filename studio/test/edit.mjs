@@ -159,7 +159,9 @@ async function byMouse(address, read) {
   await faultIsMended(page, read);
   await page.waitForTimeout(1500);
   await outlineIsThere(page);
+  assert.match(await page.textContent('.legend'), /outline of the body at rest/);
   await regionByClick(page, 'top', 103, 37, read);
+  assert.match(await page.textContent('.legend'), /region top/);
   await page.click('button:text-is("Body in space")');
   await page.waitForTimeout(800);
   await page.click('#tab-regions');
@@ -323,6 +325,7 @@ async function typedInto(page, selector, text) {
 async function byKeyboard(address, read) {
   const {page, faults, close} = await open(address, {width: 390, height: 844});
   await page.waitForTimeout(1000);
+  assert.equal(await page.$eval('.legend', (box) => box.open), false, 'the legend takes the room of the photo');
   await page.keyboard.press('4');
   await tabTo(page, 'textarea');
   await page.keyboard.press('Control+Home');

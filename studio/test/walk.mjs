@@ -8,7 +8,7 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {launch} from './browser.mjs';
-import {answerIsFirst, bodyIsWhole, headerIsLow, nothingRunsBesides, phoneSeesAPicture, policyIsClosed} from './answer.mjs';
+import {addedHasIntervals, answerIsFirst, bodyIsWhole, headerIsLow, nothingRunsBesides, phoneSeesAPicture, policyIsClosed} from './answer.mjs';
 import {broken, lost, oneCameraOver, withoutSteps} from './damaged.mjs';
 import {choiceIsTold, hoverIsNoChoice, removedIsDrawn, whereToLook} from './missing.mjs';
 import {smallCapture} from './small_capture.mjs';
@@ -320,6 +320,7 @@ async function retold() {
   assert.match(await told('add'), /\+ gravity .*gravity\.z -\d+ mm\/s\^2, 95 % interval/);
   near(number(await told('falls'), 'residual'), steps[0].chi_fit);
   near(number(await told('falls'), '→'), steps[1].chi_fit);
+  await addedHasIntervals(page, steps[1]);
   await page.click('#tab-compare');
   await page.waitForSelector('.panel:nth-child(4) canvas');  // both residuals side by side
   await bothStepsAreRead(page);

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "app/cli.h"
 #include "estimation/fit/at_floor.h"
 
@@ -63,6 +65,38 @@ TEST(Answer, SaysInPlainWordsWhatIsMissing) {
             "photos down to their noise");
   // Photos at the floor and still unexplained: only the search's own sentence says why.
   EXPECT_EQ(sentence(timeline("unexplained", json::array(), 1.05, 1.0)), "As the search said it");
+}
+
+/// What was added has its intervals, and the sentence that of the factor that it names.
+TEST(Answer, WhatWasAddedHasIntervals) {
+  json run = timeline("explained", {"stiffness_field"}, 1.0, 1.0);
+  run["steps"][0]["says"] = {"stiffness_field: a ball 2 times as stiff as the rest"};
+  run["steps"][0]["parameters"] = {
+      {{"name", "mu"}, {"value", 0.05}, {"low", 0.04}, {"high", 0.06}, {"unit", "MPa"}},
+      {{"name", "stiffness_field.a"},
+       {"unit", ""},
+       {"long_name", "log of the stiffness factor"},
+       {"value", std::log(2.0)},
+       {"low", std::log(1.5)},
+       {"high", std::log(3.0)}},
+      {{"name", "stiffness_field.x"},
+       {"unit", "mm"},
+       {"long_name", "centre of the place, x"},
+       {"value", 4.0},
+       {"low", 3.9},
+       {"high", 4.1}}};
+  EXPECT_THAT(
+      sentence(run),
+      HasSubstr("(a ball 2 times as stiff as the rest; 95 % interval of the factor 1.5 to 3)"));
+  const json effects = answer_of(run, {}, {}).at("effects");
+  ASSERT_EQ(effects.size(), 1U);
+  const json& values = effects[0].at("values");
+  ASSERT_EQ(values.size(), 2U);
+  EXPECT_EQ(values[0].at("long_name"), "stiffness factor");
+  EXPECT_NEAR(values[0].at("low"), 1.5, 1e-9);
+  EXPECT_NEAR(values[0].at("high"), 3.0, 1e-9);
+  EXPECT_EQ(values[1].at("name"), "x");
+  EXPECT_EQ(values[1].at("low"), 3.9);
 }
 
 /// A measured value that no noise explains has a wrong sign or unit more often than a wrong model.

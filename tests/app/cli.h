@@ -113,4 +113,13 @@ inline std::vector<std::string> too_long(const std::string& text) {
   return out;
 }
 
+/// Without the ends of lines that the terminal's width asks for.
+inline std::string on_one_line(const std::string& text) {
+  std::string out;
+  for (const char c : text)
+    if (const char one = c == '\n' ? ' ' : c; one != ' ' || out.empty() || out.back() != ' ')
+      out += one;
+  return out;
+}
+
 }  // namespace hookeye::test

@@ -50,15 +50,6 @@ std::string plate_with_hole() {
   return out;
 }
 
-/// Without the ends of lines that the terminal's width asks for.
-std::string on_one_line(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    if (const char one = c == '\n' ? ' ' : c; one != ' ' || out.empty() || out.back() != ' ')
-      out += one;
-  return out;
-}
-
 class FlatMesh : public Cli {
  protected:
   double worst(const std::string& arguments) const {
@@ -86,6 +77,13 @@ TEST_F(FlatMesh, TheAdviceSaysWhatItMeansAndMendsIt) {
   ASSERT_EQ(mended.status, 0) << mended.err;
   EXPECT_GT(worst("REMESHED.obj --edge 6 -o again.vtu"),
             3.0 * worst("plate.obj --edge 6 -o a.vtu"));
+
+  // Who repairs already is not sent to the same command again.
+  const Result repaired = hookeye("mesh plate.obj --repair -o plate.vtu");
+  ASSERT_EQ(repaired.status, 0) << repaired.err;
+  EXPECT_THAT(on_one_line(repaired.out),
+              AllOf(HasSubstr("nearly flat"), HasSubstr("beside `--repair` it remeshes them"),
+                    HasSubstr("volume "), Not(HasSubstr("`hookeye mesh plate.obj --repair"))));
 
   write_cube("[0, 0, 1]");
   EXPECT_THAT(hookeye("mesh cube.obj -o cube.vtu").out, Not(HasSubstr("nearly flat")));

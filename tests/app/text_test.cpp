@@ -36,6 +36,10 @@ TEST(Text, SentencesAreBrokenBetweenWordsAndIndented) {
   EXPECT_EQ(wrapped("see /a/path/that/is/long", 0, 12), "see\n  /a/path/that/is/long\n");
 }
 
+TEST(Text, HtmlTakesAnyText) {
+  EXPECT_EQ(html_text("a<b> & \"c\""), "a&lt;b&gt; &amp; &quot;c&quot;");
+}
+
 TEST(Text, ABarShowsWhereTheFloorIs) {
   EXPECT_EQ(marked_bar(4.0, 1.0, 4.0, 8), "##|######");
   EXPECT_EQ(marked_bar(1.0, 2.0, 4.0, 8), "##..|....");
@@ -99,6 +103,11 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
   EXPECT_THAT(text, testing::ContainsRegex("pressure +89.2 +-"));
   EXPECT_THAT(text, testing::Not(HasSubstr("creep")));
   EXPECT_THAT(text, HasSubstr("no other was refitted"));
+  // The floor of half-size pictures is rough: 0.8 of it is not better than noise.
+  step["raced"][0]["chi_fit"] = 0.4;
+  EXPECT_THAT(choice_table(before, step, 1.0, {}),
+              testing::ContainsRegex("gravity +365.3 +floor +1.00"));
+  EXPECT_THAT(choice_table(before, step, 1.0, {}), HasSubstr("floor: less than that"));
   EXPECT_THAT(text, HasSubstr("to first order no other"));
   step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
   EXPECT_EQ(choice_table(before, step, 1.0, {}), "");

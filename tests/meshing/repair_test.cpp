@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <random>
 
 #include "meshing/detail.h"
@@ -57,6 +58,20 @@ TEST_F(Repaired, WhatIsWholeStaysAsItIs) {
   EXPECT_EQ(r.surface.X, whole.X);
   EXPECT_EQ(r.surface.triangles, whole.triangles);
   EXPECT_EQ(r.moved, 0.0);
+  EXPECT_NEAR(r.volume_before, kVolume, 1e-9 * kVolume);
+  EXPECT_NEAR(r.volume, kVolume, 1e-9 * kVolume);
+}
+
+/// What has a hole enclosed nothing before; what is there twice did.
+TEST_F(Repaired, TheVolumeIsToldBeforeAndAfter) {
+  SurfaceMesh open = box();
+  open.triangles.pop_back();
+  const RepairedSurface filled = repair(open, {}, kPlace);
+  EXPECT_TRUE(std::isnan(filled.volume_before));
+  EXPECT_NEAR(filled.volume, kVolume, 1e-9 * kVolume);
+  SurfaceMesh twice = box();
+  twice.triangles.push_back(twice.triangles.front());
+  EXPECT_NEAR(repair(twice, {}, kPlace).volume_before, kVolume, 1e-9 * kVolume);
 }
 
 TEST_F(Repaired, HolesAreFilledAndTheLongestIsPlaced) {

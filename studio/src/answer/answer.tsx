@@ -2,6 +2,7 @@
 // material does under a pull and under the measured forces.
 import {run} from '../state';
 import {Said} from '../widgets';
+import {FoundEffects} from './effects';
 import {MaterialCard} from './material';
 import {MeasuredForces, MeasuredTable} from './measured';
 import {Shots} from './shots';
@@ -34,7 +35,7 @@ export function Answer() {
   const newest = run.value.steps[run.value.steps.length - 1];
   return (
     <div class="answer">
-      <section class="card"><MaterialCard /><Verdict /></section>
+      <section class="card"><MaterialCard /><Verdict /><FoundEffects /></section>
       <Shots />
       <section class="charts"><StressStretch /><MeasuredForces /></section>
       <div class="measured-table"><MeasuredTable all={newest?.metrics?.measured ?? []} /></div>

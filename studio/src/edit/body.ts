@@ -175,7 +175,7 @@ export function middleOf(of: Body, triangles: number[]): {at: number[]; out: num
 const palette: [number, number, number][] = [[0, 158, 115], [86, 180, 233], [204, 121, 167], [213, 94, 0], [0, 114, 178], [230, 159, 0]];
 export const regionColour = (index: number): [number, number, number] => palette[index % palette.length];
 export const plainColour: [number, number, number] = [168, 172, 178];
-const pickedColour: [number, number, number] = [255, 212, 0];
+export const pickedColour: [number, number, number] = [255, 212, 0];
 
 /** Colour of each shown triangle: picked, of the chosen region, of any, or of none. */
 export function colours(of: Body, chosen: string, picked: Set<number>): [number, number, number][] {

@@ -7,6 +7,7 @@ import {Toolbar} from '../widgets';
 import {actsOf} from './acts';
 import {body, bodyFault, colours, patches, type Body} from './body';
 import {picked, region, shownCase} from './chosen';
+import {Legend} from './legend';
 import {pick} from './pick';
 import {pairing, pendingPoint, pickPoint} from './pose';
 
@@ -55,6 +56,7 @@ export function BodyView() {
         <button onClick={() => scene?.frame()}>Whole body</button>
         <span class="note">Drag to turn, click to pick faces. Keys: arrows, + − 0, Enter picks in the middle.</span>
       </Toolbar>
+      <Legend />
       <div class="body3d">
         {(fault || bodyFault.value) && <p class="empty">{fault || bodyFault.value}</p>}
         <canvas ref={canvas} tabIndex={0} role="img" aria-label="The body: arrow keys turn it, + and - zoom, Enter picks the face in the middle"

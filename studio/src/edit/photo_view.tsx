@@ -10,6 +10,7 @@ import {actsOf} from './acts';
 import {body, bodyFault, colours, middleOf, patches, type Body} from './body';
 import {ask, capture, pulse, type CameraEntry, type CasePhoto} from './capture';
 import {chooseCamera, picked, region, shownCamera, shownCase} from './chosen';
+import {Legend, pairColour} from './legend';
 import {Nudge} from './nudge';
 import {pairing, pairs, pickPixel} from './pose';
 import {pick} from './pick';
@@ -92,13 +93,13 @@ function drawPairs(context: CanvasRenderingContext2D, camera: string, factor: nu
   pairs.value.forEach((pair, i) => {
     if (pair.camera !== camera) return;
     const [x, y] = pair.pixel.map((c) => (c + 0.5) * factor);
-    stroke(context, '#ffd400', 0.25 * arm, () => {
+    stroke(context, pairColour, 0.25 * arm, () => {
       context.moveTo(x - arm, y);
       context.lineTo(x + arm, y);
       context.moveTo(x, y - arm);
       context.lineTo(x, y + arm);
     });
-    context.fillStyle = '#ffd400';
+    context.fillStyle = pairColour;
     context.fillText(String(i + 1), x + 0.6 * arm, y - 0.6 * arm);
   });
 }
@@ -214,6 +215,7 @@ export function PhotoView() {
   return (
     <>
       <Tools photos={shown?.photos ?? []} />
+      <Legend lines={show} />
       <div class="panels" ref={area} tabIndex={0} role="group" onKeyDown={(event) => keys(event, camera, area.current!, onPick)}
            aria-label="Photo: arrow keys move the cross, Enter picks the face below it, + and - zoom, 0 fits">
         <Panel title={`${shown?.name ?? ''} · ${camera.name}`} photo={{width: camera.size[0], height: camera.size[1]}} layer={over && swipe.value === 0 ? over : layers.plain}

@@ -74,6 +74,8 @@ function edges(body: Body, sight: Sight, wanted: (t: number, other: number) => b
   return new Float32Array(out);
 }
 
+export const outlineColour = 0xff7f0e, wireColour = 0x1e90ff;
+
 export interface OverlayLook {
   outline: boolean;
   wire: boolean;
@@ -138,9 +140,9 @@ export class Overlay {
     group.add(this.surface(body, sight, look, false), this.surface(body, sight, look, true));
     const wide = 1 / factor;
     if (look.wire)
-      group.add(this.lines(edges(body, sight, (t, other) => sight.faces[t] === 1 || (other >= 0 && sight.faces[other] === 1)), 0x1e90ff, 0.55, 0));
+      group.add(this.lines(edges(body, sight, (t, other) => sight.faces[t] === 1 || (other >= 0 && sight.faces[other] === 1)), wireColour, 0.55, 0));
     if (look.outline) {
-      const rim = this.lines(edges(body, sight, (t, other) => other < 0 || sight.faces[t] !== sight.faces[other]), 0xff7f0e, 1, wide);
+      const rim = this.lines(edges(body, sight, (t, other) => other < 0 || sight.faces[t] !== sight.faces[other]), outlineColour, 1, wide);
       rim.position.z = -0.01 * (sight.far - sight.near) || -1e-3 * sight.far;
       group.add(rim);
     }

@@ -13,7 +13,7 @@ const words = {
   weight: ['weight', 'share of an effect when one of those listed must be the cause; refits decide between close ones'],
   dof: ['dof', 'how many numbers the effect could choose freely; more fit more of the noise, which its evidence pays for'],
   heldOut: ['held out', 'photos of use: validate. No value is fitted to them, but they help to choose among effects: one that is real helps there too. Photos of use: test have no part in any choice'],
-  tried: ['screening', 'normalised residual over the noise floor, fitted / held-out photos, at half size, after two steps of a refit with the effect: those that get farthest are refitted to the end'],
+  tried: ['screening', 'normalised residual over what half-size photos at rest kept of the model before, fitted / held-out photos, after two steps of a refit with the effect (floor: less than that): those that get farthest are refitted to the end'],
   refit: ['refit', 'the whole model fitted again with the effect in it; its score, not the estimate, decides'],
 } satisfies Record<string, [string, string]>;
 export type Word = keyof typeof words;

@@ -42,6 +42,19 @@ TEST(Confused, TiesComeFirstThenWhatLooksAlike) {
   EXPECT_TRUE(confused_effects(diagnosis).empty());
 }
 
+/// What the diagnosis lists as alike is no question while none of it stands out.
+TEST(Confused, TheSentenceGoesWithTheTable) {
+  Diagnosis diagnosis;
+  diagnosis.effects = {score("gravity", 1.0), score("swelling", 0.5)};
+  diagnosis.effects[0].confused_with = {{"swelling", 0.99}};
+  const auto none = std::get<Plan>(plan(Fitted(), diagnosis));
+  EXPECT_THAT(none.sentence, ::testing::StartsWith("no effect stands out"));
+  EXPECT_THAT(none.sentence, ::testing::HasSubstr("`confused with`"));
+  diagnosis.effects[0] = score("gravity", 40.0);
+  const auto one = std::get<Plan>(plan(Fitted(), diagnosis));
+  EXPECT_THAT(one.sentence, ::testing::StartsWith("gravity leads"));
+}
+
 /// The block at rest in one photo, which is the model's own with gravity in it, and noise.
 std::shared_ptr<const Scene> sagging_scene() {
   static const auto scene = [] {
