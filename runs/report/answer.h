@@ -12,8 +12,8 @@ namespace hookeye {
 /// (material_card.h), with the intervals of its diagnosis where there is one; the verdict in a word
 /// and in a plain sentence (what `discover` said, else what the step's own figures say); the misfit
 /// in a sentence; what all pixels say where the fit has seen a part of them; what was added, with
-/// intervals (effect_values.h). `metrics`, `diagnosis`: the newest step's files, null where they are
-/// not there.
+/// intervals (effect_values.h). `metrics`, `diagnosis`: the newest step's files, null where they
+/// are not there.
 nlohmann::json answer_of(const nlohmann::json& timeline, const nlohmann::json& metrics,
                          const nlohmann::json& diagnosis);
 /// Of the run in a folder, whose steps stand in `timeline`.
