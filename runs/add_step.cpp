@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "estimation/effects/catalogue.h"
+#include "estimation/model/declaration.h"
+#include "estimation/search/chosen_form.h"
 #include "runs/failed.h"
 
 namespace hookeye {
@@ -32,8 +34,9 @@ namespace {
                       : fmt::format("it has {}: take back one of these", fmt::join(effects, ", ")));
 }
 
-Step with_effect(Bench& bench, const Step& current, const std::string& name,
+Step with_effect(Bench& bench, const Step& current, const AddRequest& request,
                  const AddOptions& options) {
+  const std::string& name = request.effect;
   const bool tested =
       std::any_of(current.diagnosis.effects.begin(), current.diagnosis.effects.end(),
                   [&](const EffectScore& score) { return score.effect == name; });
@@ -54,7 +57,10 @@ Step with_effect(Bench& bench, const Step& current, const std::string& name,
     if (options.doing) options.doing("refitting");
     Step step;
     step.name = step.added = name;
-    step.fitted = value_or_fail(add_effect(bench.workspace, current.fitted, score, options.fit));
+    step.fitted = value_or_fail(
+        request.form.empty() ? add_effect(bench.workspace, current.fitted, score, options.fit)
+                             : add_effect_as(bench.workspace, current.fitted, score, request.form,
+                                             options.fit, options.diagnosis));
     return step;
   }
   unknown_effect(name);
@@ -109,10 +115,40 @@ void check_stands(const Run& run, const AddRequest& request) {
   if (!request.take_back && there && !(effect && effect->several())) there_already(request.effect);
 }
 
+void check_form(const Fitted& current, const AddRequest& request) {
+  const Effect* effect = find_effect(request.effect);
+  if (request.form.empty() || !effect) return;
+  if (request.take_back)
+    throw InputError({request.form}, "an effect is taken back in the form that it has",
+                     "leave `--as` out");
+  const auto known = form_names(*effect, current.form.realise(current.p));
+  if (std::find(known.begin(), known.end(), request.form) != known.end()) return;
+  const std::string told = fmt::format("'{}'", fmt::join(known, "', '"));
+  throw InputError({request.form}, fmt::format("{} has no such form in this model", request.effect),
+                   known.empty() ? "it has one form alone: leave `--as` out" : "one of " + told);
+}
+
+std::string form_taken(const Fitted& fitted, const std::string& effect) {
+  const auto& all = fitted.form.ingredients;
+  const auto newest = std::find_if(all.rbegin(), all.rend(),
+                                   [&](const auto& one) { return one->name() == effect; });
+  const Effect* found = find_effect(effect);
+  if (newest == all.rend() || !found) return {};
+  ModelForm before = fitted.form;
+  before.ingredients.resize(static_cast<size_t>(all.rend() - newest) - 1);
+  auto others = form_names(*found, before.realise(fitted.p.head(before.size())));
+  const std::string taken = form_name((*newest)->variant());
+  std::erase(others, taken);
+  if (taken.empty() || others.empty()) return {};
+  return fmt::format("form:      {}; `--as FORM` takes another: '{}'", (*newest)->variant(),
+                     fmt::join(others, "', '"));
+}
+
 Step next_step(Bench& bench, const Step& current, const AddRequest& request,
                const AddOptions& options) {
+  check_form(current.fitted, request);
   return request.take_back ? without_effect(bench, current, request.effect, options)
-                           : with_effect(bench, current, request.effect, options);
+                           : with_effect(bench, current, request, options);
 }
 
 }  // namespace hookeye

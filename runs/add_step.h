@@ -11,6 +11,7 @@ namespace hookeye {
 struct AddRequest {
   std::string effect;
   bool take_back = false;
+  std::string form = {};  ///< name of its form (form_name); empty: as the refit finds it
 };
 
 struct AddOptions {
@@ -32,5 +33,11 @@ void check_effect(const std::string& name);
 /// Throws InputError where an effect is to be taken back that the newest step does not have, or to
 /// be added that it has.
 void check_stands(const Run& run, const AddRequest& request);
+
+/// Throws InputError with those that there are where the effect has no such form in this model.
+void check_form(const Fitted& current, const AddRequest& request);
+
+/// "form:      ball ('free ball'); `--as` takes blob, ...", or empty where the effect has one form.
+std::string form_taken(const Fitted& fitted, const std::string& effect);
 
 }  // namespace hookeye

@@ -62,6 +62,7 @@ void run_add(const AddArguments& arguments, Session& session) {
   Bench bench = open_capture(run.capture(), session, limits_of(run.timeline()));
   const KeptWork kept(run, bench, &interrupted());
   Step current = newest_step(run, bench);
+  check_form(current.fitted, arguments.request);
   AddOptions options;
   options.fit = fit_options();
   options.diagnosis.cancel = &interrupted();
@@ -81,6 +82,9 @@ void run_add(const AddArguments& arguments, Session& session) {
   record_all_pixels(run, bench, step, options.fit);
   session.document = run.timeline()["steps"].back();
   say_answer(run, session);
+  if (!arguments.request.take_back)
+    if (const auto form = form_taken(step.fitted, arguments.request.effect); !form.empty())
+      session.say("{}", wrapped(form));
   say_outcome(current, step, floor, arguments.request.take_back, session);
   if (const auto said = not_converged(step.fitted.converged, step.fitted.iterations); !said.empty())
     session.warn(said);
@@ -95,6 +99,9 @@ void add_add(CLI::App& app, CommandBody& chosen) {
   const auto arguments = std::make_shared<AddArguments>();
   command->add_option("RUN", arguments->run, "Run folder")->required();
   command->add_option("EFFECT", arguments->request.effect, "Name of the effect")->required();
+  command->add_option("--as", arguments->request.form,
+                      "Form of the effect, as `hookeye effects NAME` names it (default: as the "
+                      "refit finds it)");
   command->add_flag("--take-back", arguments->request.take_back, "Refit without the effect again");
   std::vector<std::string> names;
   for (const Effect* effect : catalogue()) names.push_back(effect->name());

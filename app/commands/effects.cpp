@@ -1,4 +1,6 @@
 // hookeye effects: the catalogue, as the effects declare themselves.
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -40,11 +42,9 @@ Json describe(const DeclaredForm& form) {
                           {"low", json_number(p.low)},
                           {"high", json_number(p.high)},
                           {"matters", p.typical}});
-  return {{"form", form.variant},
-          {"ways", form.ways},
-          {"by", form.refit ? "refit" : "diagnosis"},
-          {"sentence", form.sentence},
-          {"parameters", parameters}};
+  return {{"form", form.variant},      {"name", form_name(form.variant)},
+          {"ways", form.ways},         {"by", form.refit ? "refit" : "diagnosis"},
+          {"sentence", form.sentence}, {"parameters", parameters}};
 }
 
 Json describe(const Declaration& declared) {
@@ -137,6 +137,20 @@ std::string parameters_table(const Declaration& declared) {
   return "\n" + table(rows) + (more ? fmt::format("  and {} more (--json)\n", more) : "");
 }
 
+/// What `hookeye add --as` takes.
+std::string form_names_of(const Declaration& declared) {
+  std::vector<std::string> names;
+  for (const DeclaredForm& form : declared.forms) {
+    const std::string name = form_name(form.variant);
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  }
+  if (names.size() < 2) return {};
+  return "\n" + wrapped(fmt::format("`hookeye add RUN {} --as FORM` takes one of: '{}'",
+                                    declared.effect->name(), fmt::join(names, "', '")),
+                        2);
+}
+
 void say_one(const Session& session, const Declaration& declared) {
   const Effect& effect = *declared.effect;
   session.say("{}: {} ({})\n\n{}", effect.name(), effect.title(), group_name(effect.group()),
@@ -146,8 +160,8 @@ void say_one(const Session& session, const Declaration& declared) {
     return;
   }
   session.say("\n{}", wrapped("said as: " + declared.forms.front().sentence, 2));
-  session.say("{}{}{}", forms_table(declared, false), forms_table(declared, true),
-              parameters_table(declared));
+  session.say("{}{}{}{}", forms_table(declared, false), forms_table(declared, true),
+              form_names_of(declared), parameters_table(declared));
 }
 
 void say_all(const Session& session, const std::vector<Declaration>& all) {

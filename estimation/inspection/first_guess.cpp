@@ -118,7 +118,7 @@ FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
   const bool driven = !loading.forces.empty() || !loading.displacement.isZero(0.0);
   if (!driven) {
     guess.linear = Matrix3Xd::Zero(3, body.surface.mesh.X.cols());
-    guess.u = VectorXd::Zero(mesh.X.size());
+    guess.u = guess.reaction = VectorXd::Zero(mesh.X.size());
     return guess;
   }
   const auto free = free_rigid_motions(mesh, loading);
@@ -137,9 +137,10 @@ FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
   }
   const auto& rest = std::get<Equilibrium>(at_rest);
   const VectorXd X = mesh.X.reshaped();
-  guess.u = sensitivities(rest, loading, residual(mesh, energy, loading, X),
-                          Eigen::MatrixXd(loading.displacement))
-                .col(0);
+  const VectorXd out_of_balance = residual(mesh, energy, loading, X);
+  guess.u =
+      sensitivities(rest, loading, out_of_balance, Eigen::MatrixXd(loading.displacement)).col(0);
+  guess.reaction = out_of_balance + rest.K * guess.u;
   guess.strain = largest_strain(mesh, guess.u);
   guess.turned = loading.first_step() < 1.0;
   guess.linear = body.surface.deformed(mesh, X + guess.u) - body.surface.mesh.X;
@@ -151,6 +152,8 @@ void CoarseModel::find_equilibrium(int e, FirstGuess* guess) const {
   if (guess->linear.size() == 0) return;
   if (guess->linear.isZero(0.0)) {
     guess->x = scene_->body->surface.mesh.X;
+    guess->q = mesh.X.reshaped();
+    guess->R = guess->reaction;
     return;
   }
   if (guess->strain > options_.most_strain && !guess->turned) {
@@ -161,12 +164,15 @@ void CoarseModel::find_equilibrium(int e, FirstGuess* guess) const {
   options.tolerance = 1e-5;  // a picture shows a hundredth of a pixel, no more
   options.factored = false;
   options.most_iterations = options_.coarse_iterations;
-  const auto solved = solve_equilibrium(mesh, model_.energy_of(e),
-                                        model_.examples[static_cast<size_t>(e)].loading, options);
-  if (const auto* failure = std::get_if<NumericalFailure>(&solved))
+  auto solved = solve_equilibrium(mesh, model_.energy_of(e),
+                                  model_.examples[static_cast<size_t>(e)].loading, options);
+  if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
     guess->failure = failure->reason;
-  else
-    guess->x = scene_->body->surface.deformed(mesh, std::get<Equilibrium>(solved).q);
+    return;
+  }
+  auto& found = std::get<Equilibrium>(solved);
+  guess->q = std::move(found.q), guess->R = std::move(found.R);
+  guess->x = scene_->body->surface.deformed(mesh, guess->q);
 }
 
 std::vector<FirstGuess> CoarseModel::solve(bool in_equilibrium) const {

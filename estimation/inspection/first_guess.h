@@ -14,12 +14,14 @@ struct FirstGuess {
   /// To first order from rest: displacement of the render surface's vertices, 3 x nv [length]. Zero
   /// where nothing moves the body; empty where nothing holds it.
   Matrix3Xd linear;
-  VectorXd u;           ///< the same of the coarse mesh's nodes, 3n
+  VectorXd u;         ///< the same of the coarse mesh's nodes, 3n
+  VectorXd reaction;  ///< what supports exert on the body there, 3n; zero on free unknowns [force]
   double strain = 0.0;  ///< largest of an element, to first order: |sym grad u|
   /// A support turns by more than 30 degrees: nothing is right to first order.
   bool turned = false;
   /// In equilibrium: positions of the vertices; empty: none was found, or sought.
   Matrix3Xd x;
+  VectorXd q, R;        ///< positions and reactions of the coarse mesh's nodes there, 3n each
   std::string failure;  ///< why x is empty
 };
 

@@ -18,16 +18,6 @@ bool is_image(const Sight& sight, PhotoIndex photo) {
   return sight.spec(photo).kind == PhotoSpec::Kind::image;
 }
 
-/// Of both, over the points that both have.
-void remove_mean(std::vector<Vector2d>& seen, std::vector<Vector2d>& expected) {
-  Vector2d of_seen = Vector2d::Zero(), of_expected = Vector2d::Zero();
-  double count = 0.0;
-  for (size_t i = 0; i < seen.size(); ++i)
-    if (expected[i].allFinite()) of_seen += seen[i], of_expected += expected[i], count += 1.0;
-  for (Vector2d& one : seen) one -= of_seen / std::max(count, 1.0);
-  for (Vector2d& one : expected) one -= of_expected / std::max(count, 1.0);
-}
-
 }  // namespace
 
 LoadCase load_case(Sight& sight, int e) {
@@ -54,6 +44,15 @@ LoadCase load_case(Sight& sight, int e) {
   return out;
 }
 
+void remove_mean(std::vector<Vector2d>& seen, std::vector<Vector2d>& expected) {
+  Vector2d of_seen = Vector2d::Zero(), of_expected = Vector2d::Zero();
+  double count = 0.0;
+  for (size_t i = 0; i < seen.size(); ++i)
+    if (expected[i].allFinite()) of_seen += seen[i], of_expected += expected[i], count += 1.0;
+  for (Vector2d& one : seen) one -= of_seen / std::max(count, 1.0);
+  for (Vector2d& one : expected) one -= of_expected / std::max(count, 1.0);
+}
+
 MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer, Shift shift) {
   MotionSums sums;
   for (const Motion& motion : seen.motions) {
@@ -64,6 +63,24 @@ MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer, 
     sums.add(told, expected);
   }
   return sums;
+}
+
+bool moved_by_forces(const ExampleSpec& example) {
+  const auto& supports = example.supports;
+  return std::all_of(supports.begin(), supports.end(), [](const SupportSpec& support) {
+    if (support.kind == SupportSpec::Kind::rigid)
+      return support.rigid.degrees == 0.0 && support.rigid.move.isZero(0.0);
+    return support.kind == SupportSpec::Kind::components &&
+           std::all_of(support.displacement.begin(), support.displacement.end(),
+                       [](const auto& u) { return u.value_or(0.0) == 0.0; });
+  });
+}
+
+bool moved_by_unknown(const ExampleSpec& example) {
+  const auto& supports = example.supports;
+  return std::any_of(supports.begin(), supports.end(), [](const SupportSpec& support) {
+    return support.kind == SupportSpec::Kind::rigid_fit;
+  });
 }
 
 }  // namespace hookeye::inspection

@@ -23,4 +23,12 @@ enum class Shift { kept, removed };
 MotionSums against(Sight& sight, const LoadCase& seen, const Matrix3Xd& answer,
                    Shift shift = Shift::kept);
 
+/// Without the mean of each, over the points that both have.
+void remove_mean(std::vector<Vector2d>& seen, std::vector<Vector2d>& expected);
+
+/// Nothing but forces moves the body: how far, the moduli decide.
+bool moved_by_forces(const ExampleSpec& example);
+/// A support moves by an amount that a fit has to find.
+bool moved_by_unknown(const ExampleSpec& example);
+
 }  // namespace hookeye::inspection

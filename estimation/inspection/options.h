@@ -42,6 +42,12 @@ struct InspectionOptions {
   double times_better_read = 3.0;  ///< fall of the squares left by the other reading (measured: 31
                                    ///< and more where the told one is wrong)
 
+  // Sizes in SI, which tell units that go together but not with the numbers.
+  double smallest_body = 5e-5;   ///< [m]: fewer than a hundred pixels of a light microscope
+  double largest_body = 10.0;    ///< [m]: balloons and airbags are smaller
+  double softest_guess = 1.0;    ///< [Pa]: the softest gels have 10; a guess may be ten times off
+  double stiffest_guess = 1e10;  ///< [Pa]: hard plastics have 1e9
+
   // Weight.
   double least_density = 1.0;     ///< [kg/m^3]: aerogel
   double most_density = 25000.0;  ///< [kg/m^3]: above all metals
@@ -61,6 +67,19 @@ struct InspectionOptions {
   double left_of_motion = 0.06;  ///< of the squares of motions are astray (measured: 0.14 and 0.41
                                  ///< with half of a region)
   double left_by_grown = 0.25;   ///< of those are left if the region covers its face
+
+  // Photos or measured values that stand in one another's places.
+  double better_by_pair = 0.6;  ///< what an exchange of two leaves, of what was left: a half where
+                                ///< one of them is right then, as within a longer mix-up
+  double left_of_exchanged = 0.04;  ///< of the squares is astray where something is exchanged: two
+                                    ///< pulls whose forces are as 1 to 1.2
+  double left_by_exchange = 0.25;   ///< of those are left once it is exchanged back
+
+  // Measured values.
+  double sure_sigmas = 5.0;  ///< their length, from which the direction is that of the load
+  double heaviest_soft =
+      2500.0;  ///< [kg/m^3]: filled silicones have 2000. No less force than such
+               ///< a weight has a sure sign: the capture may leave the weight out
 
   // How far it moves, against the first guess to first order.
   double most_times_by_force = 30.0;  ///< a modulus that is told ten times wrong is found by a fit;

@@ -74,6 +74,24 @@ class Forms {
 
 }  // namespace
 
+std::string form_name(const std::string& variant) {
+  // The words before the first number, without those that lead to one.
+  static const std::regex leading(
+      R"([ ,(]+(radius|around|across|along|towards|about|position|stiffness|times)$)");
+  std::string name = kind_of(variant);
+  if (const size_t number = name.find('#'); number != std::string::npos) {
+    const auto trim = [&] { name.resize(name.find_last_not_of(" ,(") + 1); };
+    name.resize(number);
+    for (size_t before = name.size() + 1; name.size() < before;) {
+      before = name.size();
+      trim();
+      name = std::regex_replace(name, leading, "");
+    }
+  }
+  const std::string free = "free ";
+  return name.starts_with(free) ? name.substr(free.size()) : name;
+}
+
 std::string group_name(EffectGroup group) {
   switch (group) {
     case EffectGroup::material:

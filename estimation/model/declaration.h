@@ -16,6 +16,10 @@ std::string group_name(EffectGroup group);
 /// Each value one typical change off its null, to a side that its bounds allow.
 VectorXd typical_values(const Ingredient& ingredient);
 
+/// What a form is called, wherever it stands and whether or not a refit frees its place: "ball" of
+/// "free ball", "blob" of "blob around (0, 0, 20), radius 7". Empty: it has no name.
+std::string form_name(const std::string& variant);
+
 /// Variants that differ in numbers alone: a direction, a place.
 struct DeclaredForm {
   std::string variant;                ///< the first of them; empty: the effect has one form

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <map>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -52,19 +53,23 @@ std::string read(const fs::path& file) {
 
 void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
-const fs::path& right_capture() {
+/// Each recipe is made once.
+const fs::path& right_capture(const std::string& recipe) {
   static const TemporaryFolder folder;
-  static const fs::path capture = [] {
-    const auto made = synthesize(parse_recipe(kRecipe, "recipe.yaml"), folder / "capture");
-    return std::get<Synthesis>(made).capture;
-  }();
-  return capture;
+  static std::map<std::string, fs::path> made;
+  const auto found = made.find(recipe);
+  if (found != made.end()) return found->second;
+  const auto out =
+      synthesize(parse_recipe(recipe, "recipe.yaml"), folder / std::to_string(made.size()));
+  return made.emplace(recipe, std::get<Synthesis>(out).capture).first->second;
 }
 
 }  // namespace
 
-InspectedCapture::InspectedCapture() {
-  fs::copy(right_capture(), folder_.path(),
+InspectedCapture::InspectedCapture() : InspectedCapture(kRecipe) {}
+
+InspectedCapture::InspectedCapture(const std::string& recipe) {
+  fs::copy(right_capture(recipe), folder_.path(),
            fs::copy_options::recursive | fs::copy_options::overwrite_existing);
 }
 

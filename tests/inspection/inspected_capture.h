@@ -17,6 +17,8 @@ class InspectedCapture {
   /// A copy of the right capture, which is made once a process: two cameras; rest, pull, side,
   /// twist and press; poke held out.
   InspectedCapture();
+  /// The same of another recipe.
+  explicit InspectedCapture(const std::string& recipe);
 
   const std::filesystem::path& folder() const { return folder_.path(); }
   /// Every match of the regular expression in capture.yaml, of which there must be one.

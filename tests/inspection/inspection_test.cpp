@@ -168,7 +168,7 @@ const Slip kSlips[] = {
        c.change("photos/twist_cam0", "photos/pull_cam0");
        c.change("photos/other", "photos/twist_cam0");
      },
-     "directions", "shows the motion of example `twist`"},
+     "exchanges", "shows the motion of example `twist`"},
     {"TheSamePhotoTwice",
      [](InspectedCapture& c) { c.change("photos/pull_cam1", "photos/pull_cam0"); }, "equal_photos",
      "has the very pixels of photo `cam0` of example `pull`"},
@@ -225,6 +225,12 @@ const Slip kSlips[] = {
      "the rotation of `grip` has the other sign"},
     {"SignOfAPress", [](InspectedCapture& c) { c.change("move: \\[0, 0, -", "move: [0, 0, "); },
      "directions", "the motion of `grip` has the other sign"},
+    {"MetresForMillimetres",
+     [](InspectedCapture& c) { c.change("units: .*", "units: {length: m, force: N}"); }, "sizes",
+     "`units: {length: mm, force: N}`, in which the body is 4"},
+    {"PascalsWithMillimetres",
+     [](InspectedCapture& c) { c.change(", mu: [0-9.]+", ", mu: 17000"); }, "sizes",
+     "its shear modulus 17 GPa"},
     {"DensityInSiWithMillimetres",
      [](InspectedCapture& c) { c.change("density: .*", "density: 1070"); }, "weights",
      "1.07e+15 kg/m^3"},

@@ -1,5 +1,5 @@
-// Does the body move where its loads and supports would move it? Where not: is a photo that of
-// another load case, has a load or a motion the other sign, does a region end where it should not?
+// Does the body move where its loads and supports would move it? Where not: has a load or a motion
+// the other sign, does a region end where it should not?
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,48 +22,6 @@ bool can_be_told(const LoadCase& seen, const InspectionOptions& options) {
 double best_cosine(const LoadCase& seen) {
   return std::max(seen.first_order.cosine(),
                   seen.guessed.count > 0.0 ? seen.guessed.cosine() : -1.0);
-}
-
-/// One photo alone, against the first guess of any example.
-double cosine(Sight& sight, const Motion& motion, int example) {
-  const FirstGuess* guess = sight.guess(example);
-  if (!guess || guess->linear.size() == 0) return 0.0;
-  LoadCase alone;
-  alone.motions = {motion};
-  return against(sight, alone, guess->linear).cosine();
-}
-
-/// Loaded photos that do not show their example's motion but that of another, which their cameras'
-/// photo of that other example does not show either. The photos are told of and left out.
-void ask_for_swaps(Sight& sight, std::map<int, LoadCase>& cases, Warnings& warnings) {
-  const InspectionOptions& options = sight.options();
-  std::map<PhotoIndex, std::map<int, double>> cosines;
-  for (const auto& [e, seen] : cases)
-    for (const Motion& motion : seen.motions)
-      for (const auto& [other, unused] : cases)
-        cosines[motion.photo][other] = cosine(sight, motion, other);
-  const auto astray = [&](const std::string& camera, int e) {
-    return std::any_of(cosines.begin(), cosines.end(), [&](const auto& one) {
-      return one.first.first == e && sight.spec(one.first).camera == camera &&
-             one.second.at(e) < options.astray_cosine;
-    });
-  };
-  for (const auto& [photo, of] : cosines) {
-    const auto best = std::max_element(
-        of.begin(), of.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (of.at(photo.first) >= options.astray_cosine || best->second < options.sure_cosine ||
-        !astray(sight.spec(photo).camera, best->first))
-      continue;
-    warnings.say(
-        sight.spec(photo).place,
-        fmt::format("photo {} shows the motion of example `{}` (cosine {:.2f} with its first "
-                    "guess, {:.2f} with that of its own example)",
-                    sight.told(photo), sight.example(best->first).name, best->second,
-                    of.at(photo.first)),
-        "the photos of two examples stand in one another's places");
-    auto& motions = cases.at(photo.first).motions;
-    std::erase_if(motions, [&](const Motion& motion) { return motion.photo == photo; });
-  }
 }
 
 /// What is left of the seen motions once the part along the expected ones is out [px^2].
@@ -155,10 +113,8 @@ void ask_directions(Sight& sight, Warnings& warnings) {
     const LoadCase& seen = sight.load_case(static_cast<int>(e));
     if (can_be_told(seen, sight.options())) cases.emplace(seen.example, seen);
   }
-  ask_for_swaps(sight, cases, warnings);
   for (const auto& [e, seen] : cases)
-    if (seen.motions.size() == sight.load_case(e).motions.size() && !sight.load_doubted(e))
-      ask_for_signs(sight, seen, warnings);
+    if (!sight.load_doubted(e)) ask_for_signs(sight, seen, warnings);
   ask_for_regions(sight, cases, warnings);
 }
 

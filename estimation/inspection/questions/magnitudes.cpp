@@ -20,17 +20,6 @@ struct Times {
   double seen_px, expected_px;
 };
 
-bool by_forces(const Sight& sight, int e) {
-  const auto& supports = sight.example(e).supports;
-  return std::all_of(supports.begin(), supports.end(), [](const SupportSpec& support) {
-    if (support.kind == SupportSpec::Kind::rigid)
-      return support.rigid.degrees == 0.0 && support.rigid.move.isZero(0.0);
-    return support.kind == SupportSpec::Kind::components &&
-           std::all_of(support.displacement.begin(), support.displacement.end(),
-                       [](const auto& u) { return u.value_or(0.0) == 0.0; });
-  });
-}
-
 Times times_of(Sight& sight, int e) {
   const InspectionOptions& options = sight.options();
   const MotionSums& sums = sight.load_case(e).first_order;
@@ -121,8 +110,8 @@ void ask_of_fields(Sight& sight, Warnings& warnings) {
                      "a motion of the whole body that no support specifies: a grip or a machine "
                      "that gives way (`rigid: fit` on the support), or a field in a frame that "
                      "moves");
-      else if (off(times,
-                   by_forces(sight, e) ? options.most_times_by_force : options.most_times_moved))
+      else if (off(times, moved_by_forces(sight.example(e)) ? options.most_times_by_force
+                                                            : options.most_times_moved))
         warnings.say(field.place, seen,
                      fmt::format("the field's `unit` or `scale`, or loads and moduli in another "
                                  "unit: forces in {}, stresses in {}, motions in {}",
@@ -161,7 +150,7 @@ void ask_magnitudes(Sight& sight, Warnings& warnings) {
   for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
     const Times one = times_of(sight, static_cast<int>(i));
     if (one.times == 0.0) continue;
-    const bool forces = by_forces(sight, one.example);
+    const bool forces = moved_by_forces(sight.example(one.example));
     const double most = forces ? options.most_times_by_force : options.most_times_moved;
     asked += forces;
     if (std::abs(std::log(one.times)) <= std::log(most)) continue;

@@ -4,19 +4,9 @@
 #include <cmath>
 
 #include "estimation/inspection/question.h"
+#include "estimation/inspection/si.h"
 
 namespace hookeye::inspection {
-
-namespace {
-
-double newtons(const Units& units) {
-  if (units.force == "mN") return 1e-3;
-  if (units.force == "kN") return 1e3;
-  if (units.force == "uN") return 1e-6;
-  return 1.0;
-}
-
-}  // namespace
 
 void ask_weights(Sight& sight, Warnings& warnings) {
   const Capture& capture = sight.scene().capture;

@@ -1,0 +1,162 @@
+// Does a photo show another load case? Each photo's motion is held against what the first guess
+// expects of every load case of its camera. Told are photos that stand in one another's places, and
+// a photo that shows another example's motion.
+#include "estimation/inspection/exchanges.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "estimation/inspection/load_case.h"
+#include "estimation/inspection/question.h"
+
+namespace hookeye::inspection {
+
+namespace {
+
+/// The photos of one camera whose motions can be told.
+using PhotoSeries = std::vector<const Motion*>;
+
+std::map<std::string, PhotoSeries> series_by_camera(Sight& sight) {
+  std::map<std::string, PhotoSeries> out;
+  for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
+    const int e = static_cast<int>(i);
+    if (moved_by_unknown(sight.example(e))) continue;
+    for (const Motion& motion : sight.load_case(e).motions)
+      out[sight.spec(motion.photo).camera].push_back(&motion);
+  }
+  return out;
+}
+
+/// Motions of the points of `motion` as the first guess expects them of example `e`.
+std::vector<Vector2d> expected(Sight& sight, const Motion& motion, int e, bool in_equilibrium) {
+  const FirstGuess &guess = *sight.guess(e), &before = *sight.guess(motion.reference.first);
+  return in_equilibrium ? motion_between(sight, motion, before.x, guess.x)
+                        : first_order_motion(sight, motion, guess.linear - before.linear);
+}
+
+/// Nothing is compared with an equilibrium unless all have one.
+bool have_equilibria(Sight& sight, const PhotoSeries& series) {
+  return std::all_of(series.begin(), series.end(), [&](const Motion* motion) {
+    return sight.guess(motion->photo.first)->x.size() > 0 &&
+           sight.guess(motion->reference.first)->x.size() > 0;
+  });
+}
+
+/// All photos of a camera against all its load cases, with and without each photo's mean motion,
+/// which a camera that was moved has, too.
+std::vector<ComparedWays> compared(Sight& sight, const PhotoSeries& series) {
+  std::vector<ComparedWays> aspects(2);
+  const bool equilibria = have_equilibria(sight, series);
+  for (ComparedWays& aspect : aspects)
+    aspect.ways.assign(equilibria ? 2 : 1, ComparedPlaces(series.size()));
+  for (const Motion* motion : series) {
+    for (ComparedWays& aspect : aspects)
+      aspect.scaled.push_back(moved_by_forces(sight.example(motion->photo.first)));
+    const size_t row = aspects.front().scaled.size() - 1;
+    for (const Motion* other : series)
+      for (size_t way = 0; way < aspects.front().ways.size(); ++way) {
+        auto seen = motion->seen, told = expected(sight, *motion, other->photo.first, way == 1);
+        for (ComparedWays& aspect : aspects) {
+          if (&aspect == &aspects.back()) remove_mean(seen, told);
+          aspect.ways[way][row].emplace_back().add(seen, told);
+        }
+      }
+  }
+  return aspects;
+}
+
+/// Of all photos of an exchange something has to be seen.
+bool moves(const Exchange& one, const PhotoSeries& series, const InspectionOptions& options) {
+  MotionSums sums;
+  for (const int place : one.places) {
+    const auto& seen = series[static_cast<size_t>(place)]->seen;
+    sums.add(seen, seen);
+  }
+  return sums.seen_px() >= options.least_motion_px;
+}
+
+std::string file_of(const Sight& sight, PhotoIndex photo) {
+  return sight.spec(photo).file.lexically_relative(sight.scene().capture.folder).string();
+}
+
+void say_exchange(Sight& sight, const Exchange& one, const PhotoSeries& series,
+                  Warnings& warnings) {
+  std::string which, files;
+  for (size_t i = 0; i < one.places.size(); ++i) {
+    const PhotoIndex photo = series[static_cast<size_t>(one.places[i])]->photo;
+    const PhotoIndex shown = series[static_cast<size_t>(one.fits[i])]->photo;
+    which += fmt::format("{}{} shows the motion of example `{}`",
+                         i == 0                       ? "photo "
+                         : i + 1 == one.places.size() ? ", and photo "
+                                                      : ", photo ",
+                         sight.told(photo), sight.example(shown.first).name);
+    files += fmt::format("{}`{}`: {}", i == 0 ? "" : ", ", sight.example(shown.first).name,
+                         file_of(sight, photo));
+    sight.doubt_load(photo.first);
+  }
+  warnings.say(
+      sight.spec(series[static_cast<size_t>(one.places.front())]->photo).place,
+      fmt::format("{}: of the squares of their motions {:.0f} % are not as the first guess expects "
+                  "them, and {:.2g} % once they are exchanged",
+                  which, 100.0 * one.told, 100.0 * one.exchanged),
+      fmt::format("photos of camera `{}`: {}",
+                  sight.spec(series[static_cast<size_t>(one.places.front())]->photo).camera,
+                  files));
+}
+
+/// One photo alone, to first order.
+double cosine(Sight& sight, const Motion& motion, int example) {
+  LoadCase alone;
+  alone.motions = {motion};
+  return against(sight, alone, sight.guess(example)->linear).cosine();
+}
+
+/// A photo that does not show its example's motion but that of another, which the camera's photo of
+/// that other example does not show either: one of a longer mix-up.
+void ask_of_single_photos(Sight& sight, const PhotoSeries& series, Warnings& warnings) {
+  const InspectionOptions& options = sight.options();
+  PhotoSeries clear;
+  for (const Motion* motion : series) {
+    const MotionSums& sums = sight.load_case(motion->photo.first).first_order;
+    if (!sight.load_doubted(motion->photo.first) && sums.expected_px() > 0.0 &&
+        sums.seen_px() >= options.least_motion_px)
+      clear.push_back(motion);
+  }
+  std::vector<std::vector<double>> cosines;
+  for (const Motion* motion : clear) {
+    cosines.emplace_back();
+    for (const Motion* other : clear)
+      cosines.back().push_back(cosine(sight, *motion, other->photo.first));
+  }
+  for (size_t i = 0; i < clear.size(); ++i) {
+    const auto best = static_cast<size_t>(std::max_element(cosines[i].begin(), cosines[i].end()) -
+                                          cosines[i].begin());
+    if (cosines[i][i] >= options.astray_cosine || cosines[i][best] < options.sure_cosine ||
+        cosines[best][best] >= options.astray_cosine)
+      continue;
+    const PhotoIndex photo = clear[i]->photo;
+    sight.doubt_load(photo.first);
+    warnings.say(
+        sight.spec(photo).place,
+        fmt::format("photo {} shows the motion of example `{}` (cosine {:.2f} with its first "
+                    "guess, {:.2f} with that of its own example)",
+                    sight.told(photo), sight.example(clear[best]->photo.first).name,
+                    cosines[i][best], cosines[i][i]),
+        "the photos of several examples stand in one another's places");
+  }
+}
+
+}  // namespace
+
+void ask_exchanges(Sight& sight, Warnings& warnings) {
+  for (const auto& [camera, series] : series_by_camera(sight)) {
+    for (const Exchange& one : exchanges(compared(sight, series), sight.options()))
+      if (moves(one, series, sight.options())) say_exchange(sight, one, series, warnings);
+    ask_of_single_photos(sight, series, warnings);
+  }
+}
+
+}  // namespace hookeye::inspection
