@@ -5,10 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <charconv>
-#include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <system_error>
@@ -24,33 +20,11 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char* kOrderFile = "batch.json";
-constexpr const char* kFolders[] = {"tasks",   "new",   "todo", "leased", "done", "failed",
-                                    "results", "beats", "past", "runs",   "logs", "reports"};
 
-const char* folder_name(TicketPlace place) {
-  switch (place) {
-    case TicketPlace::todo:
-      return "todo";
-    case TicketPlace::leased:
-      return "leased";
-    case TicketPlace::done:
-      return "done";
-    case TicketPlace::failed:
-      return "failed";
-  }
-  return "";
-}
-
-/// Of "KEY.TRIES" or "KEY.TRIES@WORKER"; empty: another file.
-std::optional<Ticket> ticket_from(const std::string& name) {
-  const size_t dot = name.find('.'), at = name.find('@');
-  if (dot == std::string::npos || dot == 0) return {};
-  Ticket out;
-  out.key = name.substr(0, dot);
-  const char* end = name.data() + std::min(at, name.size());
-  const auto [stop, error] = std::from_chars(name.data() + dot + 1, end, out.tries);
-  if (error != std::errc() || stop != end) return {};
-  if (at != std::string::npos) out.worker = name.substr(at + 1);
+/// Of the tickets and of all else.
+std::vector<std::string> folders() {
+  std::vector<std::string> out = Tickets::folders();
+  for (const char* name : {"results", "past", "runs", "logs", "reports"}) out.push_back(name);
   return out;
 }
 
@@ -73,10 +47,11 @@ void demand_room_for_batch(const fs::path& folder) {
     throw InputError({folder.string()}, "this is a file, not a folder",
                      "name a new folder for the batch");
   if (!fs::exists(folder)) return;
+  const std::vector<std::string> own = folders();
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    const bool ours = std::find(std::begin(kFolders), std::end(kFolders), name) !=
-                      std::end(kFolders);  // of a start that was cut short, or is under way
+    // of a start that was cut short, or is under way
+    const bool ours = std::find(own.begin(), own.end(), name) != own.end();
     if (!ours && name[0] != '.' && name != kOrderFile)
       throw InputError({folder.string()},
                        fmt::format("the folder holds something else than a batch: {}", name),
@@ -97,19 +72,14 @@ void write_once(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-std::string Ticket::name() const {
-  return worker.empty() ? fmt::format("{}.{}", key, tries)
-                        : fmt::format("{}.{}@{}", key, tries, worker);
-}
-
 BatchFolder::BatchFolder(fs::path path, BatchOrder order)
-    : path_(std::move(path)), order_(std::move(order)) {}
+    : path_(std::move(path)), order_(std::move(order)), tickets_(folder_on_disk(path_)) {}
 
 BatchFolder BatchFolder::make(const fs::path& folder, const BatchOrder& order) {
   if (!fs::exists(folder / kOrderFile)) {
     demand_room_for_batch(folder);
     std::error_code failed;
-    for (const char* name : kFolders) {
+    for (const std::string& name : folders()) {
       fs::create_directories(folder / name, failed);
       if (failed)
         throw InputError({folder.string()}, "the folder cannot be made: " + failed.message(),
@@ -134,34 +104,8 @@ BatchFolder BatchFolder::open(const fs::path& folder) {
   return {fs::canonical(folder), batch_order_from(read_json(file), file)};
 }
 
-// The ticket becomes a second name of the task's file, which is made once; whoever finds it in new/
-// may move it on, and one of them does.
 bool BatchFolder::enrol(const BatchTask& task, const std::string& worker) const {
-  const fs::path file = path_ / "tasks" / task.key;
-  if (fs::exists(file)) return false;
-  const std::string name = Ticket{task.key, 0, worker}.name();
-  const fs::path ticket = path_ / "new" / name;
-  json told = to_json(task);
-  told["enrolled_by"] = worker;
-  write_text(ticket, told.dump() + "\n");
-  std::error_code failed;
-  fs::create_hard_link(ticket, file, failed);
-  if (failed && !fs::exists(file)) throw cannot_write(file.string(), failed.message());
-  finish_one(name, true);
-  return !failed;
-}
-
-void BatchFolder::finish_one(const std::string& name, bool gone) const {
-  const std::optional<Ticket> ticket = ticket_from(name);
-  if (!ticket) return;
-  const fs::path from = path_ / "new" / name, file = path_ / "tasks" / ticket->key;
-  std::error_code ignored;
-  std::string by;
-  if (fs::exists(file, ignored)) by = read_json(file).value("enrolled_by", "");
-  if (by == ticket->worker)
-    fs::rename(from, file_of({ticket->key, 0, ""}, TicketPlace::todo), ignored);
-  else if (gone)
-    fs::remove(from, ignored);
+  return tickets_.enrol(task.key, to_json(task), worker);
 }
 
 void BatchFolder::set_capture(const std::string& key, const fs::path& capture) const {
@@ -198,44 +142,8 @@ void BatchFolder::set_past(const std::string& key, bool past) const {
 bool BatchFolder::is_past(const std::string& key) const { return fs::exists(path_ / "past" / key); }
 
 std::set<std::string> BatchFolder::past() const {
-  const std::vector<std::string> names = names_in("past");
+  const std::vector<std::string> names = tickets_.folder().names("past");
   return {names.begin(), names.end()};
-}
-
-std::vector<std::string> BatchFolder::names_in(const std::string& folder) const {
-  std::vector<std::string> out;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_ / folder))
-    if (const std::string name = entry.path().filename().string(); name[0] != '.')
-      out.push_back(name);
-  return out;
-}
-
-std::string BatchFolder::holder_of(const std::string& name) {
-  const std::optional<Ticket> ticket = ticket_from(name);
-  return ticket ? ticket->worker : "";
-}
-
-std::vector<Ticket> BatchFolder::tickets(TicketPlace place) const {
-  std::vector<Ticket> out;
-  for (const std::string& name : names_in(folder_name(place)))
-    if (const std::optional<Ticket> ticket = ticket_from(name)) out.push_back(*ticket);
-  return out;
-}
-
-bool BatchFolder::move(const Ticket& ticket, TicketPlace from, const Ticket& as,
-                       TicketPlace to) const {
-  const fs::path source = file_of(ticket, from), target = file_of(as, to);
-  if (::rename(source.c_str(), target.c_str()) == 0) return true;
-  const int why = errno;
-  // A network file system may send a rename twice, and then says of the second that there is
-  // nothing to rename. Nobody else makes a name with this worker in it.
-  if (why == ENOENT) return !as.worker.empty() && is_at(as, to);
-  throw cannot_write(target.string(), std::strerror(why));
-}
-
-bool BatchFolder::is_at(const Ticket& ticket, TicketPlace place) const {
-  std::error_code ignored;
-  return fs::exists(file_of(ticket, place), ignored);
 }
 
 void BatchFolder::store_result(const Ticket& ticket, const json& result) const {
@@ -256,10 +164,6 @@ void BatchFolder::drop_result(const Ticket& ticket) const {
   fs::remove(path_ / "results" / ticket.name(), ignored);
 }
 
-fs::path BatchFolder::file_of(const Ticket& ticket, TicketPlace place) const {
-  return path_ / folder_name(place) / ticket.name();
-}
-
 fs::path BatchFolder::run_of(const BatchTask& task) const {
   return path_ / "runs" / task.file_name();
 }
@@ -278,7 +182,7 @@ BatchCounts count(const BatchFolder& folder, const std::vector<std::string>& key
   std::map<std::string, TicketPlace> places;
   for (const TicketPlace place :
        {TicketPlace::todo, TicketPlace::leased, TicketPlace::failed, TicketPlace::done})
-    for (const Ticket& ticket : folder.tickets(place))
+    for (const Ticket& ticket : folder.tickets().at(place))
       if ((wanted.empty() || wanted.count(ticket.key)) && !past.count(ticket.key))
         places[ticket.key] = place;
   BatchCounts out;

@@ -76,7 +76,7 @@ std::vector<json> batch_rows(const BatchFolder& folder, const std::vector<std::s
                                      {TicketPlace::leased, "leased"},
                                      {TicketPlace::failed, "failed"},
                                      {TicketPlace::done, "done"}})
-    for (const Ticket& ticket : folder.tickets(place)) places[ticket.key] = {state, ticket};
+    for (const Ticket& ticket : folder.tickets().at(place)) places[ticket.key] = {state, ticket};
   std::vector<BatchTask> tasks;
   if (keys.empty()) tasks = folder.tasks();
   for (const std::string& key : keys) tasks.push_back(folder.task(key));

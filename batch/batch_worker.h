@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "batch/batch_folder.h"
-#include "batch/heartbeat.h"
+#include "sharing/leases.h"
 
 namespace hookeye {
 

@@ -3,15 +3,16 @@
 #                 meshing <- importers <- proposal <- app      runs, importers <- python
 #   capture_io <- calibration <- app      estimation/evaluation <- exporters <- app
 #   estimation/inspection <- placing <- app      runs <- batch <- app; of the layers below, batch stands
-#   on core, capture_io and runs alone
+#   on core, capture_io, sharing and runs alone      core <- sharing <- runs, batch
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
 # and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
 # that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
-set(layers core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch app python)
+set(layers core sharing capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch app python)
 set(below_core "")
+set(below_sharing core)
 set(below_capture_io core)
 set(below_meshing core capture_io)
 set(below_simulation core capture_io meshing)
@@ -22,10 +23,10 @@ set(below_proposal core capture_io meshing importers)
 set(below_calibration core capture_io)
 set(below_placing core capture_io meshing render estimation)
 set(below_exporters core capture_io meshing simulation render estimation)
-set(below_runs core capture_io meshing simulation render estimation)
-set(below_batch core capture_io runs)
-set(below_app core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch)
-set(below_python core capture_io meshing simulation render estimation importers runs)
+set(below_runs core sharing capture_io meshing simulation render estimation)
+set(below_batch core sharing capture_io runs)
+set(below_app core sharing capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch)
+set(below_python core sharing capture_io meshing simulation render estimation importers runs)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
 set(below_model images)

@@ -3,7 +3,7 @@
 # both. (GCC's -Wodr would see it too, but only where everything is compiled with -flto.)
 # clang-format keeps what is looked for at the start of a line.
 cmake_minimum_required(VERSION 3.25)
-set(layers core capture_io meshing simulation render estimation importers proposal calibration placing exporters runs app python)
+set(layers core sharing capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch app python)
 file(GLOB programs RELATIVE ${ROOT} ${ROOT}/tests/*)  # each linked with the layers
 set(type "(class|struct|union|enum class|enum struct|enum)")
 

@@ -121,9 +121,9 @@ std::vector<std::string> enrol(const BatchFolder& folder, const std::vector<List
 }
 
 void try_failed_again(const BatchFolder& folder, const std::vector<std::string>& keys) {
-  for (const Ticket& ticket : folder.tickets(TicketPlace::failed)) {
+  for (const Ticket& ticket : folder.tickets().at(TicketPlace::failed)) {
     if (!keys.empty() && std::find(keys.begin(), keys.end(), ticket.key) == keys.end()) continue;
-    if (folder.move(ticket, TicketPlace::failed, {ticket.key, 0, ""}, TicketPlace::todo))
+    if (folder.tickets().move(ticket, TicketPlace::failed, {ticket.key, 0, ""}, TicketPlace::todo))
       folder.drop_result(ticket);
   }
 }

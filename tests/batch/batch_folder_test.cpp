@@ -28,7 +28,7 @@ std::vector<Ticket> all_of(const BatchFolder& folder) {
   std::vector<Ticket> out;
   for (const TicketPlace place :
        {TicketPlace::todo, TicketPlace::leased, TicketPlace::done, TicketPlace::failed})
-    for (const Ticket& one : folder.tickets(place)) out.push_back(one);
+    for (const Ticket& one : folder.tickets().at(place)) out.push_back(one);
   return out;
 }
 
@@ -49,7 +49,7 @@ TEST(Tickets, AreEnrolledOnceByAnyNumber) {
     });
   for (std::thread& one : enrolling) one.join();
   EXPECT_EQ(won, kTasks);
-  EXPECT_THAT(folder.tickets(TicketPlace::todo), SizeIs(kTasks));
+  EXPECT_THAT(folder.tickets().at(TicketPlace::todo), SizeIs(kTasks));
   EXPECT_TRUE(fs::is_empty(place / "batch/new"));
   EXPECT_EQ(folder.tasks()[7].label, "capture 15");  // by label
 }
@@ -63,13 +63,13 @@ TEST(Tickets, GoToOneOfThoseWhoTry) {
   std::vector<std::thread> workers;
   for (int w = 0; w < kWorkers; ++w)
     workers.emplace_back([&, w] {
-      for (const Ticket& one : folder.tickets(TicketPlace::todo))
-        got[w] += folder.move(one, TicketPlace::todo, {one.key, 0, fmt::format("w{}", w)},
-                              TicketPlace::leased);
+      for (const Ticket& one : folder.tickets().at(TicketPlace::todo))
+        got[w] += folder.tickets().move(one, TicketPlace::todo, {one.key, 0, fmt::format("w{}", w)},
+                                        TicketPlace::leased);
     });
   for (std::thread& one : workers) one.join();
   EXPECT_EQ(got[0] + got[1] + got[2] + got[3], kTasks);
-  EXPECT_THAT(folder.tickets(TicketPlace::leased), SizeIs(kTasks));
+  EXPECT_THAT(folder.tickets().at(TicketPlace::leased), SizeIs(kTasks));
   EXPECT_THAT(all_of(folder), SizeIs(kTasks));
 }
 
@@ -77,14 +77,14 @@ TEST(Tickets, ALeaseThatIsAnothersCannotBeGivenBack) {
   const TemporaryFolder place;
   const BatchFolder folder = BatchFolder::make(place / "batch", kOrder);
   folder.enrol(task_of(1), "w");
-  const Ticket waiting = folder.tickets(TicketPlace::todo).at(0), mine{waiting.key, 0, "mine"},
+  const Ticket waiting = folder.tickets().at(TicketPlace::todo).at(0), mine{waiting.key, 0, "mine"},
                yours{waiting.key, 0, "yours"};
-  ASSERT_TRUE(folder.move(waiting, TicketPlace::todo, mine, TicketPlace::leased));
-  ASSERT_TRUE(folder.move(mine, TicketPlace::leased, yours, TicketPlace::leased));
-  EXPECT_FALSE(folder.move(mine, TicketPlace::leased, mine, TicketPlace::done));
-  EXPECT_TRUE(folder.move(yours, TicketPlace::leased, yours, TicketPlace::done));
+  ASSERT_TRUE(folder.tickets().move(waiting, TicketPlace::todo, mine, TicketPlace::leased));
+  ASSERT_TRUE(folder.tickets().move(mine, TicketPlace::leased, yours, TicketPlace::leased));
+  EXPECT_FALSE(folder.tickets().move(mine, TicketPlace::leased, mine, TicketPlace::done));
+  EXPECT_TRUE(folder.tickets().move(yours, TicketPlace::leased, yours, TicketPlace::done));
   // What a network file system repeats has happened.
-  EXPECT_TRUE(folder.move(yours, TicketPlace::leased, yours, TicketPlace::done));
+  EXPECT_TRUE(folder.tickets().move(yours, TicketPlace::leased, yours, TicketPlace::done));
   EXPECT_THAT(all_of(folder), SizeIs(1));
 }
 
@@ -102,18 +102,18 @@ TEST(Tickets, AnEnrollingThatWasCutShortIsFinished) {
   };
   // Before the task was made: nothing was promised.
   write("new/" + key + ".0@early", told("early"));
-  folder.finish_enrolling([](const std::string&) { return false; });
+  folder.tickets().finish_enrolling([](const std::string&) { return false; });
   EXPECT_TRUE(fs::exists(place / ("batch/new/" + key + ".0@early")));
-  folder.finish_enrolling([](const std::string&) { return true; });
+  folder.tickets().finish_enrolling([](const std::string&) { return true; });
   EXPECT_TRUE(fs::is_empty(place / "batch/new"));
   EXPECT_THAT(all_of(folder), SizeIs(0));
   // Behind it: the ticket is what a second one finds.
   write("new/" + key + ".0@late", told("late"));
   write("tasks/" + key, told("late"));
   EXPECT_FALSE(folder.enrol(task_of(1), "second"));
-  folder.finish_enrolling([](const std::string&) { return false; });
-  EXPECT_THAT(folder.tickets(TicketPlace::todo), SizeIs(1));
-  folder.finish_enrolling([](const std::string&) { return true; });
+  folder.tickets().finish_enrolling([](const std::string&) { return false; });
+  EXPECT_THAT(folder.tickets().at(TicketPlace::todo), SizeIs(1));
+  folder.tickets().finish_enrolling([](const std::string&) { return true; });
   EXPECT_THAT(all_of(folder), SizeIs(1));
 }
 

@@ -1,12 +1,13 @@
-// Who works in a batch's folder, and who has gone. No clock of one machine is held against that of
+// Who works in a shared folder, and who has gone. No clock of one machine is held against that of
 // another: a worker counts, and whoever watches it asks by its own clock whether it counts on.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
+
+#include "sharing/shared_folder.h"
 
 namespace hookeye {
 
@@ -33,10 +34,15 @@ class Heartbeat {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Tells which workers have gone. Asked again and again.
+/// What stands in a worker's file after so many beats: `machine` is the boot and the name space of
+/// its processes, `began` when it did in ticks since the boot.
+std::string beat_text(unsigned long count, const std::string& machine, long process,
+                      const std::string& began);
+
+/// Tells which workers have gone, by their files in beats/. Asked again and again.
 class WorkerWatch {
  public:
-  WorkerWatch(std::filesystem::path folder, const BeatTimes& times);
+  WorkerWatch(std::shared_ptr<SharedFolder> folder, const BeatTimes& times);
 
   /// On this machine: its process is there no more, at two questions a second apart, so that what
   /// it had started has ended too. Elsewhere: it has not counted for `silent`.
@@ -48,14 +54,13 @@ class WorkerWatch {
   void forget(const std::string& worker);
 
  private:
-  using Clock = std::chrono::steady_clock;
   struct Seen {
     std::string text;
-    Clock::time_point since;
+    double since = 0.0;  ///< [s]
     bool ended = false;  ///< its process, on this machine
     bool alive = false;  ///< for certain
   };
-  std::filesystem::path folder_;
+  std::shared_ptr<SharedFolder> folder_;
   BeatTimes times_;
   std::map<std::string, Seen> seen_;
 };

@@ -1,4 +1,4 @@
-#include "batch/heartbeat.h"
+#include "sharing/heartbeat.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -32,10 +32,13 @@ std::string first_line_of(const fs::path& file) {
 
 /// The boot of the machine and the name space of its processes: the same process number means the
 /// same process where both are the same. Containers on one machine differ in the second.
-std::string process_space() {
-  std::error_code failed;
-  const fs::path names = fs::read_symlink("/proc/self/ns/pid", failed);
-  return first_line_of("/proc/sys/kernel/random/boot_id") + " " + (failed ? "-" : names.string());
+const std::string& process_space() {
+  static const std::string here = [] {
+    std::error_code failed;
+    const fs::path names = fs::read_symlink("/proc/self/ns/pid", failed);
+    return first_line_of("/proc/sys/kernel/random/boot_id") + " " + (failed ? "-" : names.string());
+  }();
+  return here;
 }
 
 /// When the process began, in ticks since the boot; "": there is none, or it has ended and was not
@@ -95,8 +98,7 @@ Heartbeat::Heartbeat(const fs::path& folder, const BeatTimes& times)
     : impl_(std::make_unique<Impl>()) {
   impl_->name = new_worker_name();
   impl_->file = folder / impl_->name;
-  write_text(impl_->file,
-             fmt::format("{:020}\n{} {} {}\n", 0, process_space(), ::getpid(), began(::getpid())));
+  write_text(impl_->file, beat_text(0, process_space(), ::getpid(), began(::getpid())));
   impl_->handle = ::open(impl_->file.c_str(), O_WRONLY | O_CLOEXEC);
   if (impl_->handle < 0) throw cannot_write(impl_->file.string(), std::strerror(errno));
   impl_->thread = std::thread([this, every = times.beat] { impl_->run(every); });
@@ -116,17 +118,19 @@ Heartbeat::~Heartbeat() {
 
 const std::string& Heartbeat::worker() const { return impl_->name; }
 
-WorkerWatch::WorkerWatch(fs::path folder, const BeatTimes& times)
+std::string beat_text(unsigned long count, const std::string& machine, long process,
+                      const std::string& began) {
+  return fmt::format("{:020}\n{} {} {}\n", count, machine, process, began);
+}
+
+WorkerWatch::WorkerWatch(std::shared_ptr<SharedFolder> folder, const BeatTimes& times)
     : folder_(std::move(folder)), times_(times) {}
 
 bool WorkerWatch::gone(const std::string& worker) {
-  std::ostringstream read;
-  read << std::ifstream(folder_ / worker).rdbuf();
-  const std::string text = read.str();
-  const auto now = Clock::now();
+  const std::string text = folder_->read("beats/" + worker).value_or("");
+  const double now = folder_->seconds();
   const auto [place, first] = seen_.try_emplace(worker, Seen{text, now, false, false});
   Seen& seen = place->second;
-  const auto waited = [&] { return std::chrono::duration<double>(now - seen.since).count(); };
   std::istringstream lines(text);
   std::string count, boot, names, process, its_begin;
   lines >> count >> boot >> names >> process >> its_begin;
@@ -135,10 +139,10 @@ bool WorkerWatch::gone(const std::string& worker) {
     const bool ended = began(std::atol(process.c_str())) != its_begin;
     if (ended != seen.ended) seen = {text, now, ended, false};
     seen.alive = !ended;
-    return ended && waited() >= kEndedFor;
+    return ended && now - seen.since >= kEndedFor;
   }
   if (text != seen.text) seen = {text, now, false, true};
-  return waited() >= times_.silent;
+  return now - seen.since >= times_.silent;
 }
 
 bool WorkerWatch::known_alive(const std::string& worker) const {
@@ -148,8 +152,7 @@ bool WorkerWatch::known_alive(const std::string& worker) const {
 
 void WorkerWatch::forget(const std::string& worker) {
   seen_.erase(worker);
-  std::error_code ignored;
-  fs::remove(folder_ / worker, ignored);
+  folder_->remove("beats/" + worker);
 }
 
 }  // namespace hookeye

@@ -1,5 +1,5 @@
 // Who is at work, and who has gone: by the process where it can be asked, by its count elsewhere.
-#include "batch/heartbeat.h"
+#include "sharing/heartbeat.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -13,6 +13,19 @@
 
 namespace hookeye::test {
 namespace {
+
+/// A folder that workers share.
+class SharedPlace {
+ public:
+  SharedPlace() { std::filesystem::create_directory(beats()); }
+  std::filesystem::path beats() const { return folder_ / "beats"; }
+  WorkerWatch watch(const BeatTimes& times) const {
+    return WorkerWatch(folder_on_disk(folder_.path()), times);
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
 
 using std::chrono::milliseconds;
 
@@ -59,10 +72,10 @@ class OtherWorker {
 };
 
 TEST(WorkersHere, AreGoneWithTheirProcessAlone) {
-  const TemporaryFolder folder;
-  const OtherWorker other(folder.path());
+  const SharedPlace place;
+  const OtherWorker other(place.beats());
   ASSERT_FALSE(other.worker().empty());
-  WorkerWatch watch(folder.path(), {0.05, 0.3});
+  WorkerWatch watch = place.watch({0.05, 0.3});
   other.send(SIGSTOP);  // it is silent, but there
   EXPECT_FALSE(gone_within(watch, other.worker(), 1.5));
   EXPECT_TRUE(watch.known_alive(other.worker()));
@@ -72,7 +85,7 @@ TEST(WorkersHere, AreGoneWithTheirProcessAlone) {
   EXPECT_FALSE(watch.known_alive(other.worker()));
   EXPECT_TRUE(gone_within(watch, other.worker(), 3.0));
   watch.forget(other.worker());
-  EXPECT_EQ(only_file(folder.path()), "");
+  EXPECT_EQ(only_file(place.beats()), "");
 }
 
 /// As of another machine: its boot is another.
@@ -92,9 +105,9 @@ class CountingElsewhere {
 };
 
 TEST(WorkersElsewhere, AreGoneWhenTheyCountNoMore) {
-  const TemporaryFolder folder;
-  CountingElsewhere other(folder.path(), "other");
-  WorkerWatch watch(folder.path(), {0.05, 0.4});
+  const SharedPlace place;
+  CountingElsewhere other(place.beats(), "other");
+  WorkerWatch watch = place.watch({0.05, 0.4});
   for (int i = 0; i < 12; ++i) {
     EXPECT_FALSE(watch.gone("other"));
     EXPECT_EQ(watch.known_alive("other"), i > 0);
@@ -105,20 +118,20 @@ TEST(WorkersElsewhere, AreGoneWhenTheyCountNoMore) {
   EXPECT_TRUE(gone_within(watch, "other", 2.0));
   other.beat();  // it was out of sight, and is back
   EXPECT_FALSE(watch.gone("other"));
-  WorkerWatch later(folder.path(), {0.05, 0.4});  // whoever comes anew waits by his own clock
+  WorkerWatch later = place.watch({0.05, 0.4});  // whoever comes anew waits by his own clock
   EXPECT_FALSE(later.gone("other"));
   EXPECT_FALSE(later.gone("nobody"));
   EXPECT_TRUE(gone_within(later, "nobody", 2.0));
 }
 
 TEST(Heartbeat, CountsAndLeavesNothing) {
-  const TemporaryFolder folder;
+  const SharedPlace place;
   const auto text = [&](const std::string& name) {
-    std::ifstream stream(folder / name);
+    std::ifstream stream(place.beats() / name);
     return std::string(std::istreambuf_iterator<char>(stream), {});
   };
   {
-    const Heartbeat one(folder.path(), {0.05, 0.5}), two(folder.path(), {0.05, 0.5});
+    const Heartbeat one(place.beats(), {0.05, 0.5}), two(place.beats(), {0.05, 0.5});
     EXPECT_NE(one.worker(), two.worker());
     const std::string before = text(one.worker());
     std::this_thread::sleep_for(milliseconds(300));
@@ -126,7 +139,7 @@ TEST(Heartbeat, CountsAndLeavesNothing) {
     EXPECT_NE(before, after);
     EXPECT_EQ(before.size(), after.size());
   }
-  EXPECT_EQ(only_file(folder.path()), "");
+  EXPECT_EQ(only_file(place.beats()), "");
 }
 
 }  // namespace
