@@ -130,6 +130,10 @@ void run_export(const ExportOptions& options, Session& session) {
   const fs::path folder = folder_of(options.out);
   refuse_full_folder(folder);
   const SeenOptions seen = seen_options(options.seen);
+  if (options.seen.told() && !exporter.of_pictures())
+    throw InputError({"--to " + exporter.name()},
+                     "--grid, --window, --gauge, --line and --along are of pictures",
+                     "--to dic, or leave them out");
   const Run run = open_run(options.run, false);
   const fs::path step = run.steps().at(step_index(run, options.step));
   const auto scene = load_scene(without_tests(read_capture(run.capture())), exporter.of_pictures(),

@@ -14,6 +14,10 @@ struct SeenArguments {
   int grid_px = 16, window = 5;
   std::vector<std::string> gauges, lines;
   std::string along;
+  /// Something else than what holds without a word.
+  bool told() const {
+    return grid_px != 16 || window != 5 || !gauges.empty() || !lines.empty() || !along.empty();
+  }
 };
 
 /// Throws InputError for a line or direction that is none.

@@ -121,6 +121,7 @@ TEST_F(DicTables, PhotosTellTheSameWhateverTheModel) {
                             "--gauge nothing", "--grid 0"})
     EXPECT_EQ(hookeye(std::string("export run-soft --to dic -o other ") + wrong).status, 2)
         << wrong;
+  EXPECT_EQ(hookeye("export run-soft --to json -o other --grid 8").status, 2);
   EXPECT_FALSE(fs::exists(folder_ / "other"));
 }
 
