@@ -82,10 +82,7 @@ TEST_F(Workers, ChangeNoBitOfTheAnswer) {
   EXPECT_GT(said.at("tasks"), 0);
   EXPECT_TRUE(said.at("ended"));
   expect_same("helped", "alone");
-}
-
-TEST_F(Workers, ComeWithASearchThatAsksForThem) {
-  ASSERT_EQ(hookeye("discover capture -o alone --threads 1").status, 0);
+  // Those that the search starts itself.
   const Result result = hookeye("discover capture -o two --threads 1 --workers 2");
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.err, testing::Not(HasSubstr("ended with exit status")));
