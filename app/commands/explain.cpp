@@ -148,7 +148,7 @@ std::string how_sure(const std::vector<Decision>& decisions) {
   for (const Decision* one : scored) {
     const auto old = one->parts.find("old");
     out +=
-        wrapped(fmt::format("{}: {:.2g} %, {:.1f}{}",
+        wrapped(fmt::format("{}: {:.1f} %, {:.1f}{}",
                             one->candidate.empty() ? "the capture's own model" : one->candidate,
                             100.0 * one->parts.at("sure"), one->parts.at("below_best"),
                             old == one->parts.end() ? "" : fmt::format("; {:+.1f}", old->second)),

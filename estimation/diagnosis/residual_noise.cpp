@@ -21,6 +21,8 @@ SeenPart of_photo(const PhotoSpec& spec, const PhotoEvaluation& photo, const Con
   out.variance = statistics.variance;
   out.effective = statistics.effective;
   out.information = motion_information(photo.flow);
+  out.pixels = photo.count;
+  out.pixel_r2 = sums.r2;
   out.H = sums.JtJ;
   out.s = sums.Jtr;
   return out;
@@ -57,6 +59,7 @@ ResidualNoise::Part noise_of_photo(const SeenPart& part, const Floor& floor) {
     out.count = std::min(out.count, part.count / floor.cell_inflation);
   }
   out.share = out.count / part.count;
+  out.pixel_floor2 = floor.chi * floor.chi * own_floor2(part.camera, floor);
   return out;
 }
 
@@ -97,10 +100,10 @@ ResidualNoise estimate_noise(const std::vector<SeenPart>& reference, const Floor
         out.parts.push_back(noise_of_photo(part, floor));
         break;
       case Kind::field:
-        out.parts.push_back({floor.cell_variance, part.count, 1.0});
+        out.parts.push_back({floor.cell_variance, part.count, 1.0, 1.0});
         break;
       case Kind::sensor:
-        out.parts.push_back({1.0, part.count, 1.0});
+        out.parts.push_back({1.0, part.count, 1.0, 1.0});
         break;
     }
   return out;
@@ -108,11 +111,26 @@ ResidualNoise estimate_noise(const std::vector<SeenPart>& reference, const Floor
 
 namespace {
 
+/// What all pixels have over their floor, with the weights of the sums.
+double excess_of_pixels(const std::vector<SeenPart>& parts, const ResidualNoise& noise,
+                        bool held_out) {
+  double out = 0.0;
+  for (size_t i = 0; i < parts.size() && i < noise.parts.size(); ++i) {
+    const ResidualNoise::Part& of = noise.parts[i];
+    if (parts[i].held_out == held_out && parts[i].count > 0.0)
+      out += of.share / of.variance * (parts[i].pixel_r2 - of.pixel_floor2 * parts[i].pixels);
+  }
+  return out;
+}
+
 /// Cells show motion and brightness of whole pixels; rims and blur are in the sums over pixels,
-/// too. What the columns remove of these was there, and what cells have left as noise stays.
-double with_all_that_columns_remove(const EffectiveSums& sums) {
+/// too, and more may be removed from those than cells have. What the columns remove of all that
+/// pixels have over their floor is the share of what they remove of the cells'; noise stays.
+double with_what_columns_remove(const EffectiveSums& sums, double excess) {
   const double removed = sums.s.dot(pseudo_inverse(sums.H) * sums.s);
-  return std::max(sums.r2, removed + std::min(sums.r2, sums.floor2 * sums.count));
+  const double noise = std::min(sums.r2, sums.floor2 * sums.count);
+  const double share = removed >= excess ? 1.0 : removed / excess;
+  return std::max(sums.r2, removed + noise + (1.0 - share) * (sums.r2 - noise));
 }
 
 }  // namespace
@@ -125,7 +143,8 @@ std::vector<EffectiveSums> in_noise(const std::vector<SeenPart>& parts, const Re
   for (size_t i = 0; i < parts.size() && i < noise.parts.size(); ++i)
     if (parts[i].held_out == held_out)
       add(parts[i], noise.parts[i], out[parts[i].kind == Kind::sensor ? 1 : 0]);
-  if (columns > 0) out[0].r2 = with_all_that_columns_remove(out[0]);
+  if (columns > 0)
+    out[0].r2 = with_what_columns_remove(out[0], excess_of_pixels(parts, noise, held_out));
   return out;
 }
 

@@ -20,8 +20,9 @@ struct SeenPart {
   double variance = 0.0;     ///< mean square of those, in told noise
   double effective = 0.0;    ///< how many count, by the correlation of what this model leaves
   double information = 0.0;  ///< motion_information() [1/px^2]
-  Eigen::MatrixXd H;         ///< J^T J of pixels, or of numbers, in told noise
-  Eigen::VectorXd s;         ///< J^T r
+  double pixels = 0.0, pixel_r2 = 0.0;  ///< of a photo: those that count, and |r|^2 over them
+  Eigen::MatrixXd H;                    ///< J^T J of pixels, or of numbers, in told noise
+  Eigen::VectorXd s;                    ///< J^T r
 };
 
 /// Fitted examples and held-out ones. `sums`: the same model once more, with a column of its own
@@ -32,9 +33,10 @@ std::vector<SeenPart> seen_parts(const Fitted& fitted, const Evaluation* sums = 
 /// another count once. (What a finer mesh changes is a column with a prior, u u^T: score.h.)
 struct ResidualNoise {
   struct Part {
-    double variance = 1.0;  ///< in told noise
-    double count = 0.0;     ///< independent numbers
-    double share = 0.0;     ///< of its cells: weight of sums over pixels
+    double variance = 1.0;      ///< in told noise
+    double count = 0.0;         ///< independent numbers
+    double share = 0.0;         ///< of its cells: weight of sums over pixels
+    double pixel_floor2 = 1.0;  ///< mean |r|^2 of pixels that no model takes
   };
   std::vector<Part> parts;  ///< as seen_parts()
 };

@@ -162,7 +162,12 @@ ScoredModel scored_model(const Fitted& fitted, const ModelPrices& prices, const 
     dp_dx[x.size()] = to_the_limit;
     out.columns.push_back({0.0, 1.0, false, false, false});
   }
-  for (SeenPart& part : out.seen) scale(dp_dx, part);
+  for (SeenPart& part : out.seen) {
+    scale(dp_dx, part);
+    // The fit ended where its photos leave least. That these weights would have it elsewhere is no
+    // gain: with few cells that count, a field of many values could take all that is left.
+    if (!part.held_out) part.s.head(x.size()).setZero();
+  }
   return out;
 }
 

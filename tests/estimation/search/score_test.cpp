@@ -142,8 +142,11 @@ TEST(ResidualNoise, CellsKeepTheirNoiseWhateverColumnsRemove) {
   part.count = part.effective = 100.0, part.variance = 1.5;
   part.H = MatrixXd::Constant(1, 1, 4.0);
   part.s = VectorXd::Constant(1, 60.0);  // removes 900, of 150 that cells have
-  const auto sums = in_noise({part}, {{{1.0, 100.0, 1.0}}}, false);
-  EXPECT_NEAR(sums[0].r2, 900.0 + 100.0, 1e-9);
+  const ResidualNoise noise{{{1.0, 100.0, 1.0, 1.0}}};
+  EXPECT_NEAR(in_noise({part}, noise, false)[0].r2, 900.0 + 100.0, 1e-9);
+  // Of 1800 that pixels have over their floor it is half: half of the cells' 50 stays.
+  part.pixels = 5000.0, part.pixel_r2 = 6800.0;
+  EXPECT_NEAR(in_noise({part}, noise, false)[0].r2, 900.0 + 100.0 + 25.0, 1e-9);
 }
 
 TEST(Posterior, IsASoftmax) {
