@@ -56,7 +56,6 @@ struct Journal::Impl {
   size_t end = 0;              ///< of the last whole record
   int handle = -1;
   bool cut = false;  ///< nothing stands behind `end`
-  ino_t node = 0;    ///< of another's file, once it was there
 
   ~Impl() {
     if (handle >= 0) ::close(handle);
@@ -77,28 +76,6 @@ struct Journal::Impl {
   void open(int flags) {
     handle = ::open(file.c_str(), flags | O_CLOEXEC, 0644);
     if (handle < 0) throw cannot_write(file.string(), std::strerror(errno));
-  }
-
-  /// Of another's: opened each time, for only then a network file system asks how long it is.
-  void look_again() {
-    const int now = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    if (now < 0) return;
-    if (handle >= 0) ::close(handle);
-    handle = now;
-    struct stat is {};
-    if (::fstat(handle, &is) != 0 || (node != 0 && is.st_ino != node)) return;
-    const auto size = static_cast<size_t>(is.st_size);
-    if (size <= end) return;
-    std::string text(size - end, '\0');
-    text.resize(take(text.data(), text.size(), end));
-    std::vector<Piece> more = pieces_of(text);
-    if (more.empty()) return;
-    if (node == 0 && text.compare(more[0].at, more[0].size, made_for) != 0) return;
-    const size_t skipped = node == 0 ? 1 : 0;
-    node = is.st_ino;
-    for (size_t i = skipped; i < more.size(); ++i)
-      records.push_back({end + more[i].at, more[i].size, more[i].mark});
-    end += more.back().at + more.back().size + 1;
   }
 
   /// Bytes that were there.
@@ -151,13 +128,6 @@ Journal::Journal(fs::path file, std::string made_for) : impl_(std::make_unique<I
   impl_->made_for = std::move(made_for);
   impl_->load();
 }
-Journal::Journal(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Journal Journal::of_another(fs::path file, std::string made_for) {
-  auto impl = std::make_unique<Impl>();
-  impl->file = std::move(file);
-  impl->made_for = std::move(made_for);
-  return Journal(std::move(impl));
-}
 Journal::~Journal() = default;
 Journal::Journal(Journal&&) noexcept = default;
 
@@ -171,12 +141,6 @@ std::string Journal::read(size_t record) const {
   impl_->demand_file();
   throw InputError({impl_->file.string()}, "the file was changed while it was used",
                    "start the command again");
-}
-
-void Journal::look_again() { impl_->look_again(); }
-
-void Journal::sync() const {
-  if (impl_->handle >= 0) ::fdatasync(impl_->handle);
 }
 
 size_t Journal::add(const std::string& record) {

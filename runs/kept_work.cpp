@@ -15,6 +15,16 @@
 namespace hookeye {
 namespace {
 
+/// Another program, another capture, or other effects beside its own come to other answers.
+std::string made_for(const Run& run) {
+  nlohmann::json out = {{"hookeye", versions()},
+                        {"program", fingerprint_of(read_text(own_file()))},
+                        {"options", run.timeline().value("options", nlohmann::json::object())},
+                        {"capture", run.timeline().value("fingerprints", nlohmann::json())}};
+  if (const auto added = added_to_catalogue(); !added.empty()) out["effects"] = added;
+  return out.dump();
+}
+
 constexpr const char* kWorkFile = "work.jsonl";
 
 WorkTable since(const WorkTable& before) {
@@ -48,16 +58,6 @@ void append_work(const Run& run, const CommandWork& work) {
 }
 
 }  // namespace
-
-/// Another program, another capture, or other effects beside its own come to other answers.
-std::string archive_made_for(const Run& run) {
-  nlohmann::json out = {{"hookeye", versions()},
-                        {"program", fingerprint_of(read_text(own_file()))},
-                        {"options", run.timeline().value("options", nlohmann::json::object())},
-                        {"capture", run.timeline().value("fingerprints", nlohmann::json())}};
-  if (const auto added = added_to_catalogue(); !added.empty()) out["effects"] = added;
-  return out.dump();
-}
 
 std::vector<CommandWork> work_of(const std::filesystem::path& run) {
   std::vector<CommandWork> out;
@@ -101,8 +101,7 @@ nlohmann::ordered_json work_json(const std::vector<CommandWork>& all) {
 
 KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel)
     : run_(run), bench_(bench), cancel_(cancel), first_step_(run.steps().size()) {
-  auto archive =
-      std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), archive_made_for(run)));
+  auto archive = std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), made_for(run)));
   from_before_ = !archive->empty();
   archive->on_event = [](const Question& question, Archive::Event event) {
     constexpr const char* kWords[] = {"known", "anew", "kept"};

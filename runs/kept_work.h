@@ -2,15 +2,11 @@
 #pragma once
 
 #include <atomic>
-#include <string>
 
 #include "core/work_clock.h"
 #include "runs/bench.h"
 
 namespace hookeye {
-
-/// What the answers of a run's archive hold for: program, capture, options and effects.
-std::string archive_made_for(const Run& run);
 
 /// While it lives, what the bench works out is kept in RUN/archive as it comes, and what is there
 /// is not worked out again: a command that was stopped, whatever stopped it, takes up where it was.

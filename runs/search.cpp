@@ -13,7 +13,6 @@
 #include "runs/decision_log.h"
 #include "runs/failed.h"
 #include "runs/record.h"
-#include "runs/search_crew.h"
 #include "runs/tables.h"
 
 namespace hookeye {
@@ -187,30 +186,14 @@ int begin(Run& run, const DiscoverOptions& options, bool known) {
   return last;
 }
 
-/// What the steps up to `from` have told.
-DiscoverOptions going_on(int from, const Run& run, const Bench& bench, DiscoverOptions options) {
+Discovery search_from(int from, bool known, Run& run, Bench& bench, const SearchRequest& wanted) {
+  DiscoverOptions options = wanted.options;
   for (int i = 0; i <= from; ++i) {
     const nlohmann::json& step = run.timeline().at("steps").at(static_cast<size_t>(i));
     if (auto tied = tied_in(step, *bench.scene->limits); tied.size() > 1)
       options.tie = std::move(tied);
     options.past.push_back(contested_in(step));
   }
-  return options;
-}
-
-Discovery discover_in(int from, const Run& run, Bench& bench, const DiscoverOptions& options,
-                      const DiscoverEvents& on) {
-  const ModelForm form = base_form(bench.scene);
-  return value_or_fail(
-      from < 0 ? discover(bench.workspace, form, form.initial(), options, on)
-               : discover_from(bench.workspace,
-                               step_of(run, bench, static_cast<size_t>(from), options.fit), options,
-                               on));
-}
-
-Discovery search_from(int from, bool known, Run& run, Bench& bench, const SearchRequest& wanted) {
-  DiscoverOptions options = going_on(from, run, bench, wanted.options);
-  const SharedSearch shared(run, bench, from, options.diagnosis.without, options.fit.cancel);
   DecisionLog log(run);
   options.fit.decided = [&log](const Decision& decision) {
     log(decision);
@@ -219,7 +202,13 @@ Discovery search_from(int from, bool known, Run& run, Bench& bench, const Search
                    decision.accepted ? "is added" : "is not added", decision.why,
                    number_in_words(decision));
   };
-  return discover_in(from, run, bench, options, events(run, bench, log, from, known, wanted));
+  const DiscoverEvents on = events(run, bench, log, from, known, wanted);
+  const ModelForm form = base_form(bench.scene);
+  return value_or_fail(
+      from < 0 ? discover(bench.workspace, form, form.initial(), options, on)
+               : discover_from(bench.workspace,
+                               step_of(run, bench, static_cast<size_t>(from), options.fit), options,
+                               on));
 }
 
 /// `known`: something of it was worked out before.
@@ -247,19 +236,6 @@ void tell_tested(Run& run, const Bench& bench, const Fitted& last, const SearchR
 }
 
 }  // namespace
-
-void follow_search(const Run& run, Bench& bench, int from, const std::vector<std::string>& without,
-                   const std::atomic<bool>* cancel) {
-  DiscoverOptions options;
-  options.fit.cancel = options.diagnosis.cancel = cancel;
-  options.diagnosis.without = without;
-  try {
-    discover_in(from, run, bench, going_on(from, run, bench, options), {});
-  } catch (const Failed&) {  // as the search has, which tells it
-  } catch (const Interrupted&) {
-    if (!cancel || !*cancel) throw;
-  }
-}
 
 Discovery discover_into(Run& run, Bench& bench, const SearchRequest& wanted, bool known) {
   Discovery found = search(run, bench, wanted, known);

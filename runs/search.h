@@ -1,10 +1,8 @@
 // A search in a run: fit, diagnose, add, until what is left is noise; taken up where it stopped.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "runs/bench.h"
 
@@ -20,10 +18,5 @@ struct SearchRequest {
 /// Writes steps and verdict. `known`: something of it was worked out before (KeptWork). Throws
 /// Interrupted or Failed; what is finished stays.
 Discovery discover_into(Run& run, Bench& bench, const SearchRequest& wanted, bool known);
-
-/// The way of the search that another process writes into `run`, as SearchAtWork tells, for one
-/// that helps it: nothing is written.
-void follow_search(const Run& run, Bench& bench, int from, const std::vector<std::string>& without,
-                   const std::atomic<bool>* cancel);
 
 }  // namespace hookeye

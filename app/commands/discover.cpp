@@ -3,10 +3,8 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/limit_options.h"
-#include "app/commands/local_workers.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
-#include "app/validators.h"
 #include "runs/add_step.h"
 #include "runs/kept_work.h"
 #include "runs/search.h"
@@ -17,7 +15,6 @@ namespace {
 struct DiscoverArguments {
   std::string capture, run;
   std::vector<std::string> without, set;
-  int workers = 0;
 };
 
 void run_discover(const DiscoverArguments& arguments, Session& session) {
@@ -32,9 +29,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   wanted.options.diagnosis.without = arguments.without;
   wanted.command = invocation();
   wanted.warn = warn_to(session);
-  LocalWorkers workers(arguments.workers, arguments.run, session);
   const Discovery found = discover_into(run, bench, wanted, kept.from_before());
-  workers.tell_failures(session);
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
   say_answer(run, session);
@@ -69,10 +64,6 @@ void add_discover(CLI::App& app, CommandBody& chosen) {
   command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
   command->add_option("-o,--out", arguments->run, "Run folder")->required();
   command->add_option("--without", arguments->without, "Effects to leave out of the catalogue");
-  command
-      ->add_option("--workers", arguments->workers,
-                   "Processes more that work on the search (`hookeye worker` starts others)")
-      ->check(counting_number());
   add_limit_options(*command, arguments->set);
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_discover(*arguments, session); };

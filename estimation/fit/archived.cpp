@@ -83,11 +83,6 @@ Workspace::Place place_after(Workspace::Place before, const Fitted& fitted) {
   return before;
 }
 
-Workspace::Place place_of(const Fitted& fitted) {
-  const auto& scene = fitted.form.scene;
-  return place_after({scene, std::vector<VectorXd>(scene->capture.examples.size())}, fitted);
-}
-
 json vector_json(const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); }
 
 VectorXd vector_from(const json& list) {

@@ -44,9 +44,6 @@ struct WorkedOut {
 /// elsewhere.
 Workspace::Place place_in(const Workspace& workspace, const std::shared_ptr<const Scene>& scene);
 
-/// Where a fitted model stands, and nothing else.
-Workspace::Place place_of(const Fitted& fitted);
-
 /// A fit leaves the workspace in its own equilibria; whatever else was asked, where it was.
 inline Workspace::Place place_after(const Workspace::Place& before, const auto&) { return before; }
 Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
@@ -66,29 +63,17 @@ std::variant<T, NumericalFailure> archived(const WorkedOut& asked, const Work& w
     asked.workspace.start_from(answer ? place_after(place, *answer) : place);
     return result;
   };
-  if (!archive) return leave(work());
-  const Archive::Asking asking(archive);
-  const Question question = asked.question();
+  std::optional<Question> question;
   nlohmann::json known;
-  if (std::any there = asking.result(question); auto* result = std::any_cast<Result>(&there))
-    return leave(std::move(*result));
-  if (archive->find(question, known)) {
-    std::optional<Result> result;
-    if (auto failure = failure_from(known))
-      result = *failure;
-    else
-      result = read(known);
-    if (result) {
-      if (asking.keeps()) asking.keep(question, *result);
-      return leave(std::move(*result));
-    }
+  if (archive && archive->find(question.emplace(asked.question()), known)) {
+    if (auto failure = failure_from(known)) return leave(*failure);
+    if (std::optional<Result> result = read(known)) return leave(std::move(*result));
     asked.workspace.start_from(place);
   }
   Result result = work();
-  if (!(asked.cancel && *asked.cancel)) {
+  if (archive && !(asked.cancel && *asked.cancel)) {
     const auto* failure = std::get_if<NumericalFailure>(&result);
-    archive->keep(question, failure ? failure_json(*failure) : write(std::get<T>(result)));
-    if (asking.keeps()) asking.keep(question, result);
+    archive->keep(*question, failure ? failure_json(*failure) : write(std::get<T>(result)));
   }
   return leave(std::move(result));
 }

@@ -8,7 +8,6 @@
 #include "estimation/diagnosis/diagnosis_sums.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/fit/evidence.h"
-#include "estimation/search/ahead.h"
 #include "estimation/search/refit_score.h"
 
 namespace hookeye {
@@ -208,12 +207,6 @@ std::optional<NumericalFailure> refit_unscreened(Workspace& workspace, const Ste
   return {};
 }
 
-/// Nothing can do better than the floor; once `first` has reached it only a tie with `leader` is of
-/// use.
-bool of_no_use(const Racer& racer, const Racer& leader, const Fitted& first, const Step& step) {
-  return on_floor(first, step.diagnosis.floor) && !racer.may_tie_with(leader);
-}
-
 }  // namespace
 
 std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
@@ -232,12 +225,10 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
     if (auto failure = let_beaten_run(workspace, *beaten, options, events, racers)) return *failure;
   out.racers = racers;
   keep_leaders(racers, entered, step.diagnosis.floor.limits->search.leaders, options.fit.decided);
-  // Each from where the step stands, and on the way to what the first came to: whoever refits them,
-  // and in whatever order, it is the same.
-  const SideBySide alike(workspace);
-  for (size_t i = 0; i < racers.size(); ++i) {
-    const Racer& racer = racers[i];
-    if (!refits.empty() && of_no_use(racer, racers.front(), refits.front().fitted, step)) {
+  for (const Racer& racer : racers) {
+    // Nothing can do better than the floor; once it is reached only a tie is of use.
+    if (!refits.empty() && on_floor(refits.front().fitted, step.diagnosis.floor) &&
+        !racer.may_tie_with(racers.front())) {
       tell(options.fit.decided,
            {Asked::refitted,
             racer.effect,
@@ -248,15 +239,10 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
       continue;
     }
     FitOptions fit = options.fit;
-    if (!refits.empty()) {
-      fit.aim_chi = refits.front().fitted.evaluation.chi(false);
-      std::vector<const Racer*> others;
-      for (size_t k = i; k < racers.size() && refits.size() == 1; ++k)
-        if (!of_no_use(racers[k], racers.front(), refits.front().fitted, step))
-          others.push_back(&racers[k]);
-      refit_ahead(workspace, alike, others, fit);
+    for (const Refit& rival : refits) {
+      const double chi = rival.fitted.evaluation.chi(false);
+      fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
     }
-    alike.begin();
     auto result = announced(events, racer.effect, [&] { return refit(workspace, racer, fit); });
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
       if (cancelled(*failure)) return *failure;

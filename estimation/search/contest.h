@@ -19,10 +19,6 @@ bool may_be_all(const std::string& effect, const Diagnosis& diagnosis);
 /// A step of a search with this model; `dropped` left it.
 Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropped = {});
 
-/// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
-/// found beside it, the later steps have decided.
-void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& missing);
-
 /// Without its pictures, 80 MB of 14 photos of 0.5 Mpx: they are for who is told of a step, and
 /// what is compared later is not compared by them.
 void drop_pictures(Fitted& fitted);

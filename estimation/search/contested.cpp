@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "estimation/diagnosis/diagnosis_sums.h"
-#include "estimation/search/contest.h"
+#include "estimation/search/discover.h"
 
 namespace hookeye {
 
@@ -23,14 +23,6 @@ Contested contested(const Step& step) {
   const Evaluation& left = step.fitted.evaluation;
   return {step.added,     step.dropped,      step.rivals,      left.chi(false),
           left.chi(true), measured_r2(left), step.not_compared};
-}
-
-void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& missing) {
-  const auto has = [&](const std::string& name) {
-    return std::find(missing.begin(), missing.end(), name) != missing.end();
-  };
-  if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
-    tie.clear();
 }
 
 TakenByNames taken_by_names(const std::vector<Contested>& steps, const Floor& floor) {

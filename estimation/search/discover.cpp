@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "estimation/diagnosis/diagnosis_sums.h"
-#include "estimation/fit/archived.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/fit/own_archive.h"
 #include "estimation/search/contest.h"
@@ -22,6 +21,16 @@
 namespace hookeye {
 
 namespace {
+
+/// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
+/// found beside it, the later steps have decided.
+void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& missing) {
+  const auto has = [&](const std::string& name) {
+    return std::find(missing.begin(), missing.end(), name) != missing.end();
+  };
+  if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
+    tie.clear();
+}
 
 /// All that a search fits may be given up but for its base.
 DiscoverOptions of_rivals(DiscoverOptions options) {
@@ -103,15 +112,12 @@ class Search {
   std::optional<NumericalFailure> diagnose_newest() {
     shadow_.tell_all(options_.fit.decided);
     Step& step = newest();
-    const Workspace::Place stands = place_of(step.fitted);
-    workspace_.start_from(stands);
     auto diagnosis = diagnose(workspace_, step.fitted, options_.diagnosis);
     if (auto* failure = std::get_if<NumericalFailure>(&diagnosis)) return *failure;
     step.diagnosis = std::get<Diagnosis>(std::move(diagnosis));
     reach_for_mesh(step.fitted, step.diagnosis);
     out_.floor = step.diagnosis.floor;
     if (events_.step) events_.step(step);
-    workspace_.start_from(stands);  // whoever was told may have looked at it
     for (const Decision& one : naming_decisions(step.diagnosis)) tell(options_.fit.decided, one);
     drop_pictures(step.fitted);
     shadow_.follow(step);

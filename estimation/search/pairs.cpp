@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "estimation/fit/at_floor.h"
-#include "estimation/fit/crew.h"
 
 namespace hookeye {
 
@@ -49,17 +48,14 @@ std::variant<std::optional<Pair>, NumericalFailure> on_finer_mesh(
 
 }  // namespace
 
-namespace {
-
-/// Two refits in one model, from where both ended.
-struct Together {
-  size_t first, second;
-  ModelForm form;
-  VectorXd start;
-};
-
-std::vector<Together> all_pairs(const std::vector<Refit>& refits) {
-  std::vector<Together> out;
+std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
+                                                                const Step& step,
+                                                                const Contest& contest,
+                                                                const DiscoverOptions& options,
+                                                                const DiscoverEvents& events) {
+  std::optional<Pair> best;
+  const auto& refits = contest.refits;
+  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
   for (size_t i = 0; i < refits.size(); ++i)
     for (size_t k = i + 1; k < refits.size(); ++k) {
       if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
@@ -69,43 +65,19 @@ std::vector<Together> all_pairs(const std::vector<Refit>& refits) {
       form.ingredients.push_back(added);
       VectorXd p(refits[i].fitted.p.size() + n);
       p << refits[i].fitted.p, refits[k].fitted.p.tail(n);
-      out.push_back({i, k, std::move(form), std::move(p)});
+      FitOptions warm = options.fit;
+      warm.coarse_to_fine = false;
+      auto result = announced(events, refits[i].effect + " and " + refits[k].effect,
+                              [&] { return fit(workspace, form, p, warm); });
+      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
+        if (cancelled(*failure)) return *failure;
+        continue;
+      }
+      auto& fitted = std::get<Fitted>(result);
+      const double score = refit_score(fitted, yardstick);
+      if (!best || score > best->second.score)
+        best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
     }
-  return out;
-}
-
-}  // namespace
-
-std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
-                                                                const Step& step,
-                                                                const Contest& contest,
-                                                                const DiscoverOptions& options,
-                                                                const DiscoverEvents& events) {
-  std::optional<Pair> best;
-  const auto& refits = contest.refits;
-  const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
-  FitOptions warm = options.fit;
-  warm.coarse_to_fine = false;
-  const std::vector<Together> pairs = all_pairs(refits);
-  const SideBySide alike(workspace);
-  std::vector<Question> tasks;
-  for (const Together& one : pairs) tasks.push_back(task_on("pair", one.form, one.start));
-  alike.ask_ahead(tasks,
-                  [&](size_t i) { fit(workspace, pairs[i].form, pairs[i].start, untold(warm)); });
-  for (const Together& one : pairs) {
-    const Refit &first = refits[one.first], &second = refits[one.second];
-    alike.begin();
-    auto result = announced(events, first.effect + " and " + second.effect,
-                            [&] { return fit(workspace, one.form, one.start, warm); });
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
-      continue;
-    }
-    auto& fitted = std::get<Fitted>(result);
-    const double score = refit_score(fitted, yardstick);
-    if (!best || score > best->second.score)
-      best = Pair{first, {second.effect, std::move(fitted), score}};
-  }
   return best;
 }
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "estimation/fit/at_floor.h"
-#include "estimation/fit/crew.h"
 #include "estimation/search/extension.h"
 
 namespace hookeye {
@@ -68,21 +67,6 @@ std::optional<NumericalFailure> run_on(Workspace& workspace, Racer& racer, const
   return {};
 }
 
-/// The second steps of those that `runs` says, by all who work on the search.
-void step_on_ahead(Workspace& workspace, const std::vector<Racer>& racers, const TrialScale& scale,
-                   const FitOptions& options, const std::function<bool(size_t)>& runs) {
-  std::vector<const Racer*> running;
-  std::vector<Question> tasks;
-  for (size_t i = 0; i < racers.size(); ++i) {
-    if (!runs(i) || racers[i].next) continue;
-    running.push_back(&racers[i]);
-    tasks.push_back(
-        task_on("second step of " + racers[i].effect, racers[i].form, racers[i].trial.p));
-  }
-  SideBySide(workspace).ask_ahead(
-      tasks, [&](size_t i) { step_on(workspace, *running[i], scale, untold(options)); });
-}
-
 void sort_by_success(std::vector<Racer>& racers) {
   std::stable_sort(racers.begin(), racers.end(),
                    [](const Racer& a, const Racer& b) { return a.chi() < b.chi(); });
@@ -110,21 +94,6 @@ bool no_rival(const EffectScore& score, const Diagnosis& diagnosis, const Racer&
   const double chi2 = start.chi * start.chi, floor2 = start.floor * start.floor;
   return std::sqrt(chi2 - score.explains * (chi2 - floor2)) >
          first.limits().out_of_reach * newest(first).chi_fit;
-}
-
-/// Those behind the first enter, by all who work on the search.
-void enter_ahead(Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
-                 const EffectScore& led, const Racer& first, const TrialScale& scale,
-                 const FitOptions& options) {
-  std::vector<const EffectScore*> entering;
-  std::vector<Question> tasks;
-  for (const EffectScore* one = &led + 1; one <= &diagnosis.effects.back(); ++one) {
-    if (!nameable(*one, diagnosis) || no_rival(*one, diagnosis, first, scale)) continue;
-    entering.push_back(one);
-    tasks.push_back(task_on("race of " + one->effect, current.form, current.p));
-  }
-  SideBySide(workspace).ask_ahead(
-      tasks, [&](size_t i) { enter(workspace, current, *entering[i], scale, untold(options)); });
 }
 
 /// 0: there is none.
@@ -245,36 +214,28 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
       racers.front().next = std::move(*trial);
     else if (cancelled(std::get<NumericalFailure>(further)))
       return std::get<NumericalFailure>(further);
-    enter_ahead(workspace, current, diagnosis, score, racers.front(), std::get<TrialScale>(scale),
-                options);
   }
   sort_by_success(racers);
   const Racer first = racers.empty() ? Racer() : racers.front();
-  const auto late = [&](size_t i) { return static_cast<int>(i) >= first.limits().second_round; };
-  // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
-  const auto runs_on = [&](size_t i) {
-    const std::string& effect = racers[i].effect;
-    return effect == diagnosis.effects.front().effect ||
-           (!late(i) && (!racers[i].out_of_reach_of(first) || ties_with_first(diagnosis, effect)));
-  };
-  if (racers.size() > 1)
-    step_on_ahead(workspace, racers, std::get<TrialScale>(scale), options, runs_on);
   for (size_t i = 0; i < racers.size() && (racers.size() > 1 || first.next); ++i) {
+    // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
     const std::string& effect = racers[i].effect;
-    if (!runs_on(i)) {
+    const bool late = static_cast<int>(i) >= first.limits().second_round;
+    if (effect != diagnosis.effects.front().effect &&
+        (late || (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect)))) {
       tell(options.decided,
-           late(i) ? Decision{Asked::screened,
-                              effect,
-                              false,
-                              {double(i + 1), double(first.limits().second_round),
-                               "search.second_round"},
-                              "other effects got farther in their first step: no second one"}
-                   : Decision{Asked::screened,
-                              effect,
-                              false,
-                              {racers[i].chi(), first.limits().out_of_reach * first.chi(),
-                               "search.out_of_reach"},
-                              "after one step too far behind " + first.effect + ": no second one"});
+           late ? Decision{Asked::screened,
+                           effect,
+                           false,
+                           {double(i + 1), double(first.limits().second_round),
+                            "search.second_round"},
+                           "other effects got farther in their first step: no second one"}
+                : Decision{Asked::screened,
+                           effect,
+                           false,
+                           {racers[i].chi(), first.limits().out_of_reach * first.chi(),
+                            "search.out_of_reach"},
+                           "after one step too far behind " + first.effect + ": no second one"});
       continue;
     }
     if (auto stopped = run_on(workspace, racers[i], std::get<TrialScale>(scale), options, tried))
@@ -288,17 +249,13 @@ std::variant<std::vector<Racer>, NumericalFailure> race_beside(
     Workspace& workspace, const Fitted& before, const EffectScore& won,
     const std::vector<Racer>& racers, const FitOptions& options,
     const std::function<void(const Racer&)>& tried) {
-  std::vector<Racer> beside, joined;
+  std::vector<Racer> beside;
   const auto scale = trial_scale(workspace, before.form, before.p, options);
   if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
   for (const Racer& alone : racers) {
     const auto& own = alone.form.ingredients.back();
     if (alone.effect == won.effect || numerical(alone.effect) || sensors_alone(*own)) continue;
-    joined.push_back(joined_by(alone, before, won));
-  }
-  const auto all = [](size_t) { return true; };
-  step_on_ahead(workspace, joined, std::get<TrialScale>(scale), options, all);
-  for (Racer& racer : joined) {
+    Racer racer = joined_by(alone, before, won);
     auto result =
         try_step(workspace, racer.form, racer.trial.p, std::get<TrialScale>(scale), options);
     if (auto* failure = std::get_if<NumericalFailure>(&result)) {
@@ -312,8 +269,6 @@ std::variant<std::vector<Racer>, NumericalFailure> race_beside(
   }
   sort_by_success(beside);
   const auto second = static_cast<size_t>(before.form.scene->limits->search.second_round);
-  step_on_ahead(workspace, beside, std::get<TrialScale>(scale), options,
-                [&](size_t i) { return i < second; });
   for (size_t i = 0; i < std::min(beside.size(), second); ++i) {
     if (auto stopped = run_on(workspace, beside[i], std::get<TrialScale>(scale), options, tried))
       return *stopped;

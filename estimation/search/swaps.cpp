@@ -7,7 +7,6 @@
 #include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/fit/at_floor.h"
-#include "estimation/search/ahead.h"
 #include "estimation/search/extension.h"
 #include "estimation/search/refit_score.h"
 
@@ -221,16 +220,9 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
     const auto lighter =
         diagnosed(workspace, dropped, fit_without(workspace, fitted, i, options.fit), options);
     if (!lighter) continue;
-    std::vector<const EffectScore*> doubles = doubles_of(dropped, lighter->diagnosis);
-    std::erase_if(doubles, [&](const EffectScore* score) {
-      return refused.contains(question(fitted.form, dropped, score->effect));
-    });
-    const SideBySide alike(workspace);
-    add_ahead(workspace, alike, lighter->fitted, doubles, options.fit);
-    for (const EffectScore* score : doubles) {
+    for (const EffectScore* score : doubles_of(dropped, lighter->diagnosis)) {
       const std::string asked = question(fitted.form, dropped, score->effect);
       if (refused.contains(asked)) continue;
-      alike.begin();
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
       if (!refit) continue;
       refit->score = score_above(refit->fitted, fitted, floor);
@@ -280,30 +272,15 @@ std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without, 
   auto* racers = std::get_if<std::vector<Racer>>(&raced);
   const auto scale = trial_scale(workspace, last.form, last.p, options.fit);
   const auto* now = std::get_if<TrialScale>(&scale);
-  if (!racers || racers->empty() || !now) return out;
+  if (!racers || !now) return out;
   const Racer stands{
       effects.front(), last.form, Trial{last.p, now->chi, now->chi_validate, now->floor}, {}};
-  const Racer& first = racers->front();
-  std::vector<const Racer*> within;
-  std::vector<Question> tasks;
   for (const Racer& racer : *racers) {
+    const Racer& first = racers->front();
     const bool behind = ties_alone ? !racer.may_tie_with(first) : racer.out_of_reach_of(first);
-    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)))
+    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)) ||
+        falls_short(workspace, racer, stands, *now, options.fit))
       continue;
-    within.push_back(&racer);
-    tasks.push_back(task_on("in reach " + racer.effect, racer.form, racer.trial.p));
-  }
-  const SideBySide alike(workspace);
-  const auto short_of_it = [&](const Racer& racer) {
-    return falls_short(workspace, racer, stands, *now, untold(options.fit));
-  };
-  alike.ask_ahead(tasks, [&](size_t i) {
-    if (!short_of_it(*within[i])) refit(workspace, *within[i], untold(options.fit));
-  });
-  for (const Racer* one : within) {
-    const Racer& racer = *one;
-    alike.begin();
-    if (short_of_it(racer)) continue;
     auto refitted = told_of_swap(racer.effect, effects.front(), events,
                                  [&] { return refit(workspace, racer, options.fit); });
     if (refitted) out.push_back(std::move(*refitted));

@@ -8,7 +8,6 @@
 
 #include "estimation/effects/catalogue.h"
 #include "estimation/fit/at_floor.h"
-#include "estimation/fit/crew.h"
 #include "estimation/search/extension.h"
 #include "estimation/search/kept_stiffness.h"
 #include "estimation/search/refit_score.h"
@@ -107,30 +106,6 @@ bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale&
              other.form.scene->limits->search.widening_stalls * over_floor(now);
 }
 
-/// Where a further form starts, or the one on its way.
-Reformed start_of(const Fitted& narrow, size_t at, const Effect::Further& further) {
-  const auto& way = further.by_way_of;
-  return reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
-}
-
-/// Further forms are fitted by all who work on the search. Where one of them is better those behind
-/// it are asked once more, on the way to what that one came to.
-void fit_ahead(Workspace& workspace, const SideBySide& alike, const Fitted& narrow, size_t at,
-               const std::vector<Effect::Further>& forms, const TrialScale& scale,
-               FitOptions options) {
-  options = untold(std::move(options));
-  options.aim_chi = narrow.evaluation.chi(false);
-  std::vector<Question> tasks;
-  for (const Effect::Further& one : forms)
-    tasks.push_back(task_on("form " + one.form->variant() + (one.by_way_of ? " by a way" : ""),
-                            narrow.form, narrow.p));
-  alike.ask_ahead(tasks, [&](size_t i) {
-    const Reformed first = start_of(narrow, at, forms[i]);
-    if (forms[i].same_claim || !gets_nowhere(workspace, first, scale, options))
-      fit_further(workspace, narrow, at, forms[i], first, options);
-  });
-}
-
 /// Half-size pictures show that the steps stall where three times what `now` has over the floor
 /// remains, from where nobody in a race came to win (Racer::out_of_reach_of).
 bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale& now,
@@ -214,18 +189,15 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
     const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
     if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
     Fitted best = narrow;
-    std::vector<Effect::Further> forms = further_forms(narrow, at);
-    std::erase_if(forms, [&](const Effect::Further& further) {
+    for (const auto& further : further_forms(narrow, at)) {
       const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
-      return !tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second;
-    });
-    const SideBySide alike(workspace);
-    fit_ahead(workspace, alike, narrow, at, forms, std::get<TrialScale>(scale), options);
-    for (const auto& further : forms) {
+      if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second)
+        continue;
       if (better && on_floor(best, floor)) break;
       const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
-      const Reformed first = start_of(narrow, at, further);
-      alike.begin();
+      const auto& way = further.by_way_of;
+      const Reformed first =
+          reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
       if (!further.same_claim &&
           gets_nowhere(workspace, first, std::get<TrialScale>(scale), options)) {
         tell(options.decided,

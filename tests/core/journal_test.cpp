@@ -135,24 +135,5 @@ TEST_F(JournalTest, SaysThatItCannotBeWritten) {
   EXPECT_THROW(journal.add("one"), InputError);
 }
 
-TEST_F(JournalTest, AnothersIsFollowedAsItGrows) {
-  Journal followed = Journal::of_another(file(), "this"),
-          of_that = Journal::of_another(file(), "that");
-  followed.look_again();
-  EXPECT_EQ(followed.size(), 0U) << "there is no file yet";
-  Journal journal(file(), "this");
-  for (size_t i = 0; i < kRecords.size(); ++i) {
-    journal.add(kRecords[i]);
-    followed.look_again();
-    ASSERT_EQ(followed.size(), i + 1);
-    EXPECT_EQ(followed.read(i), kRecords[i]);
-  }
-  std::ofstream(file(), std::ios::app) << "12 xxh3:0\nhal";
-  followed.look_again();
-  EXPECT_EQ(all(followed), kRecords);
-  of_that.look_again();
-  EXPECT_EQ(of_that.size(), 0U);
-}
-
 }  // namespace
 }  // namespace hookeye::test
