@@ -162,10 +162,14 @@ std::string choice_rows(const json& before, const json& step, double floor, cons
   };
   // Half-size pictures have their floor from the model before, which may be off at rest, too: who
   // is below it is not better than noise.
+  bool unknown = false;
   const auto screened = [&](const json& one, const char* key) {
     constexpr double kRoundsToOne = 0.995;
     const double half = number_in(one, "floor"), chi = number_in(one, key);
-    return chi > 0.0 && chi < kRoundsToOne * half ? std::string("floor") : over(one, key, half);
+    const bool itself = chi > 0.0 && half <= 0.0;
+    unknown = unknown || itself;
+    return chi > 0.0 && chi < kRoundsToOne * half ? std::string("floor")
+                                                  : over(one, key, half) + (itself ? "*" : "");
   };
   size_t left_out = 0;
   for (const auto& one : step.at("raced")) {
@@ -198,6 +202,8 @@ std::string choice_rows(const json& before, const json& step, double floor, cons
           {effect, fmt::format("{:.1f}", number_in(score, "evidence")), "-", "", "", "", ""});
   }
   std::string text = table(rows);
+  if (unknown)
+    text += "  *: the residual itself, as the floor of half-size photos is not known here\n";
   if (left_out) text += fmt::format("  and {} more screened, not refitted\n", left_out);
   if (const size_t more = untried - (rows.size() - tried))
     text += fmt::format("  and {} of a smaller log BF, not screened\n", more);

@@ -89,8 +89,9 @@ export const isNumerical = (effect: string): boolean => effect === 'mesh_resolut
 /** What was added to a step, and by how much its refit beat the best of the others that were refitted. */
 export interface Decision {
   added: string;
-  /** All that were tried, best first: chi of fitted and held-out photos over the floor, at half size, after two steps of a refit. */
-  tried: {effect: string; fitted: number; heldOut: number | null}[];
+  /** All that were tried, best first: chi of fitted and held-out photos over the floor, at half size, after two steps of a refit;
+   *  the residual itself where the floor is not known. */
+  tried: {effect: string; fitted: number; heldOut: number | null; overFloor: boolean}[];
   refitted: string[];
   margin?: number;
 }
@@ -99,7 +100,7 @@ export function decisionAfter(entry: StepEntry | undefined): Decision | undefine
   const next = told && run.value.timeline.steps[run.value.timeline.steps.indexOf(told) + 1];
   if (!next?.added || next.name.startsWith('without-')) return undefined;
   const others = (next.rivals ?? []).filter((r) => r.effect !== next.added).sort((a, b) => b.score - a.score);
-  const tried = (next.raced ?? []).map(({effect, chi_fit, chi_validate, floor}) => ({effect, fitted: chi_fit / (floor || 1),
+  const tried = (next.raced ?? []).map(({effect, chi_fit, chi_validate, floor}) => ({effect, overFloor: !!floor, fitted: chi_fit / (floor || 1),
     heldOut: chi_validate === null ? null : chi_validate / (floor || 1)}));
   return {added: next.added, tried, refitted: others.map((r) => r.effect), margin: others.length ? -others[0].score : undefined};
 }

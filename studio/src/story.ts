@@ -77,7 +77,7 @@ export function decidedBy(added: string, others: string[], margin: number): stri
 /** "1.23 / floor": fitted / held out. */
 export function bothOf(tried: Decision['tried'][number]): string {
   // Half-size pictures have their floor from the model before: who is below it is not better than noise.
-  const over = (times: number): string => (times < 0.995 ? 'floor' : figure(times, 2));
+  const over = (times: number): string => (tried.overFloor && times < 0.995 ? 'floor' : figure(times, 2));
   return over(tried.fitted) + (tried.heldOut === null ? '' : ` / ${over(tried.heldOut)}`);
 }
 
@@ -86,7 +86,7 @@ export function triedBy({added, tried}: Decision): string {
   const own = tried.find((t) => t.effect === added);
   const next = tried.find((t) => t.effect !== added);
   return own && next
-    ? `in the screening it leaves ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)} (times the noise floor of half-size photos)` : '';
+    ? `in the screening it leaves ${bothOf(own)}, ${spaced(next.effect)} ${bothOf(next)} (${own.overFloor ? 'times the noise floor' : 'residual'} of half-size photos)` : '';
 }
 
 function sureness(effect: EffectScore, before: StepEntry): string {

@@ -108,6 +108,11 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
   EXPECT_THAT(choice_table(before, step, 1.0, {}),
               testing::ContainsRegex("gravity +365.3 +floor +1.00"));
   EXPECT_THAT(choice_table(before, step, 1.0, {}), HasSubstr("floor: less than that"));
+  step["raced"][0].erase("floor");
+  EXPECT_THAT(choice_table(before, step, 1.0, {}),
+              testing::AllOf(testing::ContainsRegex("gravity +365.3 +0.40\\* +0.50\\*"),
+                             HasSubstr("*: the residual itself")));
+  step["raced"][0]["floor"] = 0.5;
   EXPECT_THAT(text, HasSubstr("to first order no other"));
   step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
   EXPECT_EQ(choice_table(before, step, 1.0, {}), "");
