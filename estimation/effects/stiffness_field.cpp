@@ -136,9 +136,10 @@ class StiffnessField final : public Effect {
       factor = (before.array() > 0.0).select(factor.cwiseQuotient(before), 1.0);
     if (factor.size() == 0) factor = VectorXd::Ones(model.scene->body->mesh.size());
     auto all = further_grades(model, factor.array().log());
-    if (const auto bumps = bumps_in(refitted.variant()))
-      if (auto places = places_like(model, bumps->centres, bumps->radius, values))
-        all.insert(all.begin(), std::move(*places));
+    if (const auto bumps = bumps_in(refitted.variant())) {
+      const auto places = places_like(model, bumps->centres, bumps->radius, values);
+      all.insert(all.begin(), places.begin(), places.end());
+    }
     if (form == kFreeBlob) all.insert(all.begin(), ball_like(model, values));
     return all;
   }

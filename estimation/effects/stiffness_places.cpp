@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
-#include <limits>
 
 #include "estimation/effects/graded_stiffness.h"
 #include "estimation/effects/places.h"
@@ -18,7 +17,6 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr Eigen::Index kPlacesTried = 1000;  ///< elements tried as the middle of a place, at most
-constexpr double kRounding = 1e-12;  ///< of sums over elements: what is left below is nothing
 const char* const kManyBlobs = " free blobs";
 const char* const kManyBalls = " free balls";
 
@@ -216,25 +214,21 @@ std::shared_ptr<const Ingredient> places_form(const Model& model, const std::str
   return form.count > 0 ? places_of(model, form) : nullptr;
 }
 
-std::optional<Effect::Further> places_like(const Model& model, const std::vector<Vector3d>& centres,
-                                           double radius, const VectorXd& values) {
-  const auto m = static_cast<double>(centres.size());
-  StiffPlaces best;
-  double least = std::numeric_limits<double>::infinity();
-  for (StiffPlaces& one : likest_places(model.scene->body->mesh, centres, radius, values,
-                                        (static_cast<int>(centres.size()) - 1) / 5)) {
-    const double bic = m * std::log(std::max(one.left, kRounding)) +
-                       5.0 * static_cast<double>(one.blobs.size()) * std::log(m);
-    if (bic >= least) continue;
-    least = bic;
-    best = std::move(one);
+std::vector<Effect::Further> places_like(const Model& model, const std::vector<Vector3d>& centres,
+                                         double radius, const VectorXd& values) {
+  // a place has five numbers: more of them say no less than the bumps
+  const int most = (static_cast<int>(centres.size()) - 1) / 5;
+  std::vector<Effect::Further> out;
+  for (const StiffPlaces& one :
+       likest_places(model.scene->body->mesh, centres, radius, values, most)) {
+    const auto count = static_cast<int>(one.blobs.size());
+    if (count < 2) continue;
+    VectorXd start(5 * count);
+    for (int k = 0; k < count; ++k)
+      start.segment<5>(5 * k) = freed(one.blobs[static_cast<size_t>(k)], one.amplitudes[k]);
+    out.push_back({.form = places_of(model, {count, false}), .values = start});
   }
-  const auto count = static_cast<int>(best.blobs.size());
-  if (count < 2) return {};
-  VectorXd start(5 * count);
-  for (int k = 0; k < count; ++k)
-    start.segment<5>(5 * k) = freed(best.blobs[static_cast<size_t>(k)], best.amplitudes[k]);
-  return Effect::Further{.form = places_of(model, {count, false}), .values = start};
+  return out;
 }
 
 std::optional<Effect::Further> balls_like(const Model& model, const Ingredient& blobs,

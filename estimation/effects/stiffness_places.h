@@ -29,10 +29,10 @@ std::vector<StiffPlaces> likest_places(const TetMesh& mesh, const std::vector<Ve
 /// sharp. Null: another variant.
 std::shared_ptr<const Ingredient> places_form(const Model& model, const std::string& variant);
 bool is_places(const std::string& variant);
-/// Blobs where a field of bumps has them: as many as say most of it for their numbers (BIC), two at
-/// least, for one is the field's smaller form. Nothing: one says more.
-std::optional<Effect::Further> places_like(const Model& model, const std::vector<Vector3d>& centres,
-                                           double radius, const VectorXd& values);
+/// Two blobs, three and so on, where a field of bumps is most like them; as few numbers as bumps,
+/// at most. (One is the field's smaller form.) Photos tell how many: the field itself hardly does.
+std::vector<Effect::Further> places_like(const Model& model, const std::vector<Vector3d>& centres,
+                                         double radius, const VectorXd& values);
 /// Balls in place of blobs, each as ball_like() has it. Nothing: they are balls.
 std::optional<Effect::Further> balls_like(const Model& model, const Ingredient& blobs,
                                           const VectorXd& values);
