@@ -170,11 +170,12 @@ void add_common_options(CLI::App& command, Session& session) {
   command.add_flag("--json", session.json, "One JSON document on standard output");
   command.add_option("--threads", session.threads, "Cores to use (default: all)")
       ->check(counting_number());
-  command
-      .add_option("--memory", session.memory,
-                  "Memory to use at most, as 4G (default: half of what is free for photos, all of "
-                  "it for the solver)")
-      ->transform(memory_size());
+  if (!command.get_option_no_throw("--memory"))  // of a batch it is each capture's
+    command
+        .add_option("--memory", session.memory,
+                    "Memory to use at most, as 4G (default: half of what is free for photos, all "
+                    "of it for the solver)")
+        ->transform(memory_size());
   command.add_flag("-v,--verbose", session.verbose, "More about what is going on");
 }
 
