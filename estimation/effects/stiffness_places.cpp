@@ -17,8 +17,9 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr Eigen::Index kPlacesTried = 1000;  ///< elements tried as the middle of a place, at most
-const char* const kManyBlobs = " free blobs";
-const char* const kManyBalls = " free balls";
+const std::string kFree = "free ";
+const char* const kManyBlobs = " blobs";
+const char* const kManyBalls = " balls";
 
 /// How many places, and whether they are balls. 0: another variant.
 struct Several {
@@ -29,8 +30,8 @@ Several several_in(const std::string& variant) {
   const auto n = numbers_in(variant);
   if (n.size() != 1 || n[0] < 2.0 || n[0] > 9.0) return {};
   const int count = static_cast<int>(n[0]);
-  if (variant == std::to_string(count) + kManyBlobs) return {count, false};
-  if (variant == std::to_string(count) + kManyBalls) return {count, true};
+  if (variant == kFree + std::to_string(count) + kManyBlobs) return {count, false};
+  if (variant == kFree + std::to_string(count) + kManyBalls) return {count, true};
   return {};
 }
 
@@ -55,7 +56,7 @@ VectorXd places_field(const Scene& scene, const Several& form, const VectorXd& v
 std::shared_ptr<const Ingredient> places_of(const Model& model, const Several& form) {
   IngredientSpec spec;
   spec.name = "stiffness_field";
-  spec.variant = std::to_string(form.count) + (form.balls ? kManyBalls : kManyBlobs);
+  spec.variant = kFree + std::to_string(form.count) + (form.balls ? kManyBalls : kManyBlobs);
   for (int k = 1; k <= form.count; ++k)
     for (Parameter& one : of_place(free_place(model), k)) spec.parameters.push_back(std::move(one));
   if (form.balls) spec.parameters.push_back(edge_thickness(model));
@@ -226,7 +227,7 @@ std::vector<Effect::Further> places_like(const Model& model, const std::vector<V
     VectorXd start(5 * count);
     for (int k = 0; k < count; ++k)
       start.segment<5>(5 * k) = freed(one.blobs[static_cast<size_t>(k)], one.amplitudes[k]);
-    out.push_back({.form = places_of(model, {count, false}), .values = start});
+    out.push_back({.form = places_of(model, {count, false}), .values = start, .same_claim = true});
   }
   return out;
 }
