@@ -173,8 +173,7 @@ void add_common_options(CLI::App& command, Session& session) {
   if (!command.get_option_no_throw("--memory"))  // of a batch it is each capture's
     command
         .add_option("--memory", session.memory,
-                    "Memory to use at most, as 4G (default: half of what is free for photos, all "
-                    "of it for the solver)")
+                    "Memory to use at most, as 4G (default: what is free; for photos half)")
         ->transform(memory_size());
   command.add_flag("-v,--verbose", session.verbose, "More about what is going on");
 }

@@ -100,8 +100,7 @@ void add_add(CLI::App& app, CommandBody& chosen) {
   command->add_option("RUN", arguments->run, "Run folder")->required();
   command->add_option("EFFECT", arguments->request.effect, "Name of the effect")->required();
   command->add_option("--as", arguments->request.form,
-                      "Form of the effect, as `hookeye effects NAME` names it (default: as the "
-                      "refit finds it)");
+                      "Form, as `hookeye effects NAME` names it (default: what refits find)");
   command->add_flag("--take-back", arguments->request.take_back, "Refit without the effect again");
   std::vector<std::string> names;
   for (const Effect* effect : catalogue()) names.push_back(effect->name());

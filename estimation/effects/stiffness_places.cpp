@@ -17,9 +17,8 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr Eigen::Index kPlacesTried = 1000;  ///< elements tried as the middle of a place, at most
-const std::string kFree = "free ";
-const char* const kManyBlobs = " blobs";
-const char* const kManyBalls = " balls";
+const std::string kManyBlobs = "free blobs, ";
+const std::string kManyBalls = "free balls, ";
 
 /// How many places, and whether they are balls. 0: another variant.
 struct Several {
@@ -30,8 +29,8 @@ Several several_in(const std::string& variant) {
   const auto n = numbers_in(variant);
   if (n.size() != 1 || n[0] < 2.0 || n[0] > 9.0) return {};
   const int count = static_cast<int>(n[0]);
-  if (variant == kFree + std::to_string(count) + kManyBlobs) return {count, false};
-  if (variant == kFree + std::to_string(count) + kManyBalls) return {count, true};
+  if (variant == kManyBlobs + std::to_string(count)) return {count, false};
+  if (variant == kManyBalls + std::to_string(count)) return {count, true};
   return {};
 }
 
@@ -56,7 +55,7 @@ VectorXd places_field(const Scene& scene, const Several& form, const VectorXd& v
 std::shared_ptr<const Ingredient> places_of(const Model& model, const Several& form) {
   IngredientSpec spec;
   spec.name = "stiffness_field";
-  spec.variant = kFree + std::to_string(form.count) + (form.balls ? kManyBalls : kManyBlobs);
+  spec.variant = (form.balls ? kManyBalls : kManyBlobs) + std::to_string(form.count);
   for (int k = 1; k <= form.count; ++k)
     for (Parameter& one : of_place(free_place(model), k)) spec.parameters.push_back(std::move(one));
   if (form.balls) spec.parameters.push_back(edge_thickness(model));

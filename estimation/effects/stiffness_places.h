@@ -25,7 +25,7 @@ struct StiffPlaces {
 std::vector<StiffPlaces> likest_places(const TetMesh& mesh, const std::vector<Vector3d>& centres,
                                        double radius, const VectorXd& values, int most);
 
-/// "free 3 blobs", "free 3 balls": as many places as the variant says; all balls have edges as
+/// "free blobs, 3", "free balls, 3": as many places as the variant says; all balls have edges as
 /// sharp. Null: another variant.
 std::shared_ptr<const Ingredient> places_form(const Model& model, const std::string& variant);
 bool is_places(const std::string& variant);

@@ -78,7 +78,7 @@ std::vector<std::shared_ptr<const Ingredient>> choices(const HiddenRecipe& hidde
   int ways = 0;
   for (const DeclaredForm& form : declare(effect, model).forms) {
     ways += form.ways;
-    if (known.size() < 8) known.push_back(fmt::format("\"{}\"", form.variant));
+    if (known.size() < 12) known.push_back(fmt::format("\"{}\"", form.variant));
   }
   const std::string right =
       fmt::format("write `variant:` with one of the {} here: {}{}; see `hookeye effects {}`", ways,

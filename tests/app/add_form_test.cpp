@@ -50,9 +50,10 @@ TEST_F(FittedRun, AnEffectIsAddedInTheFormThatIsNamed) {
 }
 
 TEST_F(Cli, EffectsNamesTheForms) {
-  EXPECT_THAT(on_one_line(hookeye("effects stiffness_field").out),
-              HasSubstr("`hookeye add RUN stiffness_field --as FORM` takes one of: 'field of "
-                        "bumps', 'blob', 'halves', 'gradient', 'layers', 'ball'"));
+  EXPECT_THAT(
+      on_one_line(hookeye("effects stiffness_field").out),
+      HasSubstr("`hookeye add RUN stiffness_field --as FORM` takes one of: 'field of "
+                "bumps', 'blob', 'halves', 'blobs', 'gradient', 'layers', 'balls', 'ball'"));
 }
 
 }  // namespace

@@ -331,8 +331,8 @@ TEST(StiffnessField, SeveralPlacesAreFoundInAField) {
   const VectorXd values = bumps.householderQr().solve(log_factor);
   const auto further = effect.further_forms(base_model(), *field, values);
   ASSERT_FALSE(further.empty());
-  ASSERT_EQ(further.front().form->variant(), "free 2 blobs");
-  EXPECT_EQ(further.at(1).form->variant(), "free 3 blobs");
+  ASSERT_EQ(further.front().form->variant(), "free blobs, 2");
+  EXPECT_EQ(further.at(1).form->variant(), "free blobs, 3");
   std::set<size_t> found;
   for (int k = 0; k < 2; ++k) {
     const Vector3d at = further.front().values.segment<3>(5 * k + 1);
@@ -344,7 +344,7 @@ TEST(StiffnessField, SeveralPlacesAreFoundInAField) {
   const auto balls =
       effect.further_forms(base_model(), *further.front().form, further.front().values);
   ASSERT_EQ(balls.size(), 1u);
-  EXPECT_EQ(balls.front().form->variant(), "free 2 balls");
+  EXPECT_EQ(balls.front().form->variant(), "free balls, 2");
   EXPECT_TRUE(balls.front().same_claim);
   EXPECT_EQ(balls.front().values.size(), 11);
   const auto beside = effect.candidates_beside(base_model(), {balls.front().form}, nullptr);
