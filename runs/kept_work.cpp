@@ -2,10 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include <fstream>
-
 #include "core/fingerprint.h"
-#include "core/json_file.h"
 #include "core/own_file.h"
 #include "core/text_file.h"
 #include "estimation/effects/session_effects.h"
@@ -24,8 +21,6 @@ std::string made_for(const Run& run) {
   if (const auto added = added_to_catalogue(); !added.empty()) out["effects"] = added;
   return out.dump();
 }
-
-constexpr const char* kWorkFile = "work.jsonl";
 
 WorkTable since(const WorkTable& before) {
   WorkTable out = worked();
@@ -58,46 +53,6 @@ void append_work(const Run& run, const CommandWork& work) {
 }
 
 }  // namespace
-
-std::vector<CommandWork> work_of(const std::filesystem::path& run) {
-  std::vector<CommandWork> out;
-  std::ifstream file(run / kWorkFile);
-  for (std::string line; std::getline(file, line);) {
-    std::string damage;
-    const auto told = parse_json(line, damage);
-    if (!told || !told->is_object()) continue;
-    try {
-      CommandWork work{told->at("first_step"), told->at("steps"), {}};
-      work.table.wall_s = told->at("wall_s");
-      for (int s = 0; s < kWorkStages; ++s)
-        for (int p = 0; p < kWorkParts; ++p)
-          work.table.cpu_s[s][p] =
-              told->at("cpu_s")
-                  .value(name_of(static_cast<WorkStage>(s)), nlohmann::json::object())
-                  .value(name_of(static_cast<WorkPart>(p)), 0.0);
-      out.push_back(work);
-    } catch (const nlohmann::json::exception&) {
-      continue;
-    }
-  }
-  return out;
-}
-
-nlohmann::ordered_json work_json(const std::vector<CommandWork>& all) {
-  auto out = nlohmann::ordered_json::array();
-  for (const CommandWork& work : all) {
-    nlohmann::ordered_json cpu;
-    for (int s = 0; s < kWorkStages; ++s)
-      for (int p = 0; p < kWorkParts; ++p)
-        cpu[name_of(static_cast<WorkStage>(s))][name_of(static_cast<WorkPart>(p))] =
-            work.table.cpu_s[s][p];
-    out.push_back({{"first_step", work.first_step},
-                   {"steps", work.steps},
-                   {"wall_s", work.table.wall_s},
-                   {"cpu_s", std::move(cpu)}});
-  }
-  return out;
-}
 
 KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel)
     : run_(run), bench_(bench), cancel_(cancel), first_step_(run.steps().size()) {

@@ -5,6 +5,7 @@
 
 #include "core/work_clock.h"
 #include "runs/bench.h"
+#include "runs/work_log.h"
 
 namespace hookeye {
 
@@ -31,16 +32,5 @@ class KeptWork {
   WorkTable before_ = worked();
   size_t first_step_;
 };
-
-/// One command's work on a run.
-struct CommandWork {
-  size_t first_step = 0, steps = 0;  ///< the run had so many steps before and after
-  WorkTable table;
-};
-
-/// What RUN/work.jsonl tells, in the order of the commands; lines that are damaged are left out.
-std::vector<CommandWork> work_of(const std::filesystem::path& run);
-/// [{first_step, steps, wall_s, cpu_s: {STAGE: {PART: seconds}}}].
-nlohmann::ordered_json work_json(const std::vector<CommandWork>& all);
 
 }  // namespace hookeye

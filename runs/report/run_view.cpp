@@ -12,13 +12,13 @@
 #include "core/json_file.h"
 #include "core/text_file.h"
 #include "runs/decision_log.h"
-#include "runs/kept_work.h"
 #include "runs/report/answer.h"
 #include "runs/report/encode_png.h"
 #include "runs/report/facts.h"
 #include "runs/report/inside.h"
 #include "runs/report/rebuilt_timeline.h"
 #include "runs/versions.h"
+#include "runs/work_log.h"
 
 namespace hookeye {
 
