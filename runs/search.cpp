@@ -18,10 +18,6 @@
 namespace hookeye {
 namespace {
 
-/// Time of a whole search over that of its first fit and diagnosis, where an effect was found: 13
-/// of 15 searches, and half of them (docs/benchmarks.md, "Speed").
-constexpr double kShortSearch = 2.0, kLongSearch = 17.0, kUsualSearch = 8.0, kVainSearch = 5.0;
-
 /// "12 s", "4 min".
 std::string seconds_in_words(double seconds) {
   constexpr double kMinute = 60.0;
@@ -120,13 +116,11 @@ void say_step(const Step& step, const std::optional<Residuals>& without) {
   }
 }
 
-/// What this machine took for the first fit of this capture, and what that says of the rest.
+/// What this machine took for the first fit of this capture: the rest is some of these.
 void say_how_long(double seconds) {
   spdlog::info(
-      "  the first fit and its diagnosis took {}. Where an effect was found, 13 of 15 searches "
-      "took "
-      "{:g} to {:g} times that in all, half of them up to {:g}; where none was, 1 to {:g} times",
-      seconds_in_words(seconds), kShortSearch, kLongSearch, kUsualSearch, kVainSearch);
+      "  the first fit and its diagnosis took {}; the whole search takes several times that",
+      seconds_in_words(seconds));
 }
 
 DiscoverEvents events(Run& run, Bench& bench, DecisionLog& log, int from, bool known,
