@@ -1,5 +1,7 @@
 #include "sharing/shared_folder.h"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -40,6 +42,14 @@ class FolderOnDisk final : public SharedFolder {
   }
   void write(const std::string& file, const std::string& text) override {
     write_text(path_ / file, text);
+  }
+  void write_openly(const std::string& file, const std::string& text) override {
+    const fs::path target = path_ / file;
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(target.c_str(), "we"),
+                                                                 std::fclose);
+    if (!stream || std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size() ||
+        std::fflush(stream.get()) != 0 || ::fsync(::fileno(stream.get())) != 0)
+      throw cannot_write(target.string(), std::strerror(errno));
   }
   bool rename(const std::string& from, const std::string& to) override {
     const fs::path source = path_ / from, target = path_ / to;

@@ -24,6 +24,9 @@ class SharedFolder {
   virtual std::optional<std::string> read(const std::string& file) = 0;
   /// Whole or not at all. Throws InputError where it cannot be.
   virtual void write(const std::string& file, const std::string& text) = 0;
+  /// Under its final name from the start, so that a writer that dies leaves nothing under another.
+  /// For files that nobody reads before their writer links them. Throws as write().
+  virtual void write_openly(const std::string& file, const std::string& text) = 0;
   /// False: `from` is not there (any more). Of those who rename it at once one succeeds. Throws
   /// InputError where it cannot be for another reason.
   virtual bool rename(const std::string& from, const std::string& to) = 0;

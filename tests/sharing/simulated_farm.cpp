@@ -126,6 +126,11 @@ class SimulatedFolder final : public SharedFolder {
     const auto [folder, name] = parted(file);
     disk_[folder][name] = text;
   }
+  void write_openly(const std::string& file, const std::string& text) override {
+    touch(2.0 * farm_.latency);
+    const auto [folder, name] = parted(file);
+    disk_[folder][name] = text;
+  }
   bool rename(const std::string& from, const std::string& to) override {
     touch(farm_.latency);
     const auto [folder, name] = parted(from);
