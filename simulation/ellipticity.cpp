@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace hookeye {
 namespace {
@@ -21,9 +23,19 @@ Matrix3d by_m(const Matrix9d& D, const Eigen::Vector3d& m) {
   return A;
 }
 
+/// Smallest eigenvalue and its direction.
+std::pair<double, Eigen::Vector3d> smallest(const Matrix3d& A, bool roughly) {
+  Eigen::SelfAdjointEigenSolver<Matrix3d> eigen;
+  if (roughly)
+    eigen.computeDirect(A);
+  else
+    eigen.compute(A);
+  return {eigen.eigenvalues()[0], eigen.eigenvectors().col(0)};
+}
+
 }  // namespace
 
-Ellipticity ellipticity(const Matrix9d& D, int starts) {
+Ellipticity ellipticity(const Matrix9d& D, int starts, bool roughly) {
   // From directions spread over the half sphere (40: 20 degrees apart), m and n in turn: each is
   // the smallest eigenvector with the other fixed, so the value only falls.
   Ellipticity best;
@@ -34,13 +46,11 @@ Ellipticity ellipticity(const Matrix9d& D, int starts) {
     Eigen::Vector3d n(r * std::cos(angle), r * std::sin(angle), z), m;
     double value = std::numeric_limits<double>::infinity();
     for (int turn = 0; turn < 50; ++turn) {
-      const Eigen::SelfAdjointEigenSolver<Matrix3d> first(by_n(D, n));
-      m = first.eigenvectors().col(0);
+      m = smallest(by_n(D, n), roughly).second;
       const Matrix3d A = by_m(D, m);
-      const Eigen::SelfAdjointEigenSolver<Matrix3d> second(0.5 * (A + A.transpose()));
-      n = second.eigenvectors().col(0);
-      const double now = second.eigenvalues()[0];
-      const bool settled = value - now <= 1e-10 * D.norm();
+      const auto [now, direction] = smallest(0.5 * (A + A.transpose()), roughly);
+      n = direction;
+      const bool settled = value - now <= (roughly ? 1e-5 : 1e-10) * D.norm();
       value = now;
       if (settled) break;
     }

@@ -126,7 +126,8 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       const int plane = static_cast<int>(p);
       Texture texture;
       // A photo texture is interpolated from the full-size photo at every level.
-      if (!choose_texture(scene, model, e, k, plane, {options.level, whole}, texture)) continue;
+      const PhotoSize size{options.level, whole, options.single_rays};
+      if (!choose_texture(scene, model, e, k, plane, size, texture)) continue;
       const PhotoPlane& photo = impl_->plane(k, plane, whole ? 0 : options.level);
       if (whole && taken.empty()) taken = taken_photos(view, k);
       all.push_back(whole ? compare_taken(view, k, plane, taken, photo, texture, impl_->followed,

@@ -58,7 +58,7 @@ LostEllipticity lost_ellipticity(const TetMesh& mesh, const EnergyModel& energy,
     for (size_t k = 0; k < F.size(); ++k) {
       Matrix9d D = parts.dP_dF(element[k], F[k]);
       D += together.col(static_cast<Eigen::Index>(k)).reshaped(9, 9);
-      const double value = ellipticity(D, kStarts).smallest;
+      const double value = ellipticity(D, kStarts, true).smallest;
       if (value < out.smallest) out.smallest = value, out.element = element[k], out.dP_dF = D;
       if (value <= 0.0 && std::exchange(lost, element[k]) != element[k]) ++out.elements;
     }

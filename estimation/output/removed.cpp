@@ -55,6 +55,12 @@ struct Cells {
   std::vector<double> now, removed;
 };
 
+/// A residual there is, and pictures before and after the step that tell what the step removes of
+/// it: drawn alike, coarsely or not.
+struct Change {
+  const Image &now, &before, &after;
+};
+
 /// Edge of a cell [px], one for all photos.
 int cell_edge(const Evaluation& evaluation) {
   int longest = 0;
@@ -64,21 +70,24 @@ int cell_edge(const Evaluation& evaluation) {
   return kFinestCell * std::max(1, (longest - 1) / (kFinestCell * kMostCells) + 1);
 }
 
-Cells cells_of(const Image& before, const Image& after, int edge) {
-  Cells out{(before.width + edge - 1) / edge, (before.height + edge - 1) / edge, {}, {}};
+/// What a coarse drawing adds to both squares before and after is in neither sum.
+Cells cells_of(const Change& change, int edge) {
+  const int width = change.now.width, height = change.now.height;
+  Cells out{(width + edge - 1) / edge, (height + edge - 1) / edge, {}, {}};
   for (int row = 0; row < out.rows; ++row)
     for (int column = 0; column < out.columns; ++column) {
       double was = 0.0, is = 0.0, count = 0.0;
-      for (int y = row * edge; y < std::min(before.height, (row + 1) * edge); ++y)
-        for (int x = column * edge; x < std::min(before.width, (column + 1) * edge); ++x) {
-          const double a = before.at(x, y), b = after.at(x, y);
-          if (std::isnan(a) || std::isnan(b)) continue;
-          was += a * a, is += b * b, count += 1.0;
+      for (int y = row * edge; y < std::min(height, (row + 1) * edge); ++y)
+        for (int x = column * edge; x < std::min(width, (column + 1) * edge); ++x) {
+          const double r = change.now.at(x, y), a = change.before.at(x, y),
+                       b = change.after.at(x, y);
+          if (std::isnan(r) || std::isnan(a) || std::isnan(b)) continue;
+          was += r * r, is += r * r + b * b - a * a, count += 1.0;
         }
       const bool counts = count > 0.25 * edge * edge;
       const double rms = std::sqrt(was / std::max(count, 1.0));
       out.now.push_back(counts ? rms : std::nan(""));
-      out.removed.push_back(counts ? rms - std::sqrt(is / count) : std::nan(""));
+      out.removed.push_back(counts ? rms - std::sqrt(std::max(is, 0.0) / count) : std::nan(""));
     }
   return out;
 }
@@ -108,55 +117,103 @@ json cells_json(const Cells& cells, double unit) {
           {"bytes", base64(bytes.data(), bytes.size())}};
 }
 
+/// A model and where its texture was photographed; the mechanics are in states of their own.
+struct Drawn {
+  Model model;
+  int reference = -1;  ///< example that the texture is a photo of
+  ExampleEvaluation reference_state;
+
+  std::vector<PhotoEvaluation> compare(PhotoComparer& comparer, int example, const VectorXd& q,
+                                       bool single_rays) const {
+    EvaluationOptions options;
+    options.residuals = true;
+    options.single_rays = single_rays;
+    return comparer.compare(model, state_of(example, q),
+                            {reference, reference >= 0 ? &reference_state : nullptr}, nullptr,
+                            options);
+  }
+};
+
 /// The model after an effect's linear step, everywhere but in the mechanics: those are in
 /// EffectScore::displaced.
 struct Prediction {
   const EffectScore* score;
-  Model model;
-  int reference = -1;  ///< example that the texture is a photo of
-  ExampleEvaluation reference_state;
+  Drawn after;
 };
 
+/// -1: the texture is not of a photo.
+int reference_example(const Scene& scene) {
+  return scene.capture.body.texture == BodySpec::Texture::rest
+             ? scene.example_index(scene.capture.body.texture_example)
+             : -1;
+}
+
 std::vector<Prediction> predictions(const Step& step) {
-  const Scene& scene = *step.fitted.form.scene;
-  const int index = scene.capture.body.texture == BodySpec::Texture::rest
-                        ? scene.example_index(scene.capture.body.texture_example)
-                        : -1;
+  const int index = reference_example(*step.fitted.form.scene);
   std::vector<Prediction> out;
   for (const auto& score : step.diagnosis.effects) {
     if (score.displaced.empty() || (index >= 0 && !score.displaced.count(index))) continue;
     const auto [form, p] = after_step(step.fitted, score);
-    out.push_back({&score, form.realise(p), index, {}});
-    if (index >= 0) out.back().reference_state = state_of(index, score.displaced.at(index));
+    out.push_back({&score, {form.realise(p), index, {}}});
+    if (index >= 0) out.back().after.reference_state = state_of(index, score.displaced.at(index));
   }
   return out;
 }
 
-/// Pictures of one example after the step; its cells by photo.
-std::map<std::string, Cells> write_example(const std::filesystem::path& folder,
-                                           const Prediction& prediction,
-                                           const ExampleEvaluation& example,
-                                           PhotoComparer& comparer, int edge) {
-  std::map<std::string, Cells> out;
-  const Model& model = prediction.model;
-  const auto state = prediction.score->displaced.find(example.example);
-  if (state == prediction.score->displaced.end()) return out;
-  EvaluationOptions options;
-  options.residuals = true;
-  const int index = prediction.reference;
-  const auto after = comparer.compare(model, state_of(example.example, state->second),
-                                      {index, index >= 0 ? &prediction.reference_state : nullptr},
-                                      nullptr, options);
-  for (size_t k = 0; k < std::min(after.size(), example.photos.size()); ++k) {
-    const PhotoEvaluation& photo = example.photos[k];
-    const std::string name = photo_name(*model.scene, photo), &effect = prediction.score->effect;
-    if (prediction.score->pictured)
-      write_removed_picture(folder / effect / (name + ".png"), photo.residual, after[k].residual,
-                            name, effect);
-    out[name] = cells_of(photo.residual, after[k].residual, edge);
-  }
+/// The model as it is.
+Drawn drawn(const Fitted& fitted) {
+  Drawn out{fitted.form.realise(fitted.p), reference_example(*fitted.form.scene), {}};
+  for (const auto& example : fitted.evaluation.examples)
+    if (example.example == out.reference)
+      out.reference_state = state_of(out.reference, example.equilibrium->q);
   return out;
 }
+
+/// Pictures of one example after each step, and their cells by photo. An effect that no picture is
+/// kept of is drawn coarsely, and so is the model as it is, once.
+class RemovedInExample {
+ public:
+  RemovedInExample(const std::filesystem::path& folder, const Fitted& fitted,
+                   const ExampleEvaluation& example, int edge)
+      : folder_(folder),
+        fitted_(fitted),
+        example_(example),
+        edge_(edge),
+        comparer_(fitted.form.scene, example.example) {}
+
+  std::map<std::string, Cells> by(const Prediction& prediction) {
+    std::map<std::string, Cells> out;
+    const EffectScore& score = *prediction.score;
+    const auto state = score.displaced.find(example_.example);
+    if (state == score.displaced.end()) return out;
+    const auto after =
+        prediction.after.compare(comparer_, example_.example, state->second, !score.pictured);
+    const std::vector<PhotoEvaluation>& before = score.pictured ? example_.photos : coarse();
+    for (size_t k = 0; k < std::min(after.size(), example_.photos.size()); ++k) {
+      const PhotoEvaluation& photo = example_.photos[k];
+      const std::string name = photo_name(*fitted_.form.scene, photo);
+      if (score.pictured)
+        write_removed_picture(folder_ / score.effect / (name + ".png"), photo.residual,
+                              after[k].residual, name, score.effect);
+      out[name] = cells_of({photo.residual, before[k].residual, after[k].residual}, edge_);
+    }
+    return out;
+  }
+
+ private:
+  const std::vector<PhotoEvaluation>& coarse() {
+    if (coarse_.empty())
+      coarse_ = drawn(fitted_).compare(comparer_, example_.example, example_.equilibrium->q, true);
+    return coarse_;
+  }
+
+  const std::filesystem::path& folder_;
+  const Fitted& fitted_;
+  const ExampleEvaluation& example_;
+  const int edge_;
+  PhotoComparer comparer_;
+  std::vector<PhotoEvaluation> coarse_;
+};
 
 }  // namespace
 
@@ -175,9 +232,9 @@ void write_removed(const std::filesystem::path& folder, const Step& step) {
   std::mutex mutex;
   const auto& examples = step.fitted.evaluation.examples;
   tbb::parallel_for(size_t{0}, examples.size(), [&](size_t e) {
-    PhotoComparer comparer(step.fitted.form.scene, examples[e].example);
+    RemovedInExample removed(folder, step.fitted, examples[e], edge);
     for (size_t i = 0; i < all.size(); ++i) {
-      auto photos = write_example(folder, all[i], examples[e], comparer, edge);
+      auto photos = removed.by(all[i]);
       const std::lock_guard lock(mutex);
       cells[i].merge(photos);
     }

@@ -39,29 +39,48 @@ bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
 
 namespace {
 
-/// The mesh, where it stands out and no other effect by more than `margin` before it; else null.
-const EffectScore* mesh_ahead(const Diagnosis& diagnosis, double margin) {
+/// The mesh, where it stands out and nobody is `ahead(other, mesh)`; else null.
+template <class Ahead>
+const EffectScore* mesh_unless(const Diagnosis& diagnosis, const Ahead& ahead) {
   for (const EffectScore& score : diagnosis.effects)
     if (numerical(score.effect) && nameable(score, diagnosis) &&
-        std::all_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& other) {
-          return &other == &score || !other.testable || other.evidence <= score.evidence + margin;
+        std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& other) {
+          return &other != &score && other.testable && ahead(other, score);
         }))
       return &score;
   return nullptr;
 }
 
+/// The mesh, where it leads by more than a tie; else null.
+const EffectScore* leading_mesh(const Diagnosis& diagnosis) {
+  const double tie = diagnosis.limits().tie;
+  return mesh_unless(diagnosis, [&](const EffectScore& other, const EffectScore& mesh) {
+    return other.evidence > mesh.evidence - tie;
+  });
+}
+
+/// The mesh, where nobody is ahead of it by more than a tie and takes away more of the misfit, too:
+/// its one number is the change that was solved, six of a set-up may lead by fitting its noise.
+/// Else null.
+const EffectScore* mesh_ahead(const Diagnosis& diagnosis) {
+  const double tie = diagnosis.limits().tie;
+  return mesh_unless(diagnosis, [&](const EffectScore& other, const EffectScore& mesh) {
+    return other.evidence > mesh.evidence + tie && other.fall > mesh.fall;
+  });
+}
+
 /// The first `most` of a race and the effect of the largest evidence: who is slow in two steps may
 /// still be right. So may a sensor's error, which moves no photo and so cannot win by them. A
 /// numerical error that comes near the first is refitted too, whatever its rank, where it may be
-/// all there is: nothing is named before the mesh is settled. Where nobody is ahead of it by more
-/// than a tie it goes first, however far it got.
+/// all there is: nothing is named before the mesh is settled. Where nobody is ahead of it it goes
+/// first, however far it got.
 void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int most,
                   const Decided& decided) {
   if (racers.empty()) return;
   const std::string& first = diagnosis.effects.front().effect;
   const Racer winner = racers.front();
   std::vector<Racer> kept;
-  const EffectScore* mesh = mesh_ahead(diagnosis, diagnosis.limits().tie);
+  const EffectScore* mesh = mesh_ahead(diagnosis);
   const auto leading = [&](const std::string& effect) {
     return std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
       return score.effect == effect && leads(diagnosis, score);
@@ -101,7 +120,7 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
 /// photos to the floor. That step is no guess (the finer mesh was solved), the mesh is settled
 /// before anything is named, and what it leaves is diagnosed next: nobody needs to race.
 bool mesh_settles_it(const Step& step) {
-  const EffectScore* mesh = mesh_ahead(step.diagnosis, -step.diagnosis.limits().tie);
+  const EffectScore* mesh = leading_mesh(step.diagnosis);
   const double floor2 = step.diagnosis.floor.chi * step.diagnosis.floor.chi;
   const double at = step.diagnosis.floor.limits->floor.at;
   const auto at_floor_after = [&](bool held_out, double share) {
@@ -112,13 +131,13 @@ bool mesh_settles_it(const Step& step) {
          at_floor_after(true, mesh->explains_held_out);
 }
 
-/// Nobody was ahead of the mesh by more than a tie, it asked for what a mesh's error asks for (once
+/// Nobody was ahead of the mesh, it asked for what a mesh's error asks for (once
 /// the change that was solved where the truth is as fine, twice, 1/(1 - 0.7^2), where it is exact;
 /// half to double of that), and its refit took away at least half of the misfit that it promised
 /// to. On the mesh that is known to be wrong, whatever resembles its error would be named beside a
 /// small effect; what stands out on the finer one is diagnosed next.
 bool mesh_kept_its_word(const Step& step, const Fitted& refitted) {
-  const EffectScore* mesh = mesh_ahead(step.diagnosis, step.diagnosis.limits().tie);
+  const EffectScore* mesh = mesh_ahead(step.diagnosis);
   const SearchLimits& limits = step.diagnosis.floor.limits->search;
   if (!mesh || mesh->values[0] < limits.mesh_least || mesh->values[0] > limits.mesh_most)
     return false;
