@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "capture_io/capture.h"
+#include "capture_io/unweighed_photo.h"
 
 namespace hookeye {
 namespace {
@@ -104,7 +105,12 @@ std::vector<SharedValue<Image>> backdrop_of(const PhotoSpec& spec, const Camera&
 
 }  // namespace
 
-Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
+namespace {
+
+/// What of each pixel's noise is worked out.
+enum class Weighed { no, yes };
+
+Photo read_as(const PhotoSpec& spec, const Camera& camera, Weighed weighed) {
   Photo photo;
   photo.camera = spec.camera;
   photo.kind = spec.kind;
@@ -126,15 +132,27 @@ Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
     photo.channel_weights = {1, 1, 1};
     for (int c = 0; c < 3; ++c) {
       photo.planes.push_back(plane_of(image, c));
-      photo.sigma.push_back(sigma_of(photo.planes.back(), photo.noise));
+      if (weighed == Weighed::yes)
+        photo.sigma.push_back(sigma_of(photo.planes.back(), photo.noise));
     }
     return photo;
   }
   photo.channel_weights = {1};
   if (image.channels == 3) photo.channel_weights = {0.2126, 0.7152, 0.0722};
   photo.planes = {luminance(image)};
-  photo.sigma = {luminance_sigma(image, photo.noise, photo.channel_weights)};
+  if (weighed == Weighed::yes)
+    photo.sigma = {luminance_sigma(image, photo.noise, photo.channel_weights)};
   return photo;
+}
+
+}  // namespace
+
+Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
+  return read_as(spec, camera, Weighed::yes);
+}
+
+Photo read_unweighed_photo(const PhotoSpec& spec, const Camera& camera) {
+  return read_as(spec, camera, Weighed::no);
 }
 
 }  // namespace hookeye

@@ -9,6 +9,7 @@
 #include "estimation/effects/catalogue.h"
 #include "runs/fit_base.h"
 #include "runs/kept_work.h"
+#include "runs/record.h"
 
 namespace hookeye {
 namespace {
@@ -56,6 +57,11 @@ void run_fit(const FitArguments& arguments, Session& session) {
       throw InputError({arguments.run},
                        "the base model of this run is fitted already, from another start",
                        "name a new folder, or leave -m and --material out to see what is there");
+    // What stopped the last command may have stopped its look at all pixels, too.
+    if (run.steps().size() == 1 && bench.scene->in_part()) {
+      Step step = newest_step(run, bench, arguments.options());
+      record_all_pixels(run, bench, step, arguments.options());
+    }
     session.say("{}: the base model is fitted already\n", arguments.run);
     session.document = run.timeline();
     return;

@@ -51,6 +51,38 @@ int reference_photo(const Scene& scene, int reference, const std::string& camera
   return -1;
 }
 
+namespace {
+
+/// Side of a texel in px of the photo as it was taken, in the middle of what the camera may see of
+/// the body at rest.
+double texel_px(const Scene& scene, const std::string& name, const Image& texture) {
+  const SurfaceMesh& surface = scene.body->surface.mesh;
+  const Camera& camera = scene.capture.camera(name);
+  std::vector<double> sides;
+  for (size_t t = 0; t < surface.uv.size() && t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Eigen::Vector2d A = camera.project(surface.X.col(a)),
+                          B = camera.project(surface.X.col(b)),
+                          C = camera.project(surface.X.col(c));
+    const auto area = [](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+      return std::abs(p.x() * q.y() - p.y() * q.x());
+    };
+    const auto& uv = surface.uv[t];
+    const double texels = area(uv[1] - uv[0], uv[2] - uv[0]) * double(texture.pixels());
+    const double pixels = area(B - A, C - A);
+    if (texels > 0.0 && std::isfinite(pixels)) sides.push_back(std::sqrt(pixels / texels));
+  }
+  if (sides.empty()) return 1.0;
+  const auto middle = sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2);
+  std::nth_element(sides.begin(), middle, sides.end());
+  return std::max(*middle, 1e-3) * std::exp2(scene.halvings_of(name));
+}
+
+/// Of a texture that rays meet every `apart` texels: none is passed over, and none blurred.
+size_t texture_halvings(double apart) { return apart > 2.8 ? 2 : apart > 1.4 ? 1 : 0; }
+
+}  // namespace
+
 bool choose_texture(const Scene& scene, const Model& model, int example, int photo, int plane,
                     PhotoSize size, Texture& texture) {
   const BodySpec& body = scene.capture.body;
@@ -69,10 +101,10 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
                      : halvings > 0     ? kRaysOfHalved
                                         : RenderOptions{}.rays_per_axis;
     const double apart = std::exp2(level + halvings) / rays;
-    texture.image = sizes[std::min<size_t>(apart > 1.4   ? 2
-                                           : apart > 0.7 ? 1
-                                                         : 0,
-                                           sizes.size() - 1)];
+    size_t smaller = apart > 1.4 ? 2 : apart > 0.7 ? 1 : 0;
+    // Large photos may show a texel in several pixels: a coarser one would be blurred.
+    if (halvings > 0) smaller = texture_halvings(apart / texel_px(scene, camera, *sizes[0]));
+    texture.image = sizes[std::min(smaller, sizes.size() - 1)];
     return true;
   }
   const int reference = scene.example_index(body.texture_example);

@@ -4,11 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
-
-#include "simulation/equilibrium.h"
 
 namespace hookeye::inspection {
 
@@ -94,6 +93,11 @@ double largest_strain(const TetMesh& mesh, const Eigen::Ref<const VectorXd>& u) 
   return largest;
 }
 
+/// Something acts on the body.
+bool moves(const Loading& loading) {
+  return !loading.forces.empty() || !loading.displacement.isZero(0.0);
+}
+
 }  // namespace
 
 CoarseModel::CoarseModel(const Scene& scene, const InspectionOptions& options) : options_(options) {
@@ -101,22 +105,64 @@ CoarseModel::CoarseModel(const Scene& scene, const InspectionOptions& options) :
   if (!scene_) return;
   const ModelForm form = base_form(scene_);
   model_ = form.realise(form.initial());
+  of_mesh_ = std::make_unique<EquilibriumSolver>(scene_->mesh());
 }
 
 CoarseModel::CoarseModel(std::shared_ptr<const Scene> scene, const InspectionOptions& options)
     : options_(options), scene_(std::move(scene)) {
   const ModelForm form = base_form(scene_);
   model_ = form.realise(form.initial());
+  of_mesh_ = std::make_unique<EquilibriumSolver>(scene_->mesh());
 }
 
 CoarseModel::~CoarseModel() = default;
+
+CoarseModel::Held CoarseModel::held(int e, const Loading& loading) const {
+  return {loading.prescribed, model_.examples[static_cast<size_t>(e)].stiffness};
+}
+
+CoarseModel::AtRest CoarseModel::at_rest(int e, const Loading& loading) const {
+  const Held held = this->held(e, loading);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = known_.find(held);
+    if (found != known_.end()) return found->second;
+  }
+  Loading still = loading;
+  still.forces.clear();
+  still.displacement.setZero();
+  still.turns.clear();
+  auto solved = EquilibriumSolver(scene_->mesh()).solve(model_.energy_of(e), still);
+  AtRest out;
+  out.one_at_a_time = std::make_shared<std::mutex>();
+  if (const auto* failure = std::get_if<NumericalFailure>(&solved))
+    out.why = failure->reason;
+  else
+    out.state = std::make_shared<const Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+  const std::lock_guard lock(mutex_);
+  if (known_.size() < kMostKept) known_.emplace(held, out);
+  return out;
+}
+
+/// What load cases share, before all of them ask for it at once.
+void CoarseModel::keep_at_rest() const {
+  std::map<Held, int> first;
+  for (size_t e = 0; e < model_.examples.size() && first.size() < kMostKept; ++e) {
+    const Loading& loading = model_.examples[e].loading;
+    if (moves(loading)) first.emplace(held(static_cast<int>(e), loading), static_cast<int>(e));
+  }
+  std::vector<int> examples;
+  for (const auto& [held, e] : first) examples.push_back(e);
+  tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) {
+    at_rest(examples[i], model_.examples[static_cast<size_t>(examples[i])].loading);
+  });
+}
 
 FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
   FirstGuess guess;
   const Body& body = *scene_->body;
   const TetMesh& mesh = body.mesh;
-  const bool driven = !loading.forces.empty() || !loading.displacement.isZero(0.0);
-  if (!driven) {
+  if (!moves(loading)) {
     guess.linear = Matrix3Xd::Zero(3, body.surface.mesh.X.cols());
     guess.u = guess.reaction = VectorXd::Zero(mesh.X.size());
     return guess;
@@ -126,60 +172,95 @@ FirstGuess CoarseModel::to_first_order(int e, const Loading& loading) const {
     guess.failure = "nothing holds the body";
     return guess;
   }
-  Loading still = loading;
-  still.forces.clear();
-  still.displacement.setZero();
-  const EnergyModel energy = model_.energy_of(e);
-  const auto at_rest = solve_equilibrium(mesh, energy, still);
-  if (const auto* failure = std::get_if<NumericalFailure>(&at_rest)) {
-    guess.failure = failure->reason;
+  const AtRest rest = at_rest(e, loading);
+  if (!rest.state) {
+    guess.failure = rest.why;
     return guess;
   }
-  const auto& rest = std::get<Equilibrium>(at_rest);
   const VectorXd X = mesh.X.reshaped();
-  const VectorXd out_of_balance = residual(mesh, energy, loading, X);
-  guess.u =
-      sensitivities(rest, loading, out_of_balance, Eigen::MatrixXd(loading.displacement)).col(0);
-  guess.reaction = out_of_balance + rest.K * guess.u;
+  const VectorXd out_of_balance = residual(mesh, model_.energy_of(e), loading, X);
+  {
+    const std::lock_guard lock(*rest.one_at_a_time);
+    guess.u =
+        sensitivities(*rest.state, loading, out_of_balance, Eigen::MatrixXd(loading.displacement))
+            .col(0);
+  }
+  guess.reaction = out_of_balance + rest.state->K * guess.u;
   guess.strain = largest_strain(mesh, guess.u);
   guess.turned = loading.first_step() < 1.0;
   guess.linear = body.surface.deformed(mesh, X + guess.u) - body.surface.mesh.X;
   return guess;
 }
 
-void CoarseModel::find_equilibrium(int e, FirstGuess* guess) const {
+/// False: it is known, or not to be had.
+bool CoarseModel::needs_equilibrium(FirstGuess* guess) const {
   const TetMesh& mesh = scene_->body->mesh;
-  if (guess->linear.size() == 0) return;
+  if (guess->linear.size() == 0) return false;
   if (guess->linear.isZero(0.0)) {
     guess->x = scene_->body->surface.mesh.X;
     guess->q = mesh.X.reshaped();
     guess->R = guess->reaction;
-    return;
+    return false;
   }
   if (guess->strain > options_.most_strain && !guess->turned) {
     guess->failure = fmt::format("strained by {:.3g} to first order", guess->strain);
-    return;
+    return false;
   }
-  EquilibriumOptions options;
-  options.tolerance = 1e-5;  // a picture shows a hundredth of a pixel, no more
-  options.factored = false;
-  options.most_iterations = options_.coarse_iterations;
-  auto solved = solve_equilibrium(mesh, model_.energy_of(e),
-                                  model_.examples[static_cast<size_t>(e)].loading, options);
-  if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
-    guess->failure = failure->reason;
-    return;
+  return true;
+}
+
+/// Of examples [first, last), one after the other: each begins where the one before ended, as load
+/// cases of a series lie near one another, unless rest is as near.
+void CoarseModel::find_equilibria(size_t first, size_t last,
+                                  std::vector<FirstGuess>* guesses) const {
+  constexpr double kNear = 0.5;  // of the way from rest
+  const TetMesh& mesh = scene_->body->mesh;
+  EquilibriumSolver solver(scene_->mesh());
+  const FirstGuess* before = nullptr;
+  for (size_t e = first; e < last; ++e) {
+    FirstGuess& guess = (*guesses)[e];
+    if (!needs_equilibrium(&guess)) continue;
+    const Loading& loading = model_.examples[e].loading;
+    const bool near =
+        before && loading.turns.empty() && (guess.u - before->u).norm() < kNear * guess.u.norm();
+    VectorXd expected;
+    EquilibriumOptions options;
+    options.tolerance = 1e-5;  // a picture shows a hundredth of a pixel, no more
+    options.factored = false;
+    options.most_iterations = options_.coarse_iterations;
+    if (near) {
+      expected = before->q + (guess.u - before->u);
+      options.expected = &expected;
+    } else {
+      solver.forget();
+    }
+    auto solved = solver.solve(model_.energy_of(static_cast<int>(e)), loading, options);
+    before = nullptr;
+    if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
+      guess.failure = failure->reason;
+      solver.forget();
+      continue;
+    }
+    auto& found = std::get<Equilibrium>(solved);
+    guess.q = std::move(found.q), guess.R = std::move(found.R);
+    guess.x = scene_->body->surface.deformed(mesh, guess.q);
+    if (loading.turns.empty()) before = &guess;
   }
-  auto& found = std::get<Equilibrium>(solved);
-  guess->q = std::move(found.q), guess->R = std::move(found.R);
-  guess->x = scene_->body->surface.deformed(mesh, guess->q);
 }
 
 std::vector<FirstGuess> CoarseModel::solve(bool in_equilibrium) const {
-  std::vector<FirstGuess> all(model_.examples.size());
-  tbb::parallel_for(size_t{0}, all.size(), [&](size_t e) {
+  // Of a few load cases each is found from rest, all at once.
+  constexpr size_t kPieces = 16, kLongest = 16;
+  const size_t count = model_.examples.size();
+  std::vector<FirstGuess> all(count);
+  keep_at_rest();
+  tbb::parallel_for(size_t{0}, count, [&](size_t e) {
     all[e] = to_first_order(static_cast<int>(e), model_.examples[e].loading);
-    if (in_equilibrium) find_equilibrium(static_cast<int>(e), &all[e]);
+  });
+  if (!in_equilibrium) return all;
+  const size_t length = std::clamp(count / kPieces, size_t{1}, kLongest);
+  tbb::parallel_for(size_t{0}, (count + length - 1) / length, [&](size_t piece) {
+    find_equilibria(piece * length, std::min(count, (piece + 1) * length), &all);
   });
   return all;
 }

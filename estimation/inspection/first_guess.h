@@ -1,12 +1,16 @@
 // What each load case would do to the body at the told values: one coarse solve each.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimation/inspection/options.h"
 #include "estimation/model/model.h"
+#include "simulation/equilibrium.h"
 
 namespace hookeye::inspection {
 
@@ -45,13 +49,30 @@ class CoarseModel {
   FirstGuess answer(int e, const Loading& loading) const;
 
  private:
+  /// The body at rest, held as a load case holds it: `why`, where that has no equilibrium.
+  struct AtRest {
+    std::shared_ptr<const Equilibrium> state;
+    std::shared_ptr<std::mutex> one_at_a_time;  ///< its factor has memory of its own
+    std::string why;
+  };
+  static constexpr size_t kMostKept = 8;
+  /// By what is held and by how stiff an example is: load cases share it.
+  using Held = std::pair<std::vector<int>, double>;
+
+  Held held(int e, const Loading& loading) const;
+  AtRest at_rest(int e, const Loading& loading) const;
+  void keep_at_rest() const;
   FirstGuess to_first_order(int e, const Loading& loading) const;
-  void find_equilibrium(int e, FirstGuess* guess) const;
+  bool needs_equilibrium(FirstGuess* guess) const;
+  void find_equilibria(size_t first, size_t last, std::vector<FirstGuess>* guesses) const;
 
   InspectionOptions options_;
   std::string refused_;
   std::shared_ptr<const Scene> scene_;
   Model model_;
+  std::unique_ptr<EquilibriumSolver> of_mesh_;  ///< keeps what all solvers of the mesh share
+  mutable std::mutex mutex_;
+  mutable std::map<Held, AtRest> known_;  ///< at most kMostKept: each is as large as a factor
 };
 
 }  // namespace hookeye::inspection

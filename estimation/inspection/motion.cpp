@@ -12,19 +12,17 @@ Motion seen_motion(Sight& sight, PhotoIndex photo, PhotoIndex reference) {
   Motion motion;
   motion.photo = photo, motion.reference = reference;
   const SmallPhoto &from = sight.small(reference), &to = sight.small(photo);
-  const Camera camera = camera_at_level(sight.camera(reference), from.level);
-  const BodyPicture look = sight.plain_look(camera, sight.shown(reference.first));
-  std::vector<unsigned char> body = look.body;
-  for (size_t i = 0; i < body.size(); ++i)
-    body[i] = body[i] && (from.valid->empty() || (*from.valid)[i]);
-  const double reach = sight.options().moved_reach * std::hypot(from.I->width, from.I->height);
-  const PatchField field = find_patches(from.I, body, to.I, reach, sight.options());
+  const SoughtInReference& sought = sight.sought(reference);
+  const BodyPicture& look = sought.look;
+  const bool alike = from.I->width == to.I->width && from.I->height == to.I->height;
+  const PatchField field = alike ? sought.patches.in(to.I) : PatchField{};
   motion.sought = static_cast<int>(field.patches.size());
   if (field.found() < sight.options().least_patches) return motion;
   for (const Patch& patch : field.patches) {
     const auto pixel = static_cast<size_t>(patch.at.y()) * static_cast<size_t>(from.I->width) +
                        static_cast<size_t>(patch.at.x());
     if (!patch.found || look.triangle[pixel] < 0) continue;
+    motion.pixel.push_back(static_cast<int>(pixel));
     motion.triangle.push_back(look.triangle[pixel]);
     motion.uv.push_back(look.uv[pixel]);
     motion.seen.push_back(from.px() * patch.shift);

@@ -10,6 +10,8 @@ namespace hookeye::inspection {
 /// Material points that are seen in the reference photo and found again in a loaded one.
 struct Motion {
   PhotoIndex photo, reference;
+  /// Of the small reference photo, where each is seen: the same point in all its motions.
+  std::vector<int> pixel;
   std::vector<int> triangle;        ///< of the render surface
   std::vector<Eigen::Vector2f> uv;  ///< barycentric there
   std::vector<Vector2d> seen;       ///< motion in the photo [px of the photo]

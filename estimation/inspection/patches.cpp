@@ -104,23 +104,36 @@ double top(double left, double middle, double right) {
   return bend < 0.0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0.0;
 }
 
-/// False: nothing to see in the patch that has one place, or no room to seek it.
-bool seek(const Picture& from, const Picture& to, const cv::Point& at, int reach,
-          const InspectionOptions& options, Patch* patch) {
-  const int half = options.patch_px / 2;
-  const cv::Rect its(at.x - half, at.y - half, 2 * half + 1, 2 * half + 1);
+/// A patch of a picture that has one place there.
+struct Sought {
+  cv::Point at;
+  cv::Rect where;
+  bool level = false;      ///< sought in levelled pictures
+  double elsewhere = 0.0;  ///< Patch::elsewhere
+};
+
+/// False: nothing to see in the patch that has one place.
+bool has_one_place(const Picture& from, const InspectionOptions& options, Sought* patch) {
   cv::Scalar mean, deviation;
-  cv::meanStdDev(from.I(its), mean, deviation);
+  cv::meanStdDev(from.I(patch->where), mean, deviation);
   if (deviation[0] < options.least_contrast * std::abs(mean[0]) || deviation[0] < 1e-4)
     return false;
-  const bool level = needs_levelling(from, its, options);
-  const cv::Mat &sought = level ? from.levelled : from.I, &in = level ? to.levelled : to.I;
-  patch->elsewhere = likeness_elsewhere(sought, its, options);
-  if (patch->elsewhere > options.alike_elsewhere) return false;
-  const cv::Mat piece = sought(its);
-  const cv::Rect window = cv::Rect(at.x - half - reach, at.y - half - reach, 2 * (half + reach) + 1,
-                                   2 * (half + reach) + 1) &
-                          cv::Rect(0, 0, in.cols, in.rows);
+  patch->level = needs_levelling(from, patch->where, options);
+  patch->elsewhere =
+      likeness_elsewhere(patch->level ? from.levelled : from.I, patch->where, options);
+  return patch->elsewhere <= options.alike_elsewhere;
+}
+
+/// False: no room to seek it.
+bool seek(const Picture& from, const Picture& to, const Sought& sought, int reach, Patch* patch) {
+  const cv::Mat &source = sought.level ? from.levelled : from.I,
+                &in = sought.level ? to.levelled : to.I;
+  const cv::Rect& its = sought.where;
+  const int half = its.width / 2;
+  const cv::Mat piece = source(its);
+  const cv::Rect window =
+      cv::Rect(its.x - reach, its.y - reach, its.width + 2 * reach, its.height + 2 * reach) &
+      cv::Rect(0, 0, in.cols, in.rows);
   if (window.width < piece.cols || window.height < piece.rows) return false;
   cv::Mat likeness;
   cv::matchTemplate(in(window), piece, likeness, cv::TM_CCOEFF_NORMED);
@@ -128,7 +141,8 @@ bool seek(const Picture& from, const Picture& to, const cv::Point& at, int reach
   double best = 0.0;
   cv::Point where;
   cv::minMaxLoc(likeness, nullptr, &best, nullptr, &where);
-  patch->at = {double(at.x), double(at.y)};
+  patch->at = {double(sought.at.x), double(sought.at.y)};
+  patch->elsewhere = sought.elsewhere;
   patch->likeness = std::min(best, 1.0);
   Vector2d place(where.x, where.y);
   if (where.x > 0 && where.x + 1 < likeness.cols)
@@ -190,21 +204,47 @@ double PatchField::shift_px() const {
   return found() > 0 ? std::sqrt(sum / found()) : 0.0;
 }
 
-PatchField find_patches(const Image& from, const std::vector<unsigned char>& body, const Image& to,
-                        double reach, const InspectionOptions& options) {
-  PatchField field;
+struct SoughtPatches::Impl {
+  InspectionOptions options;
+  int reach = 0;
+  Picture picture;
+  std::vector<Sought> patches;
+};
+
+SoughtPatches::SoughtPatches(const Image& from, const std::vector<unsigned char>& body,
+                             double reach, const InspectionOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   const cv::Mat mask(from.height, from.width, CV_8U, const_cast<unsigned char*>(body.data()));
-  const Picture picture = picture_of(wrap(from), mask, options);
-  const Picture other = picture_of(wrap(to), cv::Mat(), options);
+  impl_->options = options;
+  impl_->reach = static_cast<int>(std::ceil(reach));
+  impl_->picture = picture_of(wrap(from), mask, options);
+  const int half = options.patch_px / 2, side = 2 * half + 1;
   for (const cv::Point& at : centres(mask, options)) {
+    Sought patch{at, {at.x - half, at.y - half, side, side}};
+    if (has_one_place(impl_->picture, options, &patch)) impl_->patches.push_back(patch);
+  }
+}
+
+SoughtPatches::SoughtPatches(SoughtPatches&&) noexcept = default;
+SoughtPatches::~SoughtPatches() = default;
+
+PatchField SoughtPatches::in(const Image& to) const {
+  PatchField field;
+  const InspectionOptions& options = impl_->options;
+  const Picture other = picture_of(wrap(to), cv::Mat(), options);
+  for (const Sought& sought : impl_->patches) {
     Patch patch;
-    if (seek(picture, other, at, static_cast<int>(std::ceil(reach)), options, &patch))
-      field.patches.push_back(patch);
+    if (seek(impl_->picture, other, sought, impl_->reach, &patch)) field.patches.push_back(patch);
   }
   for (size_t i = 0; i < field.patches.size(); ++i)
     field.patches[i].found =
         alike(field.patches[i], options) && moves_along(field.patches, i, options);
   return field;
+}
+
+PatchField find_patches(const Image& from, const std::vector<unsigned char>& body, const Image& to,
+                        double reach, const InspectionOptions& options) {
+  return SoughtPatches(from, body, reach, options).in(to);
 }
 
 double correlation(const Image& one, const Image& other,

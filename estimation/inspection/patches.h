@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "capture_io/image.h"
@@ -35,6 +36,22 @@ struct PatchField {
 /// The only file that touches OpenCV's template matching is patches.cpp.
 PatchField find_patches(const Image& from, const std::vector<unsigned char>& body, const Image& to,
                         double reach, const InspectionOptions& options);
+
+/// The same of one picture in many others, which have its size: what is of that one is done once.
+class SoughtPatches {
+ public:
+  /// `from` is held, not copied.
+  SoughtPatches(const Image& from, const std::vector<unsigned char>& body, double reach,
+                const InspectionOptions& options);
+  SoughtPatches(SoughtPatches&&) noexcept;
+  ~SoughtPatches();
+  /// find_patches(): the same patches in the same order in each picture.
+  PatchField in(const Image& to) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Normalised cross-correlation of two pictures over the pixels of `counted`; NaN: too few.
 double correlation(const Image& one, const Image& other, const std::vector<unsigned char>& counted);

@@ -67,6 +67,20 @@ const CoarseModel* Sight::coarse() {
 
 const FirstGuess* Sight::guess(int e) { return coarse() ? &at(guesses_, e) : nullptr; }
 
+const SoughtInReference& Sight::sought(PhotoIndex reference) {
+  const auto known = sought_.find(reference);
+  if (known != sought_.end()) return known->second;
+  const SmallPhoto& from = small(reference);
+  const Camera camera = camera_at_level(this->camera(reference), from.level);
+  BodyPicture look = plain_look(camera, shown(reference.first));
+  std::vector<unsigned char> body = look.body;
+  for (size_t i = 0; i < body.size(); ++i)
+    body[i] = body[i] && (from.valid->empty() || (*from.valid)[i]);
+  const double reach = options_.moved_reach * std::hypot(from.I->width, from.I->height);
+  SoughtInReference out{std::move(look), SoughtPatches(from.I, body, reach, options_)};
+  return sought_.emplace(reference, std::move(out)).first->second;
+}
+
 const LoadCase& Sight::load_case(int e) {
   auto& kept = load_cases_[e];
   if (!kept) kept = std::make_unique<LoadCase>(inspection::load_case(*this, e));

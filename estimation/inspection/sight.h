@@ -45,6 +45,12 @@ struct Agreement {
 
 struct LoadCase;
 
+/// What of a reference photo is sought in the others of its camera.
+struct SoughtInReference {
+  BodyPicture look;  ///< the body in its shown state, plain
+  SoughtPatches patches;
+};
+
 class Sight {
  public:
   Sight(const Scene& scene, const InspectionOptions& options);
@@ -67,6 +73,9 @@ class Sight {
   const FirstGuess* guess(int e);
   /// Positions that the model shows in example `e`: the first guess or, where there is none, rest.
   const Matrix3Xd& shown(int e);
+
+  /// Patches of the body, up to options.moved_reach away; kept.
+  const SoughtInReference& sought(PhotoIndex reference);
 
   /// How the body moved in the photos of example `e`, against its first guess.
   const LoadCase& load_case(int e);
@@ -110,6 +119,7 @@ class Sight {
   std::set<int> doubted_loads_;
   std::map<PhotoIndex, SmallPhoto> small_;
   std::map<PhotoIndex, Agreement> agreements_;
+  std::map<PhotoIndex, SoughtInReference> sought_;
   std::unique_ptr<CoarseModel> coarse_;
   bool coarse_tried_ = false;
   std::vector<FirstGuess> guesses_;

@@ -7,6 +7,7 @@
 #include <exception>
 #include <set>
 
+#include "capture_io/unweighed_photo.h"
 #include "core/memory_left.h"
 #include "core/work_clock.h"
 #include "estimation/model/field_points.h"
@@ -112,9 +113,8 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
       const Camera& camera = capture.camera(spec.camera);
       check_large_enough(spec, camera);
       const MemoryClaim claim(decoding_bytes(camera));
-      out[i] = read_photo(spec, camera);
+      out[i] = as.sigma ? read_photo(spec, camera) : read_unweighed_photo(spec, camera);
       const auto reading = as.readings.find(spec.camera);
-      if (!as.sigma) out[i].sigma.clear();
       if (reading != as.readings.end())
         out[i] =
             as_read(std::move(out[i]), reading->second, all[i].example->name + "/" + spec.camera);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <unordered_map>
+#include <utility>
 
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
@@ -30,12 +32,44 @@ std::map<std::string, PhotoSeries> series_by_camera(Sight& sight) {
   return out;
 }
 
-/// Motions of the points of `motion` as the first guess expects them of example `e`.
-std::vector<Vector2d> expected(Sight& sight, const Motion& motion, int e, bool in_equilibrium) {
-  const FirstGuess &guess = *sight.guess(e), &before = *sight.guess(motion.reference.first);
-  return in_equilibrium ? motion_between(sight, motion, before.x, guess.x)
-                        : first_order_motion(sight, motion, guess.linear - before.linear);
-}
+/// What the first guess expects of the points of one camera's motions in each load case. All
+/// motions are of the same points, each without those that are not found in its photo: what is
+/// expected of them is worked out once a load case, and looked up for every photo.
+class Expectations {
+ public:
+  Expectations(Sight& sight, const PhotoSeries& series) : sight_(sight) {
+    all_.reference = series.front()->reference;
+    for (const Motion* motion : series)
+      for (size_t i = 0; i < motion->pixel.size(); ++i) {
+        if (!place_.emplace(motion->pixel[i], all_.pixel.size()).second) continue;
+        all_.pixel.push_back(motion->pixel[i]);
+        all_.triangle.push_back(motion->triangle[i]);
+        all_.uv.push_back(motion->uv[i]);
+      }
+  }
+
+  /// Of the points of `motion`, as the first guess expects them of example `e`.
+  std::vector<Vector2d> of(const Motion& motion, int e, bool in_equilibrium) {
+    auto& known = known_[{e, in_equilibrium}];
+    if (known.empty()) known = of_all(e, in_equilibrium);
+    std::vector<Vector2d> out;
+    out.reserve(motion.pixel.size());
+    for (const int pixel : motion.pixel) out.push_back(known[place_.at(pixel)]);
+    return out;
+  }
+
+ private:
+  std::vector<Vector2d> of_all(int e, bool in_equilibrium) {
+    const FirstGuess &guess = *sight_.guess(e), &before = *sight_.guess(all_.reference.first);
+    return in_equilibrium ? motion_between(sight_, all_, before.x, guess.x)
+                          : first_order_motion(sight_, all_, guess.linear - before.linear);
+  }
+
+  Sight& sight_;
+  Motion all_;                             ///< every point of the series once
+  std::unordered_map<int, size_t> place_;  ///< by pixel: its place there
+  std::map<std::pair<int, bool>, std::vector<Vector2d>> known_;
+};
 
 /// Nothing is compared with an equilibrium unless all have one.
 bool have_equilibria(Sight& sight, const PhotoSeries& series) {
@@ -47,7 +81,8 @@ bool have_equilibria(Sight& sight, const PhotoSeries& series) {
 
 /// All photos of a camera against all its load cases, with and without each photo's mean motion,
 /// which a camera that was moved has, too.
-std::vector<ComparedWays> compared(Sight& sight, const PhotoSeries& series) {
+std::vector<ComparedWays> compared(Sight& sight, Expectations& expected,
+                                   const PhotoSeries& series) {
   std::vector<ComparedWays> aspects(2);
   const bool equilibria = have_equilibria(sight, series);
   for (ComparedWays& aspect : aspects)
@@ -58,7 +93,7 @@ std::vector<ComparedWays> compared(Sight& sight, const PhotoSeries& series) {
     const size_t row = aspects.front().scaled.size() - 1;
     for (const Motion* other : series)
       for (size_t way = 0; way < aspects.front().ways.size(); ++way) {
-        auto seen = motion->seen, told = expected(sight, *motion, other->photo.first, way == 1);
+        auto seen = motion->seen, told = expected.of(*motion, other->photo.first, way == 1);
         for (ComparedWays& aspect : aspects) {
           if (&aspect == &aspects.back()) remove_mean(seen, told);
           aspect.ways[way][row].emplace_back().add(seen, told);
@@ -108,15 +143,16 @@ void say_exchange(Sight& sight, const Exchange& one, const PhotoSeries& series,
 }
 
 /// One photo alone, to first order.
-double cosine(Sight& sight, const Motion& motion, int example) {
-  LoadCase alone;
-  alone.motions = {motion};
-  return against(sight, alone, sight.guess(example)->linear).cosine();
+double cosine(Expectations& expected, const Motion& motion, int example) {
+  MotionSums sums;
+  sums.add(motion.seen, expected.of(motion, example, false));
+  return sums.cosine();
 }
 
 /// A photo that does not show its example's motion but that of another, which the camera's photo of
 /// that other example does not show either: one of a longer mix-up.
-void ask_of_single_photos(Sight& sight, const PhotoSeries& series, Warnings& warnings) {
+void ask_of_single_photos(Sight& sight, Expectations& expected, const PhotoSeries& series,
+                          Warnings& warnings) {
   const InspectionOptions& options = sight.options();
   PhotoSeries clear;
   for (const Motion* motion : series) {
@@ -129,7 +165,7 @@ void ask_of_single_photos(Sight& sight, const PhotoSeries& series, Warnings& war
   for (const Motion* motion : clear) {
     cosines.emplace_back();
     for (const Motion* other : clear)
-      cosines.back().push_back(cosine(sight, *motion, other->photo.first));
+      cosines.back().push_back(cosine(expected, *motion, other->photo.first));
   }
   for (size_t i = 0; i < clear.size(); ++i) {
     const auto best = static_cast<size_t>(std::max_element(cosines[i].begin(), cosines[i].end()) -
@@ -153,9 +189,10 @@ void ask_of_single_photos(Sight& sight, const PhotoSeries& series, Warnings& war
 
 void ask_exchanges(Sight& sight, Warnings& warnings) {
   for (const auto& [camera, series] : series_by_camera(sight)) {
-    for (const Exchange& one : exchanges(compared(sight, series), sight.options()))
+    Expectations expected(sight, series);
+    for (const Exchange& one : exchanges(compared(sight, expected, series), sight.options()))
       if (moves(one, series, sight.options())) say_exchange(sight, one, series, warnings);
-    ask_of_single_photos(sight, series, warnings);
+    ask_of_single_photos(sight, expected, series, warnings);
   }
 }
 
