@@ -13,8 +13,8 @@ struct Ellipticity {
   double smallest = 0.0;
   Eigen::Vector3d m, n;
 };
-/// `starts`: directions from which the search descends. `roughly`: to 1e-5 of |dP/dF|, several times
-/// as fast.
+/// `starts`: directions from which the search descends. `roughly`: to 1e-5 of |dP/dF|, several
+/// times as fast.
 Ellipticity ellipticity(const Matrix9d& dP_dF, int starts = 40, bool roughly = false);
 
 }  // namespace hookeye
