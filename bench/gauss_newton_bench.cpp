@@ -81,7 +81,7 @@ void gauss_newton(benchmark::State& state) {
   const auto [form, p] = additive_form(static_cast<int>(state.range(0)));
   Workspace workspace(scene());
   EvaluationOptions options;
-  options.single_rays = state.range(1) == 1;
+  options.rays_per_axis = state.range(1) == 1 ? 1 : 0;
   bool up = false;
   double pixels = 0.0;
   for (auto _ : state) {

@@ -35,8 +35,8 @@ struct EvaluationOptions {
   /// Photos that are read halved or in part of their tiles are compared in all pixels that the
   /// camera took (PhotoEvaluation says what is of those). Reads their files again.
   bool all_pixels = false;
-  int tile_px = 1024;        ///< of those: side of the tiles, a multiple of 16; memory follows it
-  bool single_rays = false;  ///< at full size one ray a pixel: quicker, and aliased
+  int tile_px = 1024;     ///< of those: side of the tiles, a multiple of 16; memory follows it
+  int rays_per_axis = 0;  ///< of a pixel at full size: fewer are quicker, and aliased; 0: enough
   /// Huber's threshold in units of noise; 0: squares.
   double huber = 0.0;
   double measured_weight = 1.0;  ///< Evaluation's

@@ -126,7 +126,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       const int plane = static_cast<int>(p);
       Texture texture;
       // A photo texture is interpolated from the full-size photo at every level.
-      const PhotoSize size{options.level, whole, options.single_rays};
+      const PhotoSize size{options.level, whole, options.rays_per_axis};
       if (!choose_texture(scene, model, e, k, plane, size, texture)) continue;
       const PhotoPlane& photo = impl_->plane(k, plane, whole ? 0 : options.level);
       if (whole && taken.empty()) taken = taken_photos(view, k);

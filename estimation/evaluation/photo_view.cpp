@@ -21,12 +21,13 @@ constexpr int kRaysOfHalved = 4;
 }  // namespace
 
 RenderOptions at_level(RenderOptions options, int level, int halvings, const Texture& texture,
-                       bool single_rays) {
+                       int rays_per_axis) {
   if (level == 0 && texture.source == Texture::Source::photo)
     options.rays_per_axis = 1, options.filter_width_px = 1.0;
   else if (level == 0 && halvings > 0)
     options.halvings = halvings, options.rays_per_axis = kRaysOfHalved;
-  if (level == 0 && single_rays) options.rays_per_axis = 1;
+  if (level == 0 && rays_per_axis > 0)
+    options.rays_per_axis = std::min(rays_per_axis, options.rays_per_axis);
   if (level == 0) return options;
   options.rays_per_axis = std::min(1 + 3 * level, 15);
   options.filter_width_px = 2.4;
@@ -96,10 +97,10 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
     // Texels as large as the rays are apart, in pixels of the photo as it was taken.
     const std::string& camera = scene.capture.examples[example].photos[photo].camera;
     const int halvings = size.as_taken ? 0 : scene.halvings_of(camera), level = size.level;
-    const int rays = level > 0          ? std::min(1 + 3 * level, 15)
-                     : size.single_rays ? 1
-                     : halvings > 0     ? kRaysOfHalved
-                                        : RenderOptions{}.rays_per_axis;
+    const int rays = level > 0                ? std::min(1 + 3 * level, 15)
+                     : size.rays_per_axis > 0 ? size.rays_per_axis
+                     : halvings > 0           ? kRaysOfHalved
+                                              : RenderOptions{}.rays_per_axis;
     const double apart = std::exp2(level + halvings) / rays;
     size_t smaller = apart > 1.4 ? 2 : apart > 0.7 ? 1 : 0;
     // Large photos may show a texel in several pixels: a coarser one would be blurred.
@@ -207,7 +208,7 @@ RenderOptions ExampleView::rendering(int photo, const Texture& texture, PhotoSiz
   const std::string& camera = model_.examples[example_].photos[photo].camera.name;
   RenderOptions out =
       at_level(render_options(scene_), size.level, size.as_taken ? 0 : scene_.halvings_of(camera),
-               texture, options.single_rays);
+               texture, options.rays_per_axis);
   out.derivatives = derivatives();
   out.parallel = true;
   out.centres = options.pictures || texture.source == Texture::Source::photo;

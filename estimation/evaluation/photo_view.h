@@ -11,16 +11,16 @@ namespace hookeye {
 struct PhotoSize {
   int level = 0;
   bool as_taken = false;
-  bool single_rays = false;  ///< EvaluationOptions
+  int rays_per_axis = 0;  ///< EvaluationOptions
 };
 
 /// Photos of coarse levels are means over squares of pixels: a wider filter with rays enough to see
 /// every speckle once (a box has 2.5 times the variance of the 1.5 px window). A texture that is a
 /// photo went through the camera's aperture once already: one ray a pixel, or the model would be
-/// blurred twice and every motion come out too long. `halvings`: of the read photo. `single_rays`:
-/// one ray a pixel of other textures, too, weighted over their neighbours as ever.
+/// blurred twice and every motion come out too long. `halvings`: of the read photo.
+/// `rays_per_axis`: EvaluationOptions.
 RenderOptions at_level(RenderOptions options, int level, int halvings, const Texture& texture,
-                       bool single_rays = false);
+                       int rays_per_axis = 0);
 
 PhotoState state_at_level(const PhotoState& state, int level);
 

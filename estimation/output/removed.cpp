@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kFinestCell = 8;   ///< [px]: finer than the cells that count, coarser than speckle
 constexpr int kMostCells = 100;  ///< along a photo: what a page has room for
+constexpr int kCoarseRays = 2;   ///< an axis of a pixel: cells are means over many pixels
 constexpr double kFinestUnit = 1.0 / 16;  ///< standard deviations of one level, at least
 
 /// The fitted form with the effect in it, and the values after the linear step.
@@ -124,10 +125,10 @@ struct Drawn {
   ExampleEvaluation reference_state;
 
   std::vector<PhotoEvaluation> compare(PhotoComparer& comparer, int example, const VectorXd& q,
-                                       bool single_rays) const {
+                                       bool coarsely) const {
     EvaluationOptions options;
     options.residuals = true;
-    options.single_rays = single_rays;
+    if (coarsely) options.rays_per_axis = kCoarseRays;
     return comparer.compare(model, state_of(example, q),
                             {reference, reference >= 0 ? &reference_state : nullptr}, nullptr,
                             options);
