@@ -30,7 +30,7 @@ def faults(folder):
         for link, loaded in page.links:
             parts = urllib.parse.urlsplit(link)
             if parts.scheme or parts.netloc:
-                if loaded and parts.scheme != "data":
+                if loaded and parts.scheme not in ("data", "javascript"):
                     yield f"{file.relative_to(folder)}: `{link}` is loaded from the web"
                 continue
             path = urllib.parse.unquote(parts.path)

@@ -1,7 +1,7 @@
 """The pages of the site as Sphinx reads them: pages.py PROGRAM FOLDER
 
 docs/*.md as they are; README.md and CHANGELOG.md with their links bent; index.md with its lists of pages as tables of contents;
-the commands by the program's man pages; the Python module by autodoc.
+the commands by the program's man pages; the Python module by autodoc; the C++ layers by their READMEs.
 """
 import re
 import shutil
@@ -125,6 +125,18 @@ def python_page():
     return "\n".join(out)
 
 
+def cpp_page():
+    """The layers from below, by their READMEs; docs/site has Doxygen's pages in cpp/."""
+    layers = re.search(r"^INPUT += (.*)$", (ROOT / "docs" / "sphinx" / "Doxyfile").read_text(), re.M)[1].split()
+    out = ["# C++ reference", "", "```{raw} html", '<p><a href="cpp/annotated.html">All types</a>, '
+           '<a href="cpp/files.html">all headers</a>: shapes, units, frames and errors of what each declares.</p>', "```", "",
+           "Layers, from below. None includes one that stands below it.", ""]
+    for layer in layers:
+        purpose = (ROOT / layer / "README.md").read_text().split("\n\n")[1].replace("\n", " ")
+        out.append(f"- **{layer}**: {purpose}")
+    return "\n".join(out) + "\n"
+
+
 def main(program, folder):
     folder = Path(folder)
     for page in DOCS.glob("*.md"):
@@ -134,6 +146,7 @@ def main(program, folder):
     (folder / "overview.md").write_text(bent((ROOT / "README.md").read_text()).replace("# Hookeye\n", "# Overview\n", 1))
     (folder / "changes.md").write_text(bent((ROOT / "CHANGELOG.md").read_text()))
     (folder / "commands.md").write_text(commands_page(program))
+    (folder / "cpp-reference.md").write_text(cpp_page())
     (folder / "python-reference.md").write_text(python_page())
     titles = {page.stem: re.sub(r":? *`[^`]*`", "", page.read_text().partition("\n")[0].removeprefix("# ")) for page in folder.glob("*.md")}
     for page in folder.glob("*.md"):
