@@ -75,7 +75,7 @@ int report(const Session& session, Exit status, const std::string& kind, const s
 int report_failure(const Session& session, const NumericalFailure& failure) {
   const std::string where =
       failure.example.empty() ? "" : fmt::format("example {}: ", failure.example);
-  const bool no_memory = out_of_memory(failure.reason);
+  const bool no_memory = out_of_memory(failure);
   return report(session, kNumericalFailure, no_memory ? "out of memory" : "numbers failed",
                 failure.load_fraction < 1.0 && !no_memory
                     ? fmt::format("{}{}\n  reached {:.4g} of the load", where, failure.reason,

@@ -51,9 +51,9 @@ std::shared_ptr<const Scene> scene() {
     const fs::path folder =
         fs::temp_directory_path() / ("hookeye_gauss_newton_" + std::to_string(getpid()));
     const auto capture = synthesize(parse_recipe(kRecipe, "recipe"), folder);
-    if (!std::holds_alternative<Synthesis>(capture)) throw std::runtime_error("no equilibrium");
-    auto loaded = load_scene(read_capture(std::get<Synthesis>(capture).capture));
-    fs::remove(std::get<Synthesis>(capture).truth);
+    if (!capture.has_value()) throw std::runtime_error("no equilibrium");
+    auto loaded = load_scene(read_capture(capture->capture));
+    fs::remove(capture->truth);
     fs::remove_all(folder);
     return loaded;
   }();
@@ -87,7 +87,7 @@ void gauss_newton(benchmark::State& state) {
   for (auto _ : state) {
     up = !up;
     const auto seen = workspace.evaluate(form, up ? VectorXd(1.01 * p) : p, options);
-    const auto& evaluation = std::get<Evaluation>(seen);
+    const auto& evaluation = *seen;
     const NormalEquations sums = normal_equations(evaluation);
     benchmark::DoNotOptimize(sums.JtJ.data());
     pixels = 0.0;
@@ -120,8 +120,8 @@ void whole_catalogue(benchmark::State& state) {
   if (!state.range(0)) options.without = {"mesh_resolution"};
   size_t tested = 0;
   for (auto _ : state) {
-    const auto found = diagnose(workspace, std::get<Fitted>(fitted), options);
-    tested = std::get<Diagnosis>(found).effects.size();
+    const auto found = diagnose(workspace, *fitted, options);
+    tested = found->effects.size();
   }
   state.counters["effects"] = static_cast<double>(tested);
 }

@@ -29,6 +29,7 @@ find_package(ZLIB REQUIRED)
 
 find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_path(EXPECTED_INCLUDE tl/expected.hpp REQUIRED)
 find_library(XXHASH_LIBRARY xxhash REQUIRED)
 find_library(HWY_LIBRARY hwy REQUIRED)
 find_library(METIS_LIBRARY metis REQUIRED)

@@ -45,9 +45,6 @@ class OutOfMemory : public std::bad_alloc {
   std::string what_;
 };
 
-/// Whether a NumericalFailure's reason is that.
-inline bool out_of_memory(const std::string& reason) { return reason.starts_with("out of memory"); }
-
 /// Throws OutOfMemory where `bytes` more are not there. The system promises more than it has and
 /// kills who takes it at its word; so one looks before. Costs some reads of files in /proc, and
 /// nothing below 64 MB, which is not what a machine lacks. (Under `ulimit -v` less is looked after,

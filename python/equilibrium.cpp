@@ -41,11 +41,11 @@ Equilibrium solved(const Model& model, int e, const Work& work) {
   options.cancelled = [&] { return work.cancelled()->load(); };
   EquilibriumSolver solver(model.scene->mesh());
   auto state = solver.solve(model.energy_of(e), model.examples[e].loading, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&state)) {
-    failure->example = name;
-    fail(std::move(*failure));
+  if (!state) {
+    state.error().example = name;
+    fail(std::move(state.error()));
   }
-  return std::get<Equilibrium>(std::move(state));
+  return *std::move(state);
 }
 
 /// The same model of a scene with other examples or photos.

@@ -50,7 +50,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const InputError& error) {
     raise_input(error.what(), error.place(), error.wrong(), error.right());
   } catch (const Failed& failed) {
-    if (out_of_memory(failed.failure.reason))
+    if (out_of_memory(failed.failure))
       PyErr_SetString(PyExc_MemoryError, failed.failure.reason.c_str());
     else
       raise_failure(failed.failure);

@@ -141,21 +141,15 @@ void PythonModel::add(const std::string& name, const std::string& variant) {
 
 void PythonModel::remove(const std::string& effect) {
   check_effect(effect);
-  std::vector<double> left;
-  Ingredients kept;
-  int offset = 0;
-  for (const auto& ingredient : whole_.ingredients) {
-    const auto n = static_cast<int>(ingredient->parameters().size());
-    if (ingredient->name() != effect) {
-      kept.push_back(ingredient);
-      for (int i = 0; i < n; ++i) left.push_back(values_[offset + i]);
-    }
-    offset += n;
+  auto& all = whole_.ingredients;
+  const size_t before = all.size();
+  for (size_t i = all.size(); i-- > 0;) {
+    if (all[i]->name() != effect) continue;
+    values_ = whole_.layout().without(values_, i);
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  if (kept.size() == whole_.ingredients.size())
+  if (all.size() == before)
     bad_argument(fmt::format("the model has no {}", effect), "Model.ingredients tells what it has");
-  whole_.ingredients = std::move(kept);
-  values_ = Eigen::Map<const VectorXd>(left.data(), static_cast<Eigen::Index>(left.size()));
 }
 
 std::vector<std::string> PythonModel::ingredients() const {

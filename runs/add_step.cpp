@@ -69,9 +69,6 @@ Step with_effect(Bench& bench, const Step& current, const AddRequest& request,
 Step without_effect(Bench& bench, const Step& current, const std::string& name,
                     const AddOptions& wanted) {
   ModelForm form = current.fitted.form;
-  std::vector<double> p;
-  int offset = 0;
-  form.ingredients.clear();
   const auto& all = current.fitted.form.ingredients;
   // the newest, where it stands more than once
   const auto newest =
@@ -79,20 +76,14 @@ Step without_effect(Bench& bench, const Step& current, const std::string& name,
   if (newest == all.rend()) not_there(name, effects_in(current.fitted.form));
   const Effect* effect = find_effect(name);
   const bool mesh = effect && effect->remeshes((*newest)->variant());
-  for (const auto& ingredient : all) {
-    const int n = static_cast<int>(ingredient->parameters().size());
-    if (ingredient != *newest) {
-      form.ingredients.push_back(ingredient);
-      for (int i = 0; i < n; ++i) p.push_back(current.fitted.p[offset + i]);
-    }
-    offset += n;
-  }
+  const auto at = static_cast<size_t>(all.rend() - newest) - 1;
+  form.ingredients.erase(form.ingredients.begin() + static_cast<std::ptrdiff_t>(at));
   if (wanted.doing) wanted.doing("refitting");
   Step step;
   step.name = "without-" + name;
   FitOptions options = wanted.fit;
   options.coarse_to_fine = false;
-  VectorXd start = Eigen::Map<const VectorXd>(p.data(), static_cast<Eigen::Index>(p.size()));
+  VectorXd start = current.fitted.form.layout().without(current.fitted.p, at);
   if (mesh) std::tie(form, start) = transfer(form.realise(start), bench.scene, catalogue());
   step.fitted = value_or_fail(fit(bench.workspace, form, start, options));
   return step;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <utility>
-#include <variant>
 
 #include "core/interrupted.h"
 #include "core/numerical_failure.h"
@@ -21,9 +20,9 @@ struct Failed {
 
 /// Throws Interrupted or Failed where there is a failure instead of a value.
 template <class T>
-T value_or_fail(std::variant<T, NumericalFailure> result) {
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) fail(std::move(*failure));
-  return std::get<T>(std::move(result));
+T value_or_fail(Result<T> result) {
+  if (!result) fail(std::move(result.error()));
+  return *std::move(result);
 }
 
 }  // namespace hookeye

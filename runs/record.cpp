@@ -81,8 +81,8 @@ std::filesystem::path record(Run& run, const Step& step, const std::string& comm
 
 Step with_displaced(Bench& bench, Step step, const std::atomic<bool>* cancel) {
   if (lacks_displaced(step.diagnosis))
-    if (auto failure = displace_again(bench.workspace, step.fitted, cancel, step.diagnosis))
-      fail(std::move(*failure));
+    if (auto done = displace_again(bench.workspace, step.fitted, cancel, step.diagnosis); !done)
+      fail(std::move(done.error()));
   return step;
 }
 

@@ -152,14 +152,12 @@ DiscoverEvents events(Run& run, Bench& bench, DecisionLog& log, int from, bool k
                                     racer.start.floor));
   };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
-  events.refitted = [newest](const std::string& effect,
-                             const std::variant<Fitted, NumericalFailure>& result) {
-    if (const auto* fitted = std::get_if<Fitted>(&result))
+  events.refitted = [newest](const std::string& effect, const Result<Fitted>& result) {
+    if (result)
       spdlog::info(
           "  with {}: {}", effect,
-          residuals_in_words(residuals_of(fitted->evaluation), newest->residuals, newest->floor));
-    else if (const auto& failure = std::get<NumericalFailure>(result);
-             failure.reason != "cancelled")
+          residuals_in_words(residuals_of(result->evaluation), newest->residuals, newest->floor));
+    else if (const NumericalFailure& failure = result.error(); !cancelled(failure))
       spdlog::info("  {}: given up, {}{}", effect, failure.reason,
                    failure.example.empty() ? "" : fmt::format(" in '{}'", failure.example));
   };
@@ -219,12 +217,12 @@ Discovery search(Run& run, Bench& bench, const SearchRequest& wanted, bool known
 /// of it changes or loses that.
 void tell_tested(Run& run, const Bench& bench, const Fitted& last, const SearchRequest& wanted) {
   const auto result = test(last, bench.capture, wanted.options.fit);
-  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
-    if (cancelled(*failure)) fail(*failure);
+  if (!result) {
+    if (cancelled(result.error())) fail(result.error());
     if (wanted.warn)
       wanted.warn(fmt::format("example '{}' of use: test could not be predicted: {}",
-                              failure->example, failure->reason));
-  } else if (const auto& tested = std::get<std::optional<Tested>>(result)) {
+                              result.error().example, result.error().reason));
+  } else if (const auto& tested = *result) {
     run.update([&](nlohmann::json& timeline) { timeline["tested"] = to_json(*tested); });
   }
 }

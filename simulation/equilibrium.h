@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <variant>
 
 #include "core/numerical_failure.h"
 #include "simulation/energy_model.h"
@@ -87,10 +86,9 @@ class EquilibriumSolver {
   /// Finds R_free(q) = 0. Warm start from the last solution of this solver, else from `start`
   /// (3n) if given, else from rest by adaptive load steps. No inverted element is ever accepted.
   /// After small changes the last factor preconditions conjugate gradients.
-  std::variant<Equilibrium, NumericalFailure> solve(const EnergyModel& energy,
-                                                    const Loading& loading,
-                                                    const EquilibriumOptions& options = {},
-                                                    const VectorXd* start = nullptr);
+  Result<Equilibrium> solve(const EnergyModel& energy, const Loading& loading,
+                            const EquilibriumOptions& options = {},
+                            const VectorXd* start = nullptr);
   void forget();  ///< drops the warm start
 
  private:
@@ -99,9 +97,9 @@ class EquilibriumSolver {
 };
 
 /// One-shot form.
-std::variant<Equilibrium, NumericalFailure> solve_equilibrium(
-    const TetMesh& mesh, const EnergyModel& energy, const Loading& loading,
-    const EquilibriumOptions& options = {});
+Result<Equilibrium> solve_equilibrium(const TetMesh& mesh, const EnergyModel& energy,
+                                      const Loading& loading,
+                                      const EquilibriumOptions& options = {});
 
 /// S = dq/dp for columns given by dR/dp at fixed q (3n x m, at all unknowns) and the change of the
 /// prescribed unknowns dq_c/dp (rows in the order of loading.prescribed; empty: none):

@@ -34,11 +34,9 @@ struct EquilibriumSolver::Impl {
                       const VectorXd& R) const;
   NewtonOutcome climb(const Problem& problem, const EquilibriumOptions& options, VectorXd& x,
                       double& reached);
-  std::variant<Equilibrium, NumericalFailure> finish(const Problem& problem, bool factored,
-                                                     VectorXd x);
-  std::variant<Equilibrium, NumericalFailure> solve(const Problem& problem,
-                                                    const EquilibriumOptions& options,
-                                                    const VectorXd* start);
+  Result<Equilibrium> finish(const Problem& problem, bool factored, VectorXd x);
+  Result<Equilibrium> solve(const Problem& problem, const EquilibriumOptions& options,
+                            const VectorXd* start);
   void forget();
 };
 
@@ -217,7 +215,7 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
       NewtonGoal goal = goal_of(own, state, next, next < 1 ? 15 : own.max_iterations);
       if (next < 1) goal.tolerance = std::max(goal.tolerance, 1e-3), goal.tangent_there = false;
       out = newton(problem, goal, state, trial);
-      if (out.reason == "cancelled") return out;
+      if (out.kind == NumericalFailure::Kind::cancelled) return out;
       if (out.converged) {
         x = std::move(trial);
         reached = s = next;
@@ -231,17 +229,16 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
   return out;
 }
 
-std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(const Problem& problem,
-                                                                            bool factored,
-                                                                            VectorXd x) {
+Result<Equilibrium> EquilibriumSolver::Impl::finish(const Problem& problem, bool factored,
+                                                    VectorXd x) {
   Equilibrium e;
   e.R = problem.residual(x, 1.0);
   if (factored) {
     e.stable = state.factorize();  // newton() left the true tangent at x in K
     if (!e.stable && !state.factor->factorize_indefinite(state.K))
-      return NumericalFailure{
-          problem.loading.name, 1.0,
-          "the tangent at the solution is singular: the body buckles here or is not held"};
+      return no_result(
+          {problem.loading.name, 1.0,
+           "the tangent at the solution is singular: the body buckles here or is not held"});
     e.factor = state.factor;
     if (state.W.nonZeros() != 0) state.K = sum(state.K, state.W);
     e.K = std::move(state.K);
@@ -256,11 +253,12 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::finish(cons
   return e;
 }
 
-std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::solve(
-    const Problem& problem, const EquilibriumOptions& options, const VectorXd* start) {
+Result<Equilibrium> EquilibriumSolver::Impl::solve(const Problem& problem,
+                                                   const EquilibriumOptions& options,
+                                                   const VectorXd* start) {
   std::string fault;
   const std::vector<int> pins = pins_of(problem, rest, fault);
-  if (!fault.empty()) return NumericalFailure{problem.loading.name, 0.0, fault};
+  if (!fault.empty()) return no_result({problem.loading.name, 0.0, fault});
   std::vector<int> free = problem.free_unknowns();
   std::erase_if(free, [&](int u) { return std::binary_search(pins.begin(), pins.end(), u); });
   if (free != state.free) {
@@ -286,13 +284,14 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::Impl::solve(
     if (out.converged) return finish(problem, options.factored, std::move(x));
     failure.load_fraction = reached;
     failure.reason = out.reason;
-    if (from_rest || out.reason == "cancelled") break;
+    failure.kind = out.kind;
+    if (from_rest || cancelled(failure)) break;
     // What the way from elsewhere took is not taken from the one that has always been there.
     if (own.most_iterations < std::numeric_limits<int>::max() - state.iterations)
       own.most_iterations += state.iterations - before;
     if (state.iterations >= own.most_iterations) break;
   }
-  return failure;
+  return no_result(std::move(failure));
 }
 
 void EquilibriumSolver::Impl::forget() {
@@ -308,9 +307,9 @@ EquilibriumSolver& EquilibriumSolver::operator=(EquilibriumSolver&&) noexcept = 
 
 void EquilibriumSolver::forget() { impl_->forget(); }
 
-std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
-    const EnergyModel& energy, const Loading& loading, const EquilibriumOptions& options,
-    const VectorXd* start) {
+Result<Equilibrium> EquilibriumSolver::solve(const EnergyModel& energy, const Loading& loading,
+                                             const EquilibriumOptions& options,
+                                             const VectorXd* start) {
   const Working part(WorkPart::equilibria);
   const Problem problem{*impl_->mesh, impl_->assembly, energy, loading};
   try {
@@ -318,14 +317,12 @@ std::variant<Equilibrium, NumericalFailure> EquilibriumSolver::solve(
   } catch (const std::bad_alloc& error) {
     impl_->forget();
     impl_->state.K = {};
-    return no_memory(*impl_->mesh, loading, error, impl_->state.symbolic.get());
+    return no_result(no_memory(*impl_->mesh, loading, error, impl_->state.symbolic.get()));
   }
 }
 
-std::variant<Equilibrium, NumericalFailure> solve_equilibrium(const TetMesh& mesh,
-                                                              const EnergyModel& energy,
-                                                              const Loading& loading,
-                                                              const EquilibriumOptions& options) {
+Result<Equilibrium> solve_equilibrium(const TetMesh& mesh, const EnergyModel& energy,
+                                      const Loading& loading, const EquilibriumOptions& options) {
   // Not owned: the solver does not outlive this call.
   EquilibriumSolver solver(std::shared_ptr<const TetMesh>(std::shared_ptr<void>(), &mesh));
   return solver.solve(energy, loading, options);

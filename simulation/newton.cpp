@@ -174,7 +174,8 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
   VectorXd R = problem.residual(q, goal.s);
   double last_error = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= goal.max_iterations; ++i) {
-    if (goal.cancelled && goal.cancelled()) return {false, last_error, "cancelled"};
+    if (goal.cancelled && goal.cancelled())
+      return {false, last_error, "cancelled", NumericalFailure::Kind::cancelled};
     if (i == 0 && factored) {
       out.error = relative_error(problem, state, R, q, goal.s);
       if (std::isfinite(out.error) && (goal.reuse_factor || out.error < kNear))

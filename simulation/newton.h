@@ -4,6 +4,7 @@
 #include <mutex>
 #include <string>
 
+#include "core/numerical_failure.h"
 #include "simulation/problem.h"
 #include "simulation/sparse_factor.h"
 
@@ -53,6 +54,7 @@ struct NewtonOutcome {
   bool converged = false;
   double error = 0.0;  ///< |R_free|_inf over the largest nodal force
   std::string reason;
+  NumericalFailure::Kind kind = NumericalFailure::Kind::numbers;  ///< of the reason
 };
 
 /// Moves q's free unknowns to equilibrium; prescribed ones stay. q must have det F > 0 everywhere.

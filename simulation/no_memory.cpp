@@ -48,7 +48,7 @@ NumericalFailure no_memory(const TetMesh& mesh, const Loading& loading, const st
   if (others > 0.0)
     reason += fmt::format(" beside {} that factors of load cases hold", memory_text(others));
   reason += "; " + what_would_fit(mesh, needed + others, left.bytes + others);
-  return {loading.name, 0.0, std::move(reason)};
+  return {loading.name, 0.0, std::move(reason), NumericalFailure::Kind::no_memory};
 }
 
 }  // namespace hookeye

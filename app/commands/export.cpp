@@ -103,10 +103,10 @@ void find_equilibria(const Model& model, SolverModel& out, Session& session) {
   });
   for (size_t e = 0; e < found.size(); ++e) {
     if (found[e].size()) set_found(out, static_cast<int>(e), found[e]);
-    if (failures[e] && failures[e]->reason == "cancelled") fail(*failures[e]);
-    if (failures[e])
+    if (!failures[e] && cancelled(failures[e].error())) fail(failures[e].error());
+    if (!failures[e])
       session.warn(fmt::format("load case {}: no equilibrium to compare with ({})",
-                               out.cases[e].name, failures[e]->reason));
+                               out.cases[e].name, failures[e].error().reason));
   }
 }
 

@@ -21,11 +21,10 @@ Model realise_model(const std::string& file, const std::shared_ptr<const Scene>&
   return form.realise(form.initial());
 }
 
-std::vector<std::optional<NumericalFailure>> solve_examples(
-    const Model& model, const std::string& title,
-    const std::function<void(int, const Equilibrium&)>& done) {
+std::vector<Result<void>> solve_examples(const Model& model, const std::string& title,
+                                         const std::function<void(int, const Equilibrium&)>& done) {
   const auto& examples = model.scene->capture.examples;
-  std::vector<std::optional<NumericalFailure>> failures(examples.size());
+  std::vector<Result<void>> failures(examples.size());
   EquilibriumOptions options;
   options.cancelled = [] { return interrupted().load(); };
   Progress progress(title, static_cast<int>(examples.size()));
@@ -34,12 +33,12 @@ std::vector<std::optional<NumericalFailure>> solve_examples(
     const int e = static_cast<int>(i);
     EquilibriumSolver solver(model.scene->mesh());
     const auto solved = solver.solve(model.energy_of(e), model.examples[i].loading, options);
-    failures[i].reset();
-    if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
-      failures[i] = *failure;
-      failures[i]->example = examples[i].name;
+    failures[i] = {};
+    if (!solved) {
+      failures[i] = failure_of(solved);
+      failures[i].error().example = examples[i].name;
     } else {
-      done(e, std::get<Equilibrium>(solved));
+      done(e, *solved);
     }
   };
   tbb::parallel_for(size_t{0}, examples.size(), [&](size_t i) {
@@ -48,13 +47,13 @@ std::vector<std::optional<NumericalFailure>> solve_examples(
   });
   // What found no room beside others may find it alone.
   for (size_t i = 0; i < examples.size() && examples.size() > 1; ++i)
-    if (failures[i] && out_of_memory(failures[i]->reason)) solve(i);
+    if (!failures[i] && out_of_memory(failures[i].error())) solve(i);
   return failures;
 }
 
-void fail_on_first(std::vector<std::optional<NumericalFailure>>& failures) {
+void fail_on_first(std::vector<Result<void>>& failures) {
   for (auto& failure : failures)
-    if (failure) fail(std::move(*failure));
+    if (!failure) fail(std::move(failure.error()));
 }
 
 }  // namespace hookeye

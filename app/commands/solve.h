@@ -17,11 +17,11 @@ Model realise_model(const std::string& file, const std::shared_ptr<const Scene>&
 /// Solves every example of the model, several at a time, with a progress bar. `done` gets each
 /// state on the thread that found it, and may keep what it needs: the state itself, with its
 /// factor, is dropped afterwards. Returns the failure of each example that has no equilibrium.
-std::vector<std::optional<NumericalFailure>> solve_examples(
+std::vector<Result<void>> solve_examples(
     const Model& model, const std::string& title,
     const std::function<void(int example, const Equilibrium& state)>& done);
 
 /// Throws Failed (or Interrupted) for the first failure, if there is one.
-void fail_on_first(std::vector<std::optional<NumericalFailure>>& failures);
+void fail_on_first(std::vector<Result<void>>& failures);
 
 }  // namespace hookeye

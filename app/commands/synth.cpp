@@ -26,8 +26,8 @@ void run_synth(const SynthCommand& options, Session& session) {
     Progress progress("photographing", photos + 1);
     synth.progress = [&](const std::string& note) { progress.advance(note); };
     auto result = synthesize(recipe, options.out, synth);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) fail(std::move(*failure));
-    made = std::get<Synthesis>(std::move(result));
+    if (!result) fail(std::move(result.error()));
+    made = *std::move(result);
   }
   auto& document = session.document;
   document = {{"hookeye", 1},

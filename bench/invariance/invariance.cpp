@@ -113,8 +113,7 @@ void one(const Options& options, const std::string& effect, std::string& table) 
     std::string recipe = blind::draw_recipe(effect, options.seed, drawing);
     write_text(folder / "recipe.yaml", recipe);
     auto made = synthesize(parse_recipe(recipe, "recipe.yaml"), source);
-    if (const auto* failure = std::get_if<NumericalFailure>(&made))
-      throw std::runtime_error(failure->reason);
+    if (!made) throw std::runtime_error(made.error().reason);
     if (!options.meshed) keep_own_mesh(source);
   }
   Ending first;

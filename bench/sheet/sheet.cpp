@@ -40,10 +40,10 @@ struct Resolution {
 };
 
 template <class T>
-T value(std::variant<T, NumericalFailure> result, const std::string& what) {
-  if (const auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(what + ": " + failure->example + " " + failure->reason);
-  return std::get<T>(std::move(result));
+T value(Result<T> result, const std::string& what) {
+  if (!result)
+    throw std::runtime_error(what + ": " + result.error().example + " " + result.error().reason);
+  return *std::move(result);
 }
 
 struct Result {

@@ -254,9 +254,9 @@ void displace_leaders(const Evaluation& evaluation, const Scored& scored,
 }
 
 /// The model's pictures and their derivatives by its own parameters and all candidates'.
-std::variant<Evaluation, NumericalFailure> evaluate_for(Workspace& workspace, const Fitted& fitted,
-                                                        const std::vector<Candidate>& candidates,
-                                                        const DiagnosisOptions& options) {
+Result<Evaluation> evaluate_for(Workspace& workspace, const Fitted& fitted,
+                                const std::vector<Candidate>& candidates,
+                                const DiagnosisOptions& options) {
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
   for (const auto& candidate : candidates) ingredients.push_back(candidate.ingredient);
   EvaluationOptions out;
@@ -267,15 +267,15 @@ std::variant<Evaluation, NumericalFailure> evaluate_for(Workspace& workspace, co
   return workspace.evaluate(fitted.form, fitted.p, out, ingredients);
 }
 
-std::variant<Diagnosis, NumericalFailure> diagnose_anew(Workspace& workspace, const Fitted& fitted,
-                                                        const DiagnosisOptions& options) {
+Result<Diagnosis> diagnose_anew(Workspace& workspace, const Fitted& fitted,
+                                const DiagnosisOptions& options) {
   Diagnosis out;
   const Scene& scene = *fitted.form.scene;
   std::vector<EffectScore> idle;
   std::vector<Candidate> candidates = collect_candidates(fitted, options, idle);
   auto result = evaluate_for(workspace, fitted, candidates, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  Evaluation& evaluation = std::get<Evaluation>(result);
+  if (!result) return failure_of(result);
+  Evaluation& evaluation = *result;
   out.floor = measure_floor(scene, evaluation);
   evaluation.measured_weight = measured_weight(out.floor);
   out.held_out_missed = spoils_held_out(fitted, out.floor);
@@ -324,8 +324,8 @@ Question question_of_diagnosis(const Fitted& fitted, const DiagnosisOptions& opt
 
 }  // namespace
 
-std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
-                                                   const DiagnosisOptions& options) {
+Result<Diagnosis> diagnose(Workspace& workspace, const Fitted& fitted,
+                           const DiagnosisOptions& options) {
   const WorkingAt stage(WorkStage::diagnosis);
   return archived<Diagnosis>(
       {workspace, fitted.form, fitted.p, options.cancel,
@@ -348,9 +348,8 @@ bool lacks_displaced(const Diagnosis& diagnosis) {
                      });
 }
 
-std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitted& fitted,
-                                               const std::atomic<bool>* cancel,
-                                               Diagnosis& diagnosis) {
+Result<void> displace_again(Workspace& workspace, const Fitted& fitted,
+                            const std::atomic<bool>* cancel, Diagnosis& diagnosis) {
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
   for (const EffectScore& score : diagnosis.effects)
     if (is_displaced(score, diagnosis.limits())) ingredients.push_back(score.best);
@@ -358,12 +357,12 @@ std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitte
   options.held_out = true;
   options.cancel = cancel;
   const auto result = workspace.evaluate(fitted.form, fitted.p, options, ingredients);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (!result) return failure_of(result);
   ProjectedHypothesis columns;
   columns.first = columns.base = fitted.form.size();
   for (EffectScore& score : diagnosis.effects) {
     if (!is_displaced(score, diagnosis.limits())) continue;
-    displace(std::get<Evaluation>(result), columns, score);
+    displace(*result, columns, score);
     columns.first += score.dof;
   }
   return {};

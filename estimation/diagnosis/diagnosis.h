@@ -6,7 +6,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/diagnosis/adequacy.h"
@@ -93,16 +92,15 @@ struct DiagnosisOptions {
   std::function<void(int done, int of)> progress;  ///< as EvaluationOptions has it
 };
 
-std::variant<Diagnosis, NumericalFailure> diagnose(Workspace& workspace, const Fitted& fitted,
-                                                   const DiagnosisOptions& options = {});
+Result<Diagnosis> diagnose(Workspace& workspace, const Fitted& fitted,
+                           const DiagnosisOptions& options = {});
 
 /// One that was read, or that an archive had (Workspace::keep_in), has no EffectScore::displaced:
 /// what removed.h draws of it would be missing.
 bool lacks_displaced(const Diagnosis& diagnosis);
 /// Works that out anew. Empty: done.
-std::optional<NumericalFailure> displace_again(Workspace& workspace, const Fitted& fitted,
-                                               const std::atomic<bool>* cancel,
-                                               Diagnosis& diagnosis);
+Result<void> displace_again(Workspace& workspace, const Fitted& fitted,
+                            const std::atomic<bool>* cancel, Diagnosis& diagnosis);
 
 /// Extends the intervals, which know of noise alone, to where an ever finer mesh would take the
 /// values: mesh_shift.

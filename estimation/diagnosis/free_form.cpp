@@ -207,9 +207,8 @@ void score(const std::vector<Field>& fields, size_t first, size_t last, const Sc
 
 }  // namespace
 
-std::variant<std::vector<FreeForm>, NumericalFailure> free_form(Workspace& workspace,
-                                                                const Fitted& fitted,
-                                                                const std::atomic<bool>* cancel) {
+Result<std::vector<FreeForm>> free_form(Workspace& workspace, const Fitted& fitted,
+                                        const std::atomic<bool>* cancel) {
   constexpr size_t kAtOnce = 4;  // fields: a hundred columns
   const std::vector<Field> fields = all_fields(fitted.form.realise(fitted.p));
   EvaluationOptions options;
@@ -221,9 +220,8 @@ std::variant<std::vector<FreeForm>, NumericalFailure> free_form(Workspace& works
     std::vector<std::shared_ptr<const Ingredient>> ingredients;
     for (size_t i = first; i < last; ++i) ingredients.push_back(fields[i].ingredient);
     auto result = workspace.evaluate(fitted.form, fitted.p, options, ingredients);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    score(fields, first, last, *fitted.form.scene, std::get<Evaluation>(result), fitted.form.size(),
-          &out);
+    if (!result) return failure_of(result);
+    score(fields, first, last, *fitted.form.scene, *result, fitted.form.size(), &out);
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const auto& a, const auto& b) { return a.evidence > b.evidence; });

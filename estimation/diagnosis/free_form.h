@@ -6,7 +6,6 @@
 #include <atomic>
 #include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/diagnosis/diagnosis.h"
@@ -33,9 +32,8 @@ std::vector<std::shared_ptr<const Ingredient>> free_form_ingredients(const Model
 
 /// Best by evidence: the fields of every kind that has any, estimated as the mean under the prior
 /// that the evidence chose (a step by least squares would be noise where the photos tell little).
-std::variant<std::vector<FreeForm>, NumericalFailure> free_form(Workspace& workspace,
-                                                                const Fitted& fitted,
-                                                                const std::atomic<bool>* cancel);
+Result<std::vector<FreeForm>> free_form(Workspace& workspace, const Fitted& fitted,
+                                        const std::atomic<bool>* cancel);
 
 /// Point arrays by the fields' names on the body at rest, for ParaView.
 void write_free_form(const std::filesystem::path& vtu, const Scene& scene,

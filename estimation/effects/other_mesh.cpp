@@ -91,8 +91,7 @@ void OtherMesh::realise_there() {
   });
 }
 
-std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_there(int example,
-                                                                   const Equilibrium& here) {
+Result<Equilibrium> OtherMesh::solve_there(int example, const Equilibrium& here) {
   const TetMesh &mesh = model_.scene->body->mesh, &theirs = body_->scene->body->mesh;
   const Matrix3Xd u = here.q.reshaped(3, mesh.nodes()) - mesh.X;
   const VectorXd start = (theirs.X + u * body_->from_here.transpose()).reshaped();
@@ -109,7 +108,7 @@ std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_there(int example,
 }
 
 /// With its tangent.
-std::variant<Equilibrium, NumericalFailure> OtherMesh::solve_here(int example) const {
+Result<Equilibrium> OtherMesh::solve_here(int example) const {
   const TetMesh& mesh = model_.scene->body->mesh;
   const EnergyModel energy = model_.energy_of(example);
   const Loading& loading = model_.examples[example].loading;
@@ -126,12 +125,12 @@ VectorXd OtherMesh::compute(int example) {
   const Loading& loading = model_.examples[example].loading;
   const VectorXd none = VectorXd::Zero(3 * mesh.nodes());
   const auto solved = solve_here(example);
-  if (!std::holds_alternative<Equilibrium>(solved)) return none;
-  const Equilibrium& here = std::get<Equilibrium>(solved);
+  if (!solved) return none;
+  const Equilibrium& here = *solved;
   realise_there();
   const auto result = solve_there(example, here);
-  if (!std::holds_alternative<Equilibrium>(result)) return none;
-  const Equilibrium& there = std::get<Equilibrium>(result);
+  if (!result) return none;
+  const Equilibrium& there = *result;
   const TetMesh& theirs = body_->scene->body->mesh;
   // Moved as a whole, not at the surface alone: there would be an element's thickness of wild
   // strain in between.

@@ -33,8 +33,8 @@ class OtherMesh {
     VectorXd force;
   };
   VectorXd compute(int example);
-  std::variant<Equilibrium, NumericalFailure> solve_here(int example) const;
-  std::variant<Equilibrium, NumericalFailure> solve_there(int example, const Equilibrium& here);
+  Result<Equilibrium> solve_here(int example) const;
+  Result<Equilibrium> solve_there(int example, const Equilibrium& here);
   void realise_there();
   void drop_idle_solver(int example);
   void add_reaction(const std::string& region, const Equilibrium& here, const Equilibrium& there,

@@ -66,21 +66,19 @@ ColumnSet::ColumnSet(const ModelForm& form, const VectorXd& p,
 }
 
 void ColumnSet::add(std::shared_ptr<const ModelForm> form, const VectorXd& p, size_t ingredient) {
-  int offset = 0;
-  for (size_t i = 0; i < ingredient; ++i)
-    offset += static_cast<int>(form->ingredients[i]->parameters().size());
+  const ParameterLayout at = form->layout();
   const Ingredient& owner = *form->ingredients[ingredient];
   const auto declared = owner.parameters();
   for (size_t k = 0; k < declared.size(); ++k) {
     Column column;
     column.ingredient = &owner;
     column.local = static_cast<int>(k);
-    column.values = p.segment(offset, declared.size());
+    column.values = at.of(p, ingredient);
     column.touches = owner.touches();
     column.stencil = make_stencil(declared[k], column.values[k]);
     for (double shift : column.stencil.shift) {
       VectorXd q = p;
-      q[offset + k] += shift;
+      q[at[ingredient].first + static_cast<Eigen::Index>(k)] += shift;
       column.neighbours.push_back(form->realise(q));
     }
     columns_.push_back(std::move(column));

@@ -189,11 +189,10 @@ struct Workspace::Impl {
 
   /// Equilibrium and sensitivities of one example. `expected`: where it may be; `cancelled` is
   /// polled.
-  std::optional<NumericalFailure> solve(const Model& model, const ColumnSet* columns, int e,
-                                        const EvaluationOptions& options,
-                                        const std::optional<VectorXd>& expected,
-                                        const std::function<bool()>& cancelled,
-                                        ExampleEvaluation& out, ExampleColumns& derivative) {
+  Result<void> solve(const Model& model, const ColumnSet* columns, int e,
+                     const EvaluationOptions& options, const std::optional<VectorXd>& expected,
+                     const std::function<bool()>& cancelled, ExampleEvaluation& out,
+                     ExampleColumns& derivative) {
     EquilibriumOptions equilibrium_options;
     if (expected) equilibrium_options.expected = &*expected;
     equilibrium_options.factored = columns != nullptr;
@@ -202,11 +201,11 @@ struct Workspace::Impl {
     equilibrium_options.cancelled = cancelled;
     auto solved = solvers[e].solve(model.energy_of(e), model.examples[e].loading,
                                    equilibrium_options, last[e].size() ? &last[e] : nullptr);
-    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
-      failure->example = scene->capture.examples[e].name;
-      return *failure;
+    if (!solved) {
+      solved.error().example = scene->capture.examples[e].name;
+      return failure_of(solved);
     }
-    auto equilibrium = std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+    auto equilibrium = std::make_shared<Equilibrium>(*std::move(solved));
     out.equilibrium = equilibrium;
     if (!columns) return {};
     derivative = columns->of_example(model, e, *equilibrium);
@@ -298,7 +297,7 @@ void Workspace::start_from(const Place& place) {
   impl_->linear = {};
 }
 
-std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
+Result<Evaluation> Workspace::evaluate(
     const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
     const std::vector<std::shared_ptr<const Ingredient>>& candidates) {
   if (form.scene != impl_->scene) impl_ = std::make_unique<Impl>(form.scene);
@@ -312,7 +311,7 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
   const size_t examples = capture.examples.size();
   std::vector<ExampleEvaluation> solved(examples);
   std::vector<ExampleColumns> derivative(examples);
-  std::vector<std::optional<NumericalFailure>> failures(examples);
+  std::vector<Result<void>> failures(examples);
   std::vector<int> to_solve = wanted;
   if (reference >= 0 && std::find(wanted.begin(), wanted.end(), reference) == wanted.end())
     to_solve.push_back(reference);
@@ -331,8 +330,8 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
     failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options,
                                impl_->linear.at(form, p, e), pointless, solved[e], derivative[e]);
     if (!candidates.empty()) impl_->solvers[e].forget();
-    if (failures[e] && hookeye::cancelled(*failures[e])) failures[e].reset();
-    if (failures[e]) failed = true;
+    if (!failures[e] && hookeye::cancelled(failures[e].error())) failures[e] = {};
+    if (!failures[e]) failed = true;
     advance();
   };
   // Candidates may have a finer mesh, whose factor is as large as all of these. A solver that
@@ -375,11 +374,11 @@ std::variant<Evaluation, NumericalFailure> Workspace::evaluate(
                                columns ? &derivative[reference] : nullptr};
     for_each(wanted, [&](int e) { compare(e, state); });
   }
-  if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+  if (cancelled()) return stopped();
   if (reference >= 0) drop_tangent(solved[reference]);
   impl_->settle(to_solve, solved, failed);
   for (int e : to_solve)
-    if (failures[e]) return *failures[e];
+    if (!failures[e]) return failure_of(failures[e]);
   if (columns && candidates.empty()) impl_->keep_linear(form, p, solved);
   Evaluation out;
   out.columns = columns ? columns->size() : 0;

@@ -133,7 +133,7 @@ class Workspace {
   const Scene& scene() const;
 
   /// Columns: parameters of `form` at `p`, then those of `candidates` at their null values.
-  std::variant<Evaluation, NumericalFailure> evaluate(
+  Result<Evaluation> evaluate(
       const ModelForm& form, const VectorXd& p, const EvaluationOptions& options,
       const std::vector<std::shared_ptr<const Ingredient>>& candidates = {});
 

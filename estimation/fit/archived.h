@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/evaluation/evaluation.h"
@@ -49,32 +48,29 @@ inline Workspace::Place place_after(const Workspace::Place& before, const auto&)
 Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
 
 /// The answer of the workspace's archive; else that of `work`, which the archive keeps unless it
-/// was cancelled. `read` may return nothing: then it is worked out. Whichever it was, the
-/// workspace is left at the same bits; the answer may differ in a last digit by the order of sums.
+/// was cancelled, or found no memory. `read` may return nothing: then it is worked out. Whichever
+/// it was, the workspace is left at the same bits; the answer may differ in a last digit by the
+/// order of sums.
 template <class T, class Work, class Write, class Read>
-std::variant<T, NumericalFailure> archived(const WorkedOut& asked, const Work& work,
-                                           const Write& write, const Read& read) {
-  using Result = std::variant<T, NumericalFailure>;
+Result<T> archived(const WorkedOut& asked, const Work& work, const Write& write, const Read& read) {
   Archive* archive = asked.workspace.archive();
   const Workspace::Place place = place_in(asked.workspace, asked.form.scene);
   asked.workspace.start_from(place);
-  const auto leave = [&](Result result) {
-    const T* answer = std::get_if<T>(&result);
-    asked.workspace.start_from(answer ? place_after(place, *answer) : place);
+  const auto leave = [&](Result<T> result) {
+    asked.workspace.start_from(result ? place_after(place, *result) : place);
     return result;
   };
   std::optional<Question> question;
   nlohmann::json known;
   if (archive && archive->find(question.emplace(asked.question()), known)) {
-    if (auto failure = failure_from(known)) return leave(*failure);
-    if (std::optional<Result> result = read(known)) return leave(std::move(*result));
+    if (auto failure = failure_from(known)) return leave(no_result(*std::move(failure)));
+    if (std::optional<Result<T>> result = read(known)) return leave(std::move(*result));
     asked.workspace.start_from(place);
   }
-  Result result = work();
-  if (archive && !(asked.cancel && *asked.cancel)) {
-    const auto* failure = std::get_if<NumericalFailure>(&result);
-    archive->keep(*question, failure ? failure_json(*failure) : write(std::get<T>(result)));
-  }
+  Result<T> result = work();
+  const bool answered = result || result.error().kind == NumericalFailure::Kind::numbers;
+  if (archive && answered && !(asked.cancel && *asked.cancel))
+    archive->keep(*question, result ? write(*result) : failure_json(result.error()));
   return leave(std::move(result));
 }
 

@@ -54,18 +54,16 @@ double smallest_eigenvalue_of(const ModelForm& form, const VectorXd& p) {
 }
 
 /// How the pictures are compared from here on: as in fit(), far ones by their motion.
-std::variant<EvaluationOptions, NumericalFailure> comparison(Workspace& workspace,
-                                                             const ModelForm& form,
-                                                             const VectorXd& p,
-                                                             const FitOptions& options) {
+Result<EvaluationOptions> comparison(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                                     const FitOptions& options) {
   EvaluationOptions look;
   look.derivatives = false;
   look.pictures = true;
   look.registered = true;
   look.cancel = options.cancel;
   auto first = workspace.evaluate(form, p, look);
-  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
-  const Evaluation& seen = std::get<Evaluation>(first);
+  if (!first) return failure_of(first);
+  const Evaluation& seen = *first;
   EvaluationOptions out;
   out.cancel = options.cancel;
   out.registered = seen.motion_px() > kLinearPx;
@@ -89,11 +87,11 @@ struct SumsAt {
   const ModelForm& form;
   EvaluationOptions evaluation;
   double residuals = 1.0;
-  std::variant<NormalEquations, NumericalFailure> operator()(const VectorXd& p) {
+  Result<NormalEquations> operator()(const VectorXd& p) {
     auto result = workspace.evaluate(form, p, evaluation);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    residuals = residual_count(std::get<Evaluation>(result));
-    return normal_equations(std::get<Evaluation>(result));
+    if (!result) return failure_of(result);
+    residuals = residual_count(*result);
+    return normal_equations(*result);
   }
 };
 
@@ -147,9 +145,8 @@ struct ConvexStep {
 
 }  // namespace
 
-std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const ModelForm& form,
-                                                     const VectorXd& start,
-                                                     const FitOptions& options) {
+Result<ConvexFit> fit_convex(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                             const FitOptions& options) {
   if (!has_additive(form)) throw std::logic_error("fit_convex: no additive material");
   Scaling scaled{form.parameters()};
   const std::vector<ConvexPart> parts = in_x(convex_parts(form, start), scaled);
@@ -157,20 +154,20 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   for (const ConvexPart& part : parts) values += part.model.size();
   const VectorXd low = lower_bounds(scaled);
   auto chosen = comparison(workspace, form, start, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&chosen)) return *failure;
-  const EvaluationOptions evaluation = std::get<EvaluationOptions>(chosen);
+  if (!chosen) return failure_of(chosen);
+  const EvaluationOptions evaluation = *chosen;
   SumsAt sums_at{workspace, form, evaluation};
   ConvexFit out;
   out.registered = evaluation.registered;
   out.p = start;
   out.eigenvalues = {smallest_eigenvalue_of(form, start)};
   auto first = sums_at(start);
-  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
-  NormalEquations sums = std::get<NormalEquations>(std::move(first));
+  if (!first) return failure_of(first);
+  NormalEquations sums = *std::move(first);
   const Draw draw(parts, scaled.to_x(start));
   double damping = 1e-3;
   for (; out.iterations < options.iterations(*form.scene); ++out.iterations) {
-    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+    if (options.cancel && options.cancel->load()) return stopped();
     const VectorXd x = scaled.to_x(out.p), d = scaled.dp_dx(out.p);
     ConvexStep step{d.asDiagonal() * sums.JtJ * d.asDiagonal(), d.cwiseProduct(sums.Jtr)};
     const double noise = sums.r2 / sums_at.residuals;  // variance over what was told
@@ -188,11 +185,11 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
       if (not_convex(form.realise(p)))
         continue;  // an upper bound took from an addend that others need
       auto trial = sums_at(p);
-      if (const auto* failed = std::get_if<NumericalFailure>(&trial)) {
-        if (cancelled(*failed)) return *failed;
+      if (!trial) {
+        if (cancelled(trial.error())) return failure_of(trial);
         continue;  // no equilibrium there: a shorter step
       }
-      NormalEquations& there = std::get<NormalEquations>(trial);
+      NormalEquations& there = *trial;
       fall = sums.r2 - there.r2 + noise * (draw.cost(x) - draw.cost(next.x));
       if (!(fall > 0)) continue;
       sums = std::move(there);
@@ -212,10 +209,8 @@ std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const
   return out;
 }
 
-std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
-                                                         const ModelForm& form,
-                                                         const VectorXd& start,
-                                                         const FitOptions& options) {
+Result<Fitted> fit_convex_to_end(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                                 const FitOptions& options) {
   VectorXd p = start;
   ConvexFit last;
   double least = std::numeric_limits<double>::infinity();
@@ -223,20 +218,20 @@ std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
   // By motion first where the pictures are far, then by pixels.
   for (int phase = 0; phase < 2; ++phase) {
     auto moved = fit_convex(workspace, form, p, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&moved)) return *failure;
-    last = std::get<ConvexFit>(std::move(moved));
+    if (!moved) return failure_of(moved);
+    last = *std::move(moved);
     p = last.p;
     iterations += last.iterations;
     least = std::min(least, *std::min_element(last.eigenvalues.begin(), last.eigenvalues.end()));
     if (!last.registered) break;
   }
   auto settled = settle_held_out(workspace, form, p, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
-  auto out = assess(workspace, form, std::get<VectorXd>(settled), options);
-  if (auto* fitted = std::get_if<Fitted>(&out)) {
-    fitted->iterations = iterations;
-    fitted->converged = last.converged;
-    fitted->smallest_eigenvalue = least;
+  if (!settled) return failure_of(settled);
+  auto out = assess(workspace, form, *settled, options);
+  if (out) {
+    out->iterations = iterations;
+    out->converged = last.converged;
+    out->smallest_eigenvalue = least;
   }
   return out;
 }

@@ -18,15 +18,12 @@ struct ConvexFit {
   bool converged = false;
   bool registered = false;  ///< pictures were compared by their motion
 };
-std::variant<ConvexFit, NumericalFailure> fit_convex(Workspace& workspace, const ModelForm& form,
-                                                     const VectorXd& start,
-                                                     const FitOptions& options = {});
+Result<ConvexFit> fit_convex(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                             const FitOptions& options = {});
 
 /// The same until it settles, far pictures made linear in the motion first, and assessed: what
 /// fit() does with a form that has an additive material.
-std::variant<Fitted, NumericalFailure> fit_convex_to_end(Workspace& workspace,
-                                                         const ModelForm& form,
-                                                         const VectorXd& start,
-                                                         const FitOptions& options = {});
+Result<Fitted> fit_convex_to_end(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                                 const FitOptions& options = {});
 
 }  // namespace hookeye

@@ -72,8 +72,8 @@ namespace {
 
 bool is_cancelled(const FitOptions& options) { return options.cancel && options.cancel->load(); }
 
-std::variant<Fitted, NumericalFailure> assess_anew(Workspace& workspace, const ModelForm& form,
-                                                   const VectorXd& p, const FitOptions& options) {
+Result<Fitted> assess_anew(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                           const FitOptions& options) {
   if (options.progress) options.progress({"final", 0, 0, 0.0});
   EvaluationOptions evaluation;
   evaluation.pictures = true;
@@ -81,11 +81,11 @@ std::variant<Fitted, NumericalFailure> assess_anew(Workspace& workspace, const M
   evaluation.most_iterations = options.most_iterations;
   evaluation.cancel = options.cancel;
   auto result = workspace.evaluate(form, p, evaluation);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (!result) return failure_of(result);
   Fitted out;
   out.form = form;
   out.p = p;
-  out.evaluation = std::get<Evaluation>(std::move(result));
+  out.evaluation = *std::move(result);
   out.evaluation.measured_weight = measured_weight(workspace.scene(), out.evaluation);
   const auto parameters = form.parameters();
   const ParameterCovariance covariance = parameter_covariance(out.evaluation, parameters, p);
@@ -96,8 +96,8 @@ std::variant<Fitted, NumericalFailure> assess_anew(Workspace& workspace, const M
 
 }  // namespace
 
-std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
-                                              const VectorXd& p, const FitOptions& options) {
+Result<Fitted> assess(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                      const FitOptions& options) {
   const auto question = [&] {
     Question out = question_of("state", form, p);
     out.numbers.push_back(options.most_iterations);
@@ -109,10 +109,10 @@ std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelF
       [&](const Fitted& fitted) {
         return nlohmann::json{{"states", states_json(fitted.evaluation)}};
       },
-      [&](const nlohmann::json& known) -> std::optional<std::variant<Fitted, NumericalFailure>> {
+      [&](const nlohmann::json& known) -> std::optional<Result<Fitted>> {
         workspace.start_from(place_from(known.at("states"), workspace.place()));
         auto again = assess_anew(workspace, form, p, options);
-        if (std::holds_alternative<Fitted>(again) || is_cancelled(options)) return again;
+        if (again || is_cancelled(options)) return again;
         return {};
       });
 }
@@ -171,25 +171,23 @@ VectorXd settle_examples(Workspace& workspace, const ModelForm& form, VectorXd p
         options.progress(progress);
       };
     const auto seen = look(workspace, form, p, options, scope, stage.level);
-    if (!std::holds_alternative<Look>(seen)) continue;
-    auto ran = run_stage(workspace, form, p, own, scope, stage, std::get<Look>(seen));
-    if (auto* settled = std::get_if<StageResult>(&ran)) p = std::move(settled->p);
+    if (!seen.has_value()) continue;
+    auto ran = run_stage(workspace, form, p, own, scope, stage, *seen);
+    if (ran) p = std::move(ran->p);
   }
   return p;
 }
 
 /// From coarse to full size within a scope.
-std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& start,
-                                                       const FitOptions& options,
-                                                       const FitScope& scope) {
+Result<StageResult> run_stages(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                               const FitOptions& options, const FitScope& scope) {
   StageResult out{start, true};
   std::optional<Look> full_size;  // of p
   for (const Stage& stage : stages(workspace.scene(), options.coarse_to_fine)) {
     if (stage.level > 0 || !full_size) {
       auto first = look(workspace, form, out.p, options, scope, stage.level);
-      if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
-      full_size = std::get<Look>(first);
+      if (!first) return failure_of(first);
+      full_size = *first;
       if (!scope.held_out) check_data(workspace.scene(), *full_size);
     }
     const Look seen = *full_size;
@@ -198,8 +196,8 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
     if (stage.level == 0 && !stage.registered)
       out.p = settle_examples(workspace, form, out.p, options, scope, stage);
     auto ran = run_stage(workspace, form, out.p, options, scope, stage, seen);
-    if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
-    const auto& result = std::get<StageResult>(ran);
+    if (!ran) return failure_of(ran);
+    const auto& result = *ran;
     out.p = result.p;
     out.iterations += result.iterations;
     out.smallest_eigenvalue = std::fmin(out.smallest_eigenvalue, result.smallest_eigenvalue);
@@ -210,15 +208,14 @@ std::variant<StageResult, NumericalFailure> run_stages(Workspace& workspace, con
 
 }  // namespace
 
-std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
-                                                         const ModelForm& form, const VectorXd& p,
-                                                         const FitOptions& options) {
+Result<VectorXd> settle_held_out(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                                 const FitOptions& options) {
   const FitScope scope{true, of_held_out(form.scene->capture, form.parameters())};
   if (std::none_of(scope.moving.begin(), scope.moving.end(), [](bool own) { return own; }))
     return p;
   auto settled = run_stages(workspace, form, p, options, scope);
-  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
-  return std::get<StageResult>(settled).p;
+  if (!settled) return failure_of(settled);
+  return settled->p;
 }
 
 namespace {
@@ -229,10 +226,9 @@ double coarse_misfit(Workspace& workspace, const ModelForm& form, const VectorXd
                      const FitOptions& options) {
   const int level = stages(workspace.scene(), true).front().level;
   const auto result = workspace.evaluate(form, p, only_pictures(level, options));
-  if (std::holds_alternative<NumericalFailure>(result))
-    return std::numeric_limits<double>::infinity();
+  if (!result) return std::numeric_limits<double>::infinity();
   double sum = 0.0;
-  for (const auto& example : std::get<Evaluation>(result).examples) {
+  for (const auto& example : result->examples) {
     for (const auto& photo : example.photos) sum += photo.r2;
     for (const auto& measured : example.measured) sum += measured.r.squaredNorm();
   }
@@ -276,22 +272,22 @@ bool lost(const Fitted& fitted) {
 }
 
 /// From `start` to the end: the fitted examples, the held-out ones' own numbers, intervals.
-std::variant<Fitted, NumericalFailure> fit_from(Workspace& workspace, const ModelForm& form,
-                                                const VectorXd& start, const FitOptions& options) {
+Result<Fitted> fit_from(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                        const FitOptions& options) {
   StageResult result{start, true};
   if (form.size() > 0) {
     const FitScope scope{false, std::vector<bool>(form.size(), true)};
     auto ran = run_stages(workspace, form, start, options, scope);
-    if (auto* failure = std::get_if<NumericalFailure>(&ran)) return *failure;
-    result = std::get<StageResult>(std::move(ran));
+    if (!ran) return failure_of(ran);
+    result = *std::move(ran);
   }
   auto settled = settle_held_out(workspace, form, result.p, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
-  auto fitted = assess(workspace, form, std::get<VectorXd>(settled), options);
-  if (auto* out = std::get_if<Fitted>(&fitted)) {
-    out->iterations = result.iterations;
-    out->converged = result.converged;
-    out->smallest_eigenvalue = result.smallest_eigenvalue;
+  if (!settled) return failure_of(settled);
+  auto fitted = assess(workspace, form, *settled, options);
+  if (fitted) {
+    fitted->iterations = result.iterations;
+    fitted->converged = result.converged;
+    fitted->smallest_eigenvalue = result.smallest_eigenvalue;
   }
   return fitted;
 }
@@ -308,19 +304,17 @@ Model realised(const Fitted& fitted) {
 
 namespace {
 
-std::variant<Fitted, NumericalFailure> fit_anew(Workspace& workspace, const ModelForm& form,
-                                                const VectorXd& start, const FitOptions& options) {
+Result<Fitted> fit_anew(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                        const FitOptions& options) {
   if (has_additive(form)) return fit_convex_to_end(workspace, form, start, options);
   auto fitted = fit_from(workspace, form, start, options);
-  const auto* first = std::get_if<Fitted>(&fitted);
-  if (!options.coarse_to_fine || is_cancelled(options) || (first && !lost(*first))) return fitted;
-  const auto nearer = rescaled(workspace, form, first ? first->p : start, options);
+  if (!options.coarse_to_fine || is_cancelled(options) || (fitted && !lost(*fitted))) return fitted;
+  const auto nearer = rescaled(workspace, form, fitted ? fitted->p : start, options);
   if (!nearer) return fitted;
   auto again = fit_from(workspace, form, *nearer, options);
-  const auto* second = std::get_if<Fitted>(&again);
   if (is_cancelled(options)) return again;
   const bool better =
-      second && (!first || second->evaluation.chi(false) < first->evaluation.chi(false));
+      again && (!fitted || again->evaluation.chi(false) < fitted->evaluation.chi(false));
   return better ? again : fitted;
 }
 
@@ -342,13 +336,11 @@ nlohmann::json fit_json(const Fitted& fitted) {
 }
 
 /// The fit that ended so. Empty: it does not look as it did, from another equilibrium.
-std::optional<std::variant<Fitted, NumericalFailure>> fit_from_json(Workspace& workspace,
-                                                                    const ModelForm& form,
-                                                                    const nlohmann::json& known,
-                                                                    const FitOptions& options) {
-  auto there = assess(workspace, form, vector_from(known.at("p")), options);
-  if (is_cancelled(options)) return there;
-  auto* fitted = std::get_if<Fitted>(&there);
+std::optional<Result<Fitted>> fit_from_json(Workspace& workspace, const ModelForm& form,
+                                            const nlohmann::json& known,
+                                            const FitOptions& options) {
+  auto fitted = assess(workspace, form, vector_from(known.at("p")), options);
+  if (is_cancelled(options)) return fitted;
   if (!fitted) return {};
   for (const bool held_out : {false, true}) {
     const double chi = known.at("chi").at(held_out ? 1 : 0);
@@ -357,13 +349,13 @@ std::optional<std::variant<Fitted, NumericalFailure>> fit_from_json(Workspace& w
   fitted->iterations = known.at("iterations");
   fitted->converged = known.at("converged");
   fitted->smallest_eigenvalue = known.at("smallest_eigenvalue");
-  return there;
+  return fitted;
 }
 
 }  // namespace
 
-std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
-                                           const VectorXd& start, const FitOptions& options) {
+Result<Fitted> fit(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                   const FitOptions& options) {
   if (start.size() != form.size()) throw std::logic_error("fit: wrong size of start");
   const WorkingAt stage(WorkStage::fit);
   return archived<Fitted>(

@@ -5,7 +5,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/evaluation/normal_equations.h"
@@ -95,18 +94,17 @@ Model realised(const Fitted& fitted);
 /// Where that ends pictures apart by more than their patterns span, or the start has no
 /// equilibrium, moduli that were told wrong by up to two orders of magnitude are looked for and it
 /// starts there. Throws std::logic_error for a wrong size of start.
-std::variant<Fitted, NumericalFailure> fit(Workspace& workspace, const ModelForm& form,
-                                           const VectorXd& start, const FitOptions& options = {});
+Result<Fitted> fit(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                   const FitOptions& options = {});
 
 /// p with the numbers that concern held-out examples alone (Parameter::example) fitted to those,
 /// all others as they are. fit() ends with it.
-std::variant<VectorXd, NumericalFailure> settle_held_out(Workspace& workspace,
-                                                         const ModelForm& form, const VectorXd& p,
-                                                         const FitOptions& options = {});
+Result<VectorXd> settle_held_out(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                                 const FitOptions& options = {});
 
 /// The starting point again without moving anything: pictures, intervals, what is undetermined.
-std::variant<Fitted, NumericalFailure> assess(Workspace& workspace, const ModelForm& form,
-                                              const VectorXd& p, const FitOptions& options = {});
+Result<Fitted> assess(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                      const FitOptions& options = {});
 
 /// Standard errors; 0: nothing in the data holds the parameter.
 VectorXd errors_of(const ParameterCovariance& covariance);

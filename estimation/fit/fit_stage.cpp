@@ -38,11 +38,11 @@ class ReducedCost final : public ceres::CostFunction {
         smallest_eigenvalue_ = hookeye::smallest_eigenvalue(model)->smallest;
       }
       auto result = workspace_.evaluate(form_, p, options_);
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-        failure_ = *failure;
+      if (!result) {
+        failure_ = result.error();
         return false;
       }
-      const NormalEquations sums = scope_.of(std::get<Evaluation>(result));
+      const NormalEquations sums = scope_.of(*result);
       cached_ = condense(within_bounds(sums, scaling_, p), scaling_.dp_dx(p));
       cached_x_ = x;
     }
@@ -169,10 +169,9 @@ double count_of_seen(const Evaluation& evaluation) {
 }
 
 /// What `pictures` and, where none of them is at rest, the rest photos by themselves tell.
-std::variant<double, NumericalFailure> weight_of_measured(Workspace& workspace,
-                                                          const ModelForm& form, const VectorXd& p,
-                                                          const FitOptions& options,
-                                                          const Evaluation& pictures, int level) {
+Result<double> weight_of_measured(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                                  const FitOptions& options, const Evaluation& pictures,
+                                  int level) {
   const auto& examples = form.scene->capture.examples;
   const auto rests = [&](const auto& example) { return is_rest(examples[example.example]); };
   const auto measures = [](const auto& example) { return !example.measured.empty(); };
@@ -184,31 +183,27 @@ std::variant<double, NumericalFailure> weight_of_measured(Workspace& workspace,
     if (is_rest(examples[e])) at_rest.only.push_back(static_cast<int>(e));
   if (at_rest.only.empty()) return 1.0;
   auto seen = workspace.evaluate(form, p, at_rest);
-  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  return measured_weight(*form.scene, std::get<Evaluation>(seen));
+  if (!seen) return failure_of(seen);
+  return measured_weight(*form.scene, *seen);
 }
 
 }  // namespace
 
-std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
-                                          const VectorXd& p, const FitOptions& options,
-                                          const FitScope& scope, int level) {
+Result<Look> look(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                  const FitOptions& options, const FitScope& scope, int level) {
   EvaluationOptions pictures_alone = only_pictures(level, options);
   scope.choose(pictures_alone);
   auto seen = workspace.evaluate(form, p, pictures_alone);
-  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  const Evaluation& pictures = std::get<Evaluation>(seen);
+  if (!seen) return failure_of(seen);
+  const Evaluation& pictures = *seen;
   const auto weight = weight_of_measured(workspace, form, p, options, pictures, level);
-  if (auto* failure = std::get_if<NumericalFailure>(&weight)) return *failure;
-  return Look{misfit_scale(pictures), count_of_seen(pictures), pictures.motion_px(),
-              std::get<double>(weight)};
+  if (!weight) return failure_of(weight);
+  return Look{misfit_scale(pictures), count_of_seen(pictures), pictures.motion_px(), *weight};
 }
 
-std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
-                                                      const VectorXd& start,
-                                                      const FitOptions& options,
-                                                      const FitScope& scope, Stage stage,
-                                                      const Look& seen) {
+Result<StageResult> run_stage(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                              const FitOptions& options, const FitScope& scope, Stage stage,
+                              const Look& seen) {
   const int level = stage.level;
   EvaluationOptions evaluation;
   scope.choose(evaluation);
@@ -258,9 +253,9 @@ std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, cons
   solver.callbacks.push_back(&reporter);
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
-  if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+  if (options.cancel && options.cancel->load()) return stopped();
   if (summary.termination_type == ceres::FAILURE)
-    return cost.failure().value_or(NumericalFailure{"", 0.0, summary.message});
+    return no_result(cost.failure().value_or(NumericalFailure{"", 0.0, summary.message}));
   return StageResult{scaling.to_p(x),
                      summary.termination_type == ceres::CONVERGENCE ||
                          summary.termination_type == ceres::USER_SUCCESS,

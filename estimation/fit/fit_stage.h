@@ -6,7 +6,6 @@
 
 #include <limits>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/evaluation/normal_equations.h"
@@ -58,9 +57,8 @@ struct Look {
   double measured_weight = 1.0;  ///< Evaluation::measured_weight
 };
 
-std::variant<Look, NumericalFailure> look(Workspace& workspace, const ModelForm& form,
-                                          const VectorXd& p, const FitOptions& options,
-                                          const FitScope& scope, int level);
+Result<Look> look(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                  const FitOptions& options, const FitScope& scope, int level);
 
 struct StageResult {
   VectorXd p;
@@ -70,10 +68,8 @@ struct StageResult {
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
-std::variant<StageResult, NumericalFailure> run_stage(Workspace& workspace, const ModelForm& form,
-                                                      const VectorXd& start,
-                                                      const FitOptions& options,
-                                                      const FitScope& scope, Stage stage,
-                                                      const Look& seen);
+Result<StageResult> run_stage(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                              const FitOptions& options, const FitScope& scope, Stage stage,
+                              const Look& seen);
 
 }  // namespace hookeye

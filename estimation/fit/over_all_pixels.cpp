@@ -62,9 +62,8 @@ void take_all_pixels(AllPixels all, Fitted* fitted) {
   fitted->all_pixels = std::move(all);
 }
 
-std::variant<std::optional<Fitted>, NumericalFailure> over_all_pixels(Workspace& workspace,
-                                                                      const Fitted& fitted,
-                                                                      const FitOptions& options) {
+Result<std::optional<Fitted>> over_all_pixels(Workspace& workspace, const Fitted& fitted,
+                                              const FitOptions& options) {
   const Scene& scene = *fitted.form.scene;
   if (!scene.in_part() || fitted.evaluation.seen() != Evaluation::Seen::photos)
     return std::optional<Fitted>();
@@ -78,14 +77,14 @@ std::variant<std::optional<Fitted>, NumericalFailure> over_all_pixels(Workspace&
   wanted.most_iterations = options.most_iterations;
   wanted.cancel = options.cancel;
   auto result = workspace.evaluate(fitted.form, fitted.p, wanted);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (!result) return failure_of(result);
 
   const auto parameters = fitted.form.parameters();
   const Scaling scaling{parameters};
   const VectorXd scale = scaling.dp_dx(fitted.p);
   const Evaluation& read = fitted.evaluation;
   Fitted out = fitted;
-  out.evaluation = std::get<Evaluation>(std::move(result));
+  out.evaluation = *std::move(result);
   const NormalEquations sums = normal_equations(out.evaluation);
   AllPixels all;
   // Additive energies stay convex by more than bounds: no step tells where they would go.

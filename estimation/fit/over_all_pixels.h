@@ -9,8 +9,8 @@ namespace hookeye {
 /// pictures without gaps; p stays. Parameters that all pixels would move have their interval about
 /// the place where those want them, one Gauss-Newton step from p. Empty: the fit has seen all
 /// pixels. Photos are read again, two at a time; throws InputError where one has gone or changed.
-std::variant<std::optional<Fitted>, NumericalFailure> over_all_pixels(
-    Workspace& workspace, const Fitted& fitted, const FitOptions& options = {});
+Result<std::optional<Fitted>> over_all_pixels(Workspace& workspace, const Fitted& fitted,
+                                              const FitOptions& options = {});
 
 /// Intervals by all pixels: what is known of them already.
 void take_all_pixels(AllPixels all, Fitted* fitted);

@@ -46,16 +46,15 @@ VectorXd bounded_step(const Scaling& scaling, const VectorXd& p, const VectorXd&
 
 namespace {
 
-std::variant<TrialScale, NumericalFailure> scale_anew(Workspace& workspace, const ModelForm& form,
-                                                      const VectorXd& p,
-                                                      const FitOptions& options) {
+Result<TrialScale> scale_anew(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                              const FitOptions& options) {
   EvaluationOptions all = half_size(options);
   all.held_out = true;
   auto seen = workspace.evaluate(form, p, all);
-  if (std::holds_alternative<NumericalFailure>(seen) && !(options.cancel && options.cancel->load()))
+  if (!seen && !(options.cancel && options.cancel->load()))
     seen = workspace.evaluate(form, p, half_size(options));  // a held-out example has none
-  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
-  Evaluation& pictures = std::get<Evaluation>(seen);
+  if (!seen) return failure_of(seen);
+  Evaluation& pictures = *seen;
   const double held_out = pictures.linear_chi(true);
   std::erase_if(pictures.examples, [](const auto& example) { return example.held_out; });
   const Floor floor = measure_floor(workspace.scene(), pictures);
@@ -64,39 +63,37 @@ std::variant<TrialScale, NumericalFailure> scale_anew(Workspace& workspace, cons
                     floor.source.starts_with("rest") ? floor.chi : 0.0, measured_weight(floor)};
 }
 
-std::variant<Trial, NumericalFailure> step_anew(Workspace& workspace, const ModelForm& form,
-                                                const VectorXd& start, const TrialScale& scale,
-                                                const FitOptions& options) {
+Result<Trial> step_anew(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                        const TrialScale& scale, const FitOptions& options) {
   EvaluationOptions derivatives = half_size(options);
   derivatives.derivatives = true;
   derivatives.huber = scale.huber;
   derivatives.measured_weight = scale.measured_weight;
   const auto first = workspace.evaluate(form, start, derivatives);
-  if (auto* failure = std::get_if<NumericalFailure>(&first)) return *failure;
-  const double from = std::get<Evaluation>(first).linear_chi(false);
+  if (!first) return failure_of(first);
+  const double from = first->linear_chi(false);
   // "from the null itself" comes back a little off: rays have changed triangles
   if (from > form.scene->limits->fit.trial_worse * scale.chi)
-    return NumericalFailure{"", 0.0, "worse than the model without"};
-  const NormalEquations sums = normal_equations(std::get<Evaluation>(first));
+    return no_result({"", 0.0, "worse than the model without"});
+  const NormalEquations sums = normal_equations(*first);
   EvaluationOptions pictures = half_size(options);
   pictures.held_out = true;
-  std::variant<Evaluation, NumericalFailure> seen;
+  Result<Evaluation> seen;
   for (double share : {1.0, 0.3, 0.1, 0.0}) {
     const VectorXd p = after_step({form.parameters()}, start, sums, share);
     seen = workspace.evaluate(form, p, pictures);
-    if (auto* evaluation = std::get_if<Evaluation>(&seen))
-      if (share == 0.0 || evaluation->linear_chi(false) < from)
-        return Trial{p, evaluation->linear_chi(false), evaluation->linear_chi(true), scale.floor};
-    if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+    if (seen)
+      if (share == 0.0 || seen->linear_chi(false) < from)
+        return Trial{p, seen->linear_chi(false), seen->linear_chi(true), scale.floor};
+    if (options.cancel && options.cancel->load()) return stopped();
   }
-  return std::get<NumericalFailure>(std::move(seen));  // not even the start: a held-out example
+  return failure_of(seen);  // not even the start: a held-out example
 }
 
 }  // namespace
 
-std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& p,
-                                                       const FitOptions& options) {
+Result<TrialScale> trial_scale(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                               const FitOptions& options) {
   const WorkingAt stage(WorkStage::trials);
   const auto question = [&] {
     Question out = question_of("scale", form, p);
@@ -120,9 +117,8 @@ std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, con
       });
 }
 
-std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, const TrialScale& scale,
-                                               const FitOptions& options) {
+Result<Trial> try_step(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                       const TrialScale& scale, const FitOptions& options) {
   const WorkingAt stage(WorkStage::trials);
   const auto question = [&] {
     Question out = question_of("trial", form, start);
@@ -152,21 +148,20 @@ double over_floor(const Trial& trial) {
   return over(trial.chi_fit) + over(trial.chi_validate);
 }
 
-std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const ModelForm& form,
-                                                const VectorXd& start, const TrialScale& scale,
-                                                const FitOptions& options, int steps) {
+Result<Followed> follow(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                        const TrialScale& scale, const FitOptions& options, int steps) {
   TrialScale any = scale;  // the start may be worse than the model that it is held against
   any.chi = std::numeric_limits<double>::infinity();
   Followed out;
   out.trial.p = start;
   for (int step = 0; step < steps && !out.stalled; ++step) {
     auto result = try_step(workspace, form, out.trial.p, any, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (step == 0 || cancelled(*failure)) return *failure;
+    if (!result) {
+      if (step == 0 || cancelled(result.error())) return failure_of(result);
       break;
     }
     const double before = over_floor(out.trial);
-    out.trial = std::get<Trial>(std::move(result));
+    out.trial = *std::move(result);
     out.stalled =
         step > 0 && over_floor(out.trial) > (1.0 - form.scene->limits->fit.trial_stalled) * before;
   }

@@ -25,14 +25,12 @@ struct TrialScale {
   double floor = 0.0;                    ///< Trial::floor
   double measured_weight = 1.0;          ///< Evaluation::measured_weight
 };
-std::variant<TrialScale, NumericalFailure> trial_scale(Workspace& workspace, const ModelForm& form,
-                                                       const VectorXd& p,
-                                                       const FitOptions& options = {});
+Result<TrialScale> trial_scale(Workspace& workspace, const ModelForm& form, const VectorXd& p,
+                               const FitOptions& options = {});
 /// The whole step, or the part of it that lowers the misfit. Fails where the start has no
 /// equilibrium or is worse than the model of `scale`.
-std::variant<Trial, NumericalFailure> try_step(Workspace& workspace, const ModelForm& form,
-                                               const VectorXd& start, const TrialScale& scale,
-                                               const FitOptions& options = {});
+Result<Trial> try_step(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                       const TrialScale& scale, const FitOptions& options = {});
 
 /// Where steps from `start` lead in half-size pictures, at a small part of a fit's cost.
 struct Followed {
@@ -40,10 +38,11 @@ struct Followed {
   /// The last step took less than a twentieth of what was over the floor: it ends about there.
   bool stalled = false;
 };
+inline constexpr int kMostTrials = 6;  ///< steps from one start
 /// At most `steps` of them. Fails where the start has no equilibrium.
-std::variant<Followed, NumericalFailure> follow(Workspace& workspace, const ModelForm& form,
-                                                const VectorXd& start, const TrialScale& scale,
-                                                const FitOptions& options = {}, int steps = 6);
+Result<Followed> follow(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                        const TrialScale& scale, const FitOptions& options = {},
+                        int steps = kMostTrials);
 
 /// What is over the floor of the fitted and of the held-out photos, as chi^2, both together.
 double over_floor(const Trial& trial);

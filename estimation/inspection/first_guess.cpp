@@ -135,10 +135,10 @@ CoarseModel::AtRest CoarseModel::at_rest(int e, const Loading& loading) const {
   auto solved = EquilibriumSolver(scene_->mesh()).solve(model_.energy_of(e), still);
   AtRest out;
   out.one_at_a_time = std::make_shared<std::mutex>();
-  if (const auto* failure = std::get_if<NumericalFailure>(&solved))
-    out.why = failure->reason;
+  if (!solved)
+    out.why = solved.error().reason;
   else
-    out.state = std::make_shared<const Equilibrium>(std::get<Equilibrium>(std::move(solved)));
+    out.state = std::make_shared<const Equilibrium>(*std::move(solved));
   const std::lock_guard lock(mutex_);
   if (known_.size() < kMostKept) known_.emplace(held, out);
   return out;
@@ -236,12 +236,12 @@ void CoarseModel::find_equilibria(size_t first, size_t last,
     }
     auto solved = solver.solve(model_.energy_of(static_cast<int>(e)), loading, options);
     before = nullptr;
-    if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
-      guess.failure = failure->reason;
+    if (!solved) {
+      guess.failure = solved.error().reason;
       solver.forget();
       continue;
     }
-    auto& found = std::get<Equilibrium>(solved);
+    auto& found = *solved;
     guess.q = std::move(found.q), guess.R = std::move(found.R);
     guess.x = scene_->body->surface.deformed(mesh, guess.q);
     if (loading.turns.empty()) before = &guess;

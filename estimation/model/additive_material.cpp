@@ -172,12 +172,10 @@ namespace {
 /// Calls visit(ingredient, its index, offset of its values, their number).
 template <class Visit>
 void for_each_ingredient(const ModelForm& form, Visit&& visit) {
-  int offset = 0;
-  for (size_t i = 0; i < form.ingredients.size(); ++i) {
-    const int n = static_cast<int>(form.ingredients[i]->parameters().size());
-    visit(*form.ingredients[i], static_cast<int>(i), offset, n);
-    offset += n;
-  }
+  const ParameterLayout at = form.layout();
+  for (size_t i = 0; i < form.ingredients.size(); ++i)
+    visit(*form.ingredients[i], static_cast<int>(i), static_cast<int>(at[i].first),
+          static_cast<int>(at[i].size));
 }
 
 const AdditiveMaterial* as_material(const Ingredient& ingredient) {

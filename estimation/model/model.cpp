@@ -43,12 +43,6 @@ std::vector<Parameter> ModelForm::parameters() const {
   return all;
 }
 
-int ModelForm::size() const {
-  int n = 0;
-  for (const auto& ingredient : ingredients) n += static_cast<int>(ingredient->parameters().size());
-  return n;
-}
-
 VectorXd ModelForm::initial() const {
   const auto all = parameters();
   VectorXd p(all.size());
@@ -57,15 +51,13 @@ VectorXd ModelForm::initial() const {
 }
 
 Model ModelForm::realise(const VectorXd& p) const {
-  if (p.size() != size()) throw std::logic_error("realise: wrong number of parameters");
+  const ParameterLayout at = layout();
+  if (p.size() != at.size()) throw std::logic_error("realise: wrong number of parameters");
   Model model = start;
-  int offset = 0;
-  for (const auto& ingredient : ingredients) {
-    const int n = static_cast<int>(ingredient->parameters().size());
-    const VectorXd values = p.segment(offset, n);
-    ingredient->apply(values, model);
-    model.applied.emplace_back(ingredient, values);
-    offset += n;
+  for (size_t i = 0; i < ingredients.size(); ++i) {
+    const VectorXd values = at.of(p, i);
+    ingredients[i]->apply(values, model);
+    model.applied.emplace_back(ingredients[i], values);
   }
   return model;
 }

@@ -11,6 +11,7 @@
 #include "capture_io/capture.h"
 #include "core/parameter.h"
 #include "estimation/model/limits.h"
+#include "estimation/model/parameter_layout.h"
 #include "estimation/model/photo_reading.h"
 #include "meshing/body.h"
 #include "render/optics.h"
@@ -115,7 +116,8 @@ struct ModelForm {
   std::vector<std::shared_ptr<const Ingredient>> ingredients;
 
   std::vector<Parameter> parameters() const;
-  int size() const;
+  ParameterLayout layout() const { return ParameterLayout(ingredients); }
+  int size() const { return static_cast<int>(layout().size()); }
   VectorXd initial() const;  ///< concatenated Parameter::value
   Model realise(const VectorXd& p) const;
 };

@@ -179,8 +179,7 @@ bool better(const PlanRating& a, const PlanRating& b) {
 
 }  // namespace
 
-std::variant<Plan, NumericalFailure> plan(const Fitted& fitted, const Diagnosis& diagnosis,
-                                          const PlanOptions& options) {
+Result<Plan> plan(const Fitted& fitted, const Diagnosis& diagnosis, const PlanOptions& options) {
   Plan out;
   out.tie = diagnosis.limits().tie;
   out.confused = options.between.empty() ? confused_effects(diagnosis) : options.between;
@@ -194,8 +193,8 @@ std::variant<Plan, NumericalFailure> plan(const Fitted& fitted, const Diagnosis&
     return out;
   }
   auto result = predict(fitted, diagnosis, out.confused, out.untestable, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  const Prediction& prediction = std::get<Prediction>(result);
+  if (!result) return failure_of(result);
+  const Prediction& prediction = *result;
   if (prediction.confused.size() > 1)
     out.now = worst_pair(prediction, prediction.H, prediction.count).separation;
   for (const auto& photos : prediction.photos)

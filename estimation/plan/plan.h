@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/diagnosis/diagnosis.h"
@@ -84,7 +83,7 @@ std::vector<std::string> confused_effects(const Diagnosis& diagnosis);
 /// `fitted` is the model of which `diagnosis` tells what it lacks. The expected margin counts cells
 /// as the diagnosis does: new photos have the effective share of the photos by the same camera (of
 /// all photos for a new one), the noise of the photos so far and the floor's variance.
-std::variant<Plan, NumericalFailure> plan(const Fitted& fitted, const Diagnosis& diagnosis,
-                                          const PlanOptions& options = {});
+Result<Plan> plan(const Fitted& fitted, const Diagnosis& diagnosis,
+                  const PlanOptions& options = {});
 
 }  // namespace hookeye

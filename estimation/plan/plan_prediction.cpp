@@ -170,7 +170,7 @@ void keep_states(const Evaluation& evaluation, PlannedModel& planned) {
 }
 
 /// The photos there are and, in one look, those of all views.
-std::optional<NumericalFailure> predict_views(Planner& planner, Prediction& out) {
+Result<void> predict_views(Planner& planner, Prediction& out) {
   std::vector<PlanCandidate> candidates;
   for (const auto& one : out.photos) candidates.push_back(one.candidate);
   ViewPhotos of_photo;
@@ -195,8 +195,8 @@ std::optional<NumericalFailure> predict_views(Planner& planner, Prediction& out)
   const auto [form, p] = fitted_part(*planned, planner.names.size());
   auto result =
       workspace.evaluate(form, p, evaluation, hypotheses_of(*planned, planner.names.size()));
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  const Evaluation& seen = std::get<Evaluation>(result);
+  if (!result) return failure_of(result);
+  const Evaluation& seen = *result;
   keep_states(seen, *planned);
   out.base = form.size();
   planner.shares = sum_present(*scene, of_photo, seen, out);
@@ -242,24 +242,25 @@ void predict_load(const Planner& planner, PredictedPhotos& out) {
   evaluation.most_iterations = kMostIterations;
   evaluation.cancel = planner.options.cancel;
   auto solved = workspace.evaluate(form, p, evaluation);
-  if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
-    out.why_not = fmt::format("no equilibrium beyond {:.2g} of the load", failure->load_fraction);
+  if (!solved) {
+    out.why_not =
+        fmt::format("no equilibrium beyond {:.2g} of the load", solved.error().load_fraction);
     return;
   }
   std::map<int, VectorXd> states;
   for (const auto& example : planner.fitted.evaluation.examples)
     states[example.example] = example.equilibrium->q;
-  states[e] = std::get<Evaluation>(solved).find(e)->equilibrium->q;
+  states[e] = solved->find(e)->equilibrium->q;
   take_photos(*scene, *planner.fitted.form.scene, planned->model, states);
   evaluation.derivatives = true;
   auto result =
       workspace.evaluate(form, p, evaluation, hypotheses_of(*planned, planner.names.size()));
-  if (std::holds_alternative<NumericalFailure>(result)) {
+  if (!result) {
     out.why_not = "not evaluated";
     return;
   }
-  keep_states(std::get<Evaluation>(result), *planned);
-  const auto& example = std::get<Evaluation>(result).examples.front();
+  keep_states(*result, *planned);
+  const auto& example = result->examples.front();
   const int columns = static_cast<int>(planner.columns.size());
   for (auto photo : example.photos) {
     photo.sums.JtJ = spread(photo.sums.JtJ, planned->global, columns);
@@ -274,10 +275,9 @@ void predict_load(const Planner& planner, PredictedPhotos& out) {
 
 }  // namespace
 
-std::variant<Prediction, NumericalFailure> predict(const Fitted& fitted, const Diagnosis& diagnosis,
-                                                   const std::vector<std::string>& confused,
-                                                   const std::vector<std::string>& untestable,
-                                                   const PlanOptions& options) {
+Result<Prediction> predict(const Fitted& fitted, const Diagnosis& diagnosis,
+                           const std::vector<std::string>& confused,
+                           const std::vector<std::string>& untestable, const PlanOptions& options) {
   Planner planner{
       fitted,   diagnosis,       options, without_numerical(fitted.form.realise(fitted.p)),
       confused, confused.size(), {},      {}};
@@ -290,7 +290,7 @@ std::variant<Prediction, NumericalFailure> predict(const Fitted& fitted, const D
     out.photos.emplace_back();
     out.photos.back().candidate = candidate;
   }
-  if (auto failure = predict_views(planner, out)) return *failure;
+  if (auto done = predict_views(planner, out); !done) return failure_of(done);
   for (auto& one : out.photos)
     if (one.H.size() == 0) one.H = Eigen::MatrixXd::Zero(out.H.rows(), out.H.cols());
   std::mutex mutex;
@@ -305,7 +305,7 @@ std::variant<Prediction, NumericalFailure> predict(const Fitted& fitted, const D
     const std::lock_guard lock(mutex);
     report(++done);
   });
-  if (options.cancel && options.cancel->load()) return NumericalFailure{"", 0.0, "cancelled"};
+  if (options.cancel && options.cancel->load()) return stopped();
   for (auto& one : out.photos)
     if (one.why_not.empty() && one.views.empty()) one.why_not = "no camera would see the body";
   return out;

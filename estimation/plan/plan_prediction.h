@@ -51,10 +51,9 @@ struct Prediction {
 };
 
 /// Throws std::runtime_error for a confused effect that has no estimate in the diagnosis.
-std::variant<Prediction, NumericalFailure> predict(const Fitted& fitted, const Diagnosis& diagnosis,
-                                                   const std::vector<std::string>& confused,
-                                                   const std::vector<std::string>& untestable,
-                                                   const PlanOptions& options);
+Result<Prediction> predict(const Fitted& fitted, const Diagnosis& diagnosis,
+                           const std::vector<std::string>& confused,
+                           const std::vector<std::string>& untestable, const PlanOptions& options);
 
 struct Difference {
   double px = 0.0;   ///< rms over the surface in the pictures

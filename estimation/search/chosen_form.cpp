@@ -44,31 +44,29 @@ VectorXd within_bounds(const Ingredient& form, VectorXd values) {
   return values;
 }
 
-std::variant<Fitted, NumericalFailure> as_scored(Workspace& workspace, const Fitted& current,
-                                                 const Effect& effect, const std::string& form,
-                                                 const FitOptions& options,
-                                                 DiagnosisOptions diagnosis) {
+Result<Fitted> as_scored(Workspace& workspace, const Fitted& current, const Effect& effect,
+                         const std::string& form, const FitOptions& options,
+                         DiagnosisOptions diagnosis) {
   const InOneForm narrowed(effect, form);
   diagnosis.also = {&narrowed};
   for (const Effect* other : catalogue()) diagnosis.without.push_back(other->name());
   auto scored = diagnose(workspace, current, diagnosis);
-  if (auto* failure = std::get_if<NumericalFailure>(&scored)) return std::move(*failure);
-  const EffectScore& score = std::get<Diagnosis>(scored).effects.front();
-  if (!score.best) return NumericalFailure{"", 0.0, form + ": " + score.why_not};
+  if (!scored) return failure_of(scored);
+  const EffectScore& score = scored->effects.front();
+  if (!score.best) return no_result({"", 0.0, form + ": " + score.why_not});
   ModelForm with = current.form;
   with.ingredients.push_back(score.best);
   const auto parameters = score.best->parameters();
   VectorXd nulls(score.values.size());
   for (Eigen::Index i = 0; i < nulls.size(); ++i)
     nulls[i] = parameters[static_cast<size_t>(i)].value;
-  std::variant<Fitted, NumericalFailure> result = NumericalFailure{};
+  Result<Fitted> result = no_result({});
   // The linear step is a direction more than a length (from_shares).
   for (const double share : {1.0, 0.3, 0.1, 0.0}) {
     VectorXd start(current.p.size() + nulls.size());
     start << current.p, within_bounds(*score.best, nulls + share * (score.values - nulls));
     result = fit(workspace, with, start, options);
-    const auto* failure = std::get_if<NumericalFailure>(&result);
-    if (!failure || cancelled(*failure)) break;
+    if (result || cancelled(result.error())) break;
   }
   return result;
 }
@@ -93,30 +91,27 @@ std::vector<Effect::Further> onward(const Effect& effect, const Model& without,
 }
 
 /// The last effect of `fitted` in another form, fitted.
-std::variant<Fitted, NumericalFailure> in_form(Workspace& workspace, const Fitted& fitted,
-                                               const Reached& other, const FitOptions& options) {
-  const auto own = static_cast<Eigen::Index>(fitted.form.ingredients.back()->parameters().size());
+Result<Fitted> in_form(Workspace& workspace, const Fitted& fitted, const Reached& other,
+                       const FitOptions& options) {
+  const ParameterLayout at = fitted.form.layout();
   ModelForm form = fitted.form;
   form.ingredients.back() = other.form;
-  VectorXd start(fitted.p.size() - own + other.values.size());
-  start << fitted.p.head(fitted.p.size() - own), within_bounds(*other.form, other.values);
+  VectorXd start = at.with(fitted.p, at.last(), within_bounds(*other.form, other.values));
   start = with_stiffness_of(fitted.form.realise(fitted.p), form, std::move(start));
   return fit(workspace, form, start, options);
 }
 
 VectorXd last_values(const Fitted& fitted) {
-  return fitted.p.tail(
-      static_cast<Eigen::Index>(fitted.form.ingredients.back()->parameters().size()));
+  const ParameterLayout at = fitted.form.layout();
+  return at.of(fitted.p, at.last());
 }
 
-std::variant<Fitted, NumericalFailure> further(Workspace& workspace, const Fitted& fitted,
-                                               const Effect::Further& to,
-                                               const FitOptions& options) {
+Result<Fitted> further(Workspace& workspace, const Fitted& fitted, const Effect::Further& to,
+                       const FitOptions& options) {
   if (!to.by_way_of) return in_form(workspace, fitted, {to.form, to.values}, options);
   auto way = in_form(workspace, fitted, {to.by_way_of, to.values}, options);
-  if (const auto* there = std::get_if<Fitted>(&way))
-    return in_form(workspace, *there, {to.form, last_values(*there)}, options);
-  return way;
+  if (!way) return way;
+  return in_form(workspace, *way, {to.form, last_values(*way)}, options);
 }
 
 }  // namespace
@@ -130,25 +125,22 @@ std::vector<std::string> form_names(const Effect& effect, const Model& model) {
   return out;
 }
 
-std::variant<Fitted, NumericalFailure> add_effect_as(Workspace& workspace, const Fitted& current,
-                                                     const EffectScore& score,
-                                                     const std::string& form,
-                                                     const FitOptions& options,
-                                                     const DiagnosisOptions& diagnosis) {
+Result<Fitted> add_effect_as(Workspace& workspace, const Fitted& current, const EffectScore& score,
+                             const std::string& form, const FitOptions& options,
+                             const DiagnosisOptions& diagnosis) {
   const Effect& effect = *find_effect(score.effect);
   const auto forms = declare(effect, current.form.realise(current.p)).forms;
   const bool by_refit = std::any_of(forms.begin(), forms.end(), [&](const DeclaredForm& one) {
     return one.refit && form_name(one.variant) == form;
   });
   if (!by_refit) return as_scored(workspace, current, effect, form, options, diagnosis);
-  auto result = add_effect(workspace, current, score, options);
-  const auto* fitted = std::get_if<Fitted>(&result);
-  if (!fitted || form_name(fitted->form.ingredients.back()->variant()) == form) return result;
+  auto fitted = add_effect(workspace, current, score, options);
+  if (!fitted || form_name(fitted->form.ingredients.back()->variant()) == form) return fitted;
 
   ModelForm before = fitted->form;
   before.ingredients.pop_back();
   const VectorXd own = last_values(*fitted);
-  Model without = before.realise(fitted->p.head(fitted->p.size() - own.size()));
+  Model without = before.realise(fitted->p.head(before.size()));
   without.states = realised(*fitted).states;
   const auto wanted = [&](const Effect::Further& one) {
     return form_name(one.form->variant()) == form;
@@ -159,9 +151,9 @@ std::variant<Fitted, NumericalFailure> add_effect_as(Workspace& workspace, const
   for (const Effect::Further& one : first)
     for (const Effect::Further& next : onward(effect, without, {one.form, one.values}))
       if (wanted(next)) return further(workspace, *fitted, next, options);
-  return NumericalFailure{"", 0.0,
-                          "the refit ended as '" + fitted->form.ingredients.back()->variant() +
-                              "', from which no way leads to '" + form + "'"};
+  return no_result({"", 0.0,
+                    "the refit ended as '" + fitted->form.ingredients.back()->variant() +
+                        "', from which no way leads to '" + form + "'"});
 }
 
 }  // namespace hookeye

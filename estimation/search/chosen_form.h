@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/search/refit.h"
@@ -16,10 +15,8 @@ std::vector<std::string> form_names(const Effect& effect, const Model& model);
 /// Refits with one effect as add_effect() does, and ends in the form of that name. A form that only
 /// a refit goes on to is started where the refit says that it is most like what it came to; a
 /// scored one, in the best of its ways. A failure where no way leads there.
-std::variant<Fitted, NumericalFailure> add_effect_as(Workspace& workspace, const Fitted& current,
-                                                     const EffectScore& score,
-                                                     const std::string& form,
-                                                     const FitOptions& options,
-                                                     const DiagnosisOptions& diagnosis);
+Result<Fitted> add_effect_as(Workspace& workspace, const Fitted& current, const EffectScore& score,
+                             const std::string& form, const FitOptions& options,
+                             const DiagnosisOptions& diagnosis);
 
 }  // namespace hookeye

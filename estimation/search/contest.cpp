@@ -8,6 +8,7 @@
 #include "estimation/diagnosis/diagnosis_sums.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/fit/evidence.h"
+#include "estimation/search/mesh_first.h"
 #include "estimation/search/refit_score.h"
 
 namespace hookeye {
@@ -29,45 +30,7 @@ void drop_pictures(Fitted& fitted) {
     }
 }
 
-bool may_be_all(const std::string& effect, const Diagnosis& diagnosis) {
-  return numerical(effect) &&
-         std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& score) {
-           return score.effect == effect &&
-                  score.explains > diagnosis.floor.limits->search.mesh_may_be_all;
-         });
-}
-
 namespace {
-
-/// The mesh, where it stands out and nobody is `ahead(other, mesh)`; else null.
-template <class Ahead>
-const EffectScore* mesh_unless(const Diagnosis& diagnosis, const Ahead& ahead) {
-  for (const EffectScore& score : diagnosis.effects)
-    if (numerical(score.effect) && nameable(score, diagnosis) &&
-        std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), [&](const auto& other) {
-          return &other != &score && other.testable && ahead(other, score);
-        }))
-      return &score;
-  return nullptr;
-}
-
-/// The mesh, where it leads by more than a tie; else null.
-const EffectScore* leading_mesh(const Diagnosis& diagnosis) {
-  const double tie = diagnosis.limits().tie;
-  return mesh_unless(diagnosis, [&](const EffectScore& other, const EffectScore& mesh) {
-    return other.evidence > mesh.evidence - tie;
-  });
-}
-
-/// The mesh, where nobody is ahead of it by more than a tie and takes away more of the misfit, too:
-/// its one number is the change that was solved, six of a set-up may lead by fitting its noise.
-/// Else null.
-const EffectScore* mesh_ahead(const Diagnosis& diagnosis) {
-  const double tie = diagnosis.limits().tie;
-  return mesh_unless(diagnosis, [&](const EffectScore& other, const EffectScore& mesh) {
-    return other.evidence > mesh.evidence + tie && other.fall > mesh.fall;
-  });
-}
 
 /// The first `most` of a race and the effect of the largest evidence: who is slow in two steps may
 /// still be right. So may a sensor's error, which moves no photo and so cannot win by them. A
@@ -116,50 +79,19 @@ void keep_leaders(std::vector<Racer>& racers, const Diagnosis& diagnosis, int mo
                           [&](const Racer& racer) { return racer.effect == mesh->effect; });
 }
 
-/// The mesh leads by more than a tie, and the step that it promises brings fitted and held-out
-/// photos to the floor. That step is no guess (the finer mesh was solved), the mesh is settled
-/// before anything is named, and what it leaves is diagnosed next: nobody needs to race.
-bool mesh_settles_it(const Step& step) {
-  const EffectScore* mesh = leading_mesh(step.diagnosis);
-  const double floor2 = step.diagnosis.floor.chi * step.diagnosis.floor.chi;
-  const double at = step.diagnosis.floor.limits->floor.at;
-  const auto at_floor_after = [&](bool held_out, double share) {
-    const double r2 = std::pow(step.fitted.evaluation.chi(held_out), 2);
-    return r2 - share * (r2 - floor2) <= at * at * floor2;
-  };
-  return mesh && at_floor_after(false, mesh->explains) &&
-         at_floor_after(true, mesh->explains_held_out);
-}
-
-/// Nobody was ahead of the mesh, it asked for what a mesh's error asks for (once
-/// the change that was solved where the truth is as fine, twice, 1/(1 - 0.7^2), where it is exact;
-/// half to double of that), and its refit took away at least half of the misfit that it promised
-/// to. On the mesh that is known to be wrong, whatever resembles its error would be named beside a
-/// small effect; what stands out on the finer one is diagnosed next.
-bool mesh_kept_its_word(const Step& step, const Fitted& refitted) {
-  const EffectScore* mesh = mesh_ahead(step.diagnosis);
-  const SearchLimits& limits = step.diagnosis.floor.limits->search;
-  if (!mesh || mesh->values[0] < limits.mesh_least || mesh->values[0] > limits.mesh_most)
-    return false;
-  const auto r2 = [](const Fitted& fitted) { return std::pow(fitted.evaluation.chi(false), 2); };
-  const double structured = r2(step.fitted) - std::pow(step.diagnosis.floor.chi, 2);
-  return r2(step.fitted) - r2(refitted) >= limits.mesh_keeps * mesh->explains * structured;
-}
-
 /// Adds to `racers` those that get farther beside the newest effect from where they stood before
 /// it was added; of one effect the better start runs on.
-std::optional<NumericalFailure> let_beaten_run(Workspace& workspace, const Beaten& beaten,
-                                               const DiscoverOptions& options,
-                                               const DiscoverEvents& events,
-                                               std::vector<Racer>& racers) {
+Result<void> let_beaten_run(Workspace& workspace, const Beaten& beaten,
+                            const DiscoverOptions& options, const DiscoverEvents& events,
+                            std::vector<Racer>& racers) {
   const auto& scores = beaten.before.diagnosis.effects;
   const auto won = std::find_if(scores.begin(), scores.end(),
                                 [&](const auto& score) { return score.effect == beaten.winner; });
   if (won == scores.end()) return {};
   auto beside =
       race_beside(workspace, beaten.before.fitted, *won, beaten.racers, options.fit, events.tried);
-  if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
-  for (Racer& racer : std::get<std::vector<Racer>>(beside)) {
+  if (!beside) return failure_of(beside);
+  for (Racer& racer : *beside) {
     const auto same = std::find_if(racers.begin(), racers.end(), [&](const Racer& other) {
       return other.effect == racer.effect;
     });
@@ -200,23 +132,22 @@ namespace {
 
 /// Whoever leads by evidence and could not be screened (its first step led nowhere) is fitted from
 /// coarse to fine all the same.
-std::optional<NumericalFailure> refit_unscreened(Workspace& workspace, const Step& step,
-                                                 const Diagnosis& entered,
-                                                 const DiscoverOptions& options,
-                                                 const DiscoverEvents& events, Contest& out) {
+Result<void> refit_unscreened(Workspace& workspace, const Step& step, const Diagnosis& entered,
+                              const DiscoverOptions& options, const DiscoverEvents& events,
+                              Contest& out) {
   for (const EffectScore& score : entered.effects) {
     const bool ran = std::any_of(out.racers.begin(), out.racers.end(),
                                  [&](const Racer& racer) { return racer.effect == score.effect; });
     if (ran || !leads(entered, score)) continue;
     auto result = announced(events, score.effect,
                             [&] { return add_effect(workspace, step.fitted, score, options.fit); });
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
-      tell(options.fit.decided, {Asked::refitted, score.effect, false, {}, failure->reason});
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
+      tell(options.fit.decided, {Asked::refitted, score.effect, false, {}, result.error().reason});
       out.not_compared.push_back(score.effect);
       continue;
     }
-    out.refits.push_back({score.effect, std::get<Fitted>(std::move(result)), 0.0});
+    out.refits.push_back({score.effect, *std::move(result), 0.0});
     tell(options.fit.decided, {Asked::refitted,
                                score.effect,
                                true,
@@ -228,20 +159,20 @@ std::optional<NumericalFailure> refit_unscreened(Workspace& workspace, const Ste
 
 }  // namespace
 
-std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
-                                                      const std::optional<Beaten>& beaten,
-                                                      const DiscoverOptions& options,
-                                                      const DiscoverEvents& events) {
+Result<Contest> refit_leaders(Workspace& workspace, const Step& step,
+                              const std::optional<Beaten>& beaten, const DiscoverOptions& options,
+                              const DiscoverEvents& events) {
   Contest out;
   auto& refits = out.refits;
   Diagnosis entered = step.diagnosis;
   if (mesh_settles_it(step)) entered.effects.resize(1);
   auto raced = race(workspace, step.fitted, entered, options.fit, events.tried);
-  if (auto* failure = std::get_if<NumericalFailure>(&raced)) return *failure;
-  auto& racers = std::get<std::vector<Racer>>(raced);
+  if (!raced) return failure_of(raced);
+  auto& racers = *raced;
   if (beaten && !mesh_settles_it(step) &&
       std::none_of(racers.begin(), racers.end(), [](const Racer& one) { return one.at_floor(); }))
-    if (auto failure = let_beaten_run(workspace, *beaten, options, events, racers)) return *failure;
+    if (auto ran = let_beaten_run(workspace, *beaten, options, events, racers); !ran)
+      return failure_of(ran);
   out.racers = racers;
   keep_leaders(racers, entered, step.diagnosis.floor.limits->search.leaders, options.fit.decided);
   for (const Racer& racer : racers) {
@@ -263,12 +194,12 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
       fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
     }
     auto result = announced(events, racer.effect, [&] { return refit(workspace, racer, fit); });
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
-      tell(options.fit.decided, {Asked::refitted, racer.effect, false, {}, failure->reason});
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
+      tell(options.fit.decided, {Asked::refitted, racer.effect, false, {}, result.error().reason});
       continue;  // a model without equilibrium explains nothing
     }
-    refits.push_back({racer.effect, std::get<Fitted>(std::move(result)), 0.0});
+    refits.push_back({racer.effect, *std::move(result), 0.0});
     tell(options.fit.decided,
          {Asked::refitted,
           racer.effect,
@@ -284,8 +215,8 @@ std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, cons
       return out;
     }
   }
-  if (auto failure = refit_unscreened(workspace, step, entered, options, events, out))
-    return *failure;
+  if (auto tried = refit_unscreened(workspace, step, entered, options, events, out); !tried)
+    return failure_of(tried);
   if (!refits.empty()) rank(out, step);
   return out;
 }

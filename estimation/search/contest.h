@@ -3,18 +3,12 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/search/discover.h"
 #include "estimation/search/refit_score.h"
 
 namespace hookeye {
-
-/// A numerical error that would remove at least half of the misfit. The finer mesh was solved for
-/// the score: where it leaves more than that, something larger is missing, and the mesh is asked
-/// after it.
-bool may_be_all(const std::string& effect, const Diagnosis& diagnosis);
 
 /// A step of a search with this model; `dropped` left it.
 Step step_with(std::string effect, Fitted fitted, std::vector<std::string> dropped = {});
@@ -25,10 +19,9 @@ void drop_pictures(Fitted& fitted);
 
 /// The result of fit(), which is told to who watches, before it as `words` and after.
 template <class Fit>
-std::variant<Fitted, NumericalFailure> announced(const DiscoverEvents& events,
-                                                 const std::string& words, const Fit& fit) {
+Result<Fitted> announced(const DiscoverEvents& events, const std::string& words, const Fit& fit) {
   if (events.refitting) events.refitting(words);
-  std::variant<Fitted, NumericalFailure> result = fit();
+  Result<Fitted> result = fit();
   if (events.refitted) events.refitted(words, result);
   return result;
 }
@@ -93,10 +86,9 @@ class LastContest {
 
 /// Refits the leaders of a race and ranks them. Where nobody comes to the floor, the beaten run
 /// too, with their winner from where they stood before it (race_beside); empty: there are none.
-std::variant<Contest, NumericalFailure> refit_leaders(Workspace& workspace, const Step& step,
-                                                      const std::optional<Beaten>& beaten,
-                                                      const DiscoverOptions& options,
-                                                      const DiscoverEvents& events);
+Result<Contest> refit_leaders(Workspace& workspace, const Step& step,
+                              const std::optional<Beaten>& beaten, const DiscoverOptions& options,
+                              const DiscoverEvents& events);
 
 /// Why a refit does not stand beside the step that it started from.
 struct Refusal {

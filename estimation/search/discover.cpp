@@ -9,10 +9,12 @@
 #include "estimation/diagnosis/diagnosis_sums.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/fit/own_archive.h"
+#include "estimation/search/conclusion.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/fit_to_all.h"
 #include "estimation/search/last_questions.h"
 #include "estimation/search/measured_explained.h"
+#include "estimation/search/mesh_first.h"
 #include "estimation/search/pairs.h"
 #include "estimation/search/shadow.h"
 #include "estimation/search/swaps.h"
@@ -21,16 +23,6 @@
 namespace hookeye {
 
 namespace {
-
-/// A tie holds while its winner stands alone: where the winner was dropped later, or a rival was
-/// found beside it, the later steps have decided.
-void settle_tie(std::vector<std::string>& tie, const std::vector<std::string>& missing) {
-  const auto has = [&](const std::string& name) {
-    return std::find(missing.begin(), missing.end(), name) != missing.end();
-  };
-  if (!tie.empty() && (!has(tie.front()) || std::any_of(tie.begin() + 1, tie.end(), has)))
-    tie.clear();
-}
 
 /// All that a search fits may be given up but for its base.
 DiscoverOptions of_rivals(DiscoverOptions options) {
@@ -49,7 +41,7 @@ class Search {
         base_(base_form(workspace.scene().shared_from_this()).ingredients.size()),
         wider_(workspace, options_.fit, events_) {}
 
-  std::variant<Discovery, NumericalFailure> run(Step first) {
+  Result<Discovery> run(Step first) {
     out_.tie = options_.tie;
     const auto start = std::ssize(first.fitted.form.ingredients);
     out_.steps.push_back(std::move(first));
@@ -57,44 +49,43 @@ class Search {
     const size_t most_steps =
         1 + static_cast<size_t>(limits().steps_an_effect * std::max(most_effects(), 0));
     while (true) {
-      if (auto failure = diagnose_newest()) return *failure;
+      if (auto done = diagnose_newest(); !done) return failure_of(done);
       if (together_) {
         stand_in(*std::exchange(together_, std::nullopt));
         continue;
       }
       auto to_all = fit_to_all(workspace_, newest().fitted, newest().diagnosis, options_.fit);
-      if (auto* failure = std::get_if<NumericalFailure>(&to_all)) return *failure;
-      out_.all = std::get<std::optional<FitToAll>>(std::move(to_all));
+      if (!to_all) return failure_of(to_all);
+      out_.all = *std::move(to_all);
       if (out_.steps.size() >= most_steps) break;
       const auto added = std::ssize(newest().fitted.form.ingredients) - start;
       const int room = most_effects() - static_cast<int>(added);
       auto went_on = next_step(room);
-      if (auto* failure = std::get_if<NumericalFailure>(&went_on)) return *failure;
-      if (std::get<bool>(went_on)) continue;
+      if (!went_on) return failure_of(went_on);
+      if (*went_on) continue;
       auto asked = asked_last(room);
-      if (auto* failure = std::get_if<NumericalFailure>(&asked)) return *failure;
-      if (!std::get<bool>(asked)) break;
+      if (!asked) return failure_of(asked);
+      if (!*asked) break;
     }
     // Questions that were stopped have no answer: neither has the run.
     if (!cancelled()) ask_all_again();
-    if (cancelled()) return NumericalFailure{"", 0.0, "cancelled"};
+    if (cancelled()) return stopped();
     return finish();
   }
 
  private:
   /// Every refit is scored beside, too.
   DiscoverEvents watched(DiscoverEvents events) {
-    events.refitted = [this, told = events.refitted](
-                          const std::string& effect,
-                          const std::variant<Fitted, NumericalFailure>& result) {
+    events.refitted = [this, told = events.refitted](const std::string& effect,
+                                                     const Result<Fitted>& result) {
       if (told) told(effect, result);
-      if (const auto* fitted = std::get_if<Fitted>(&result)) shadow_.refitted(*fitted);
+      if (result) shadow_.refitted(*result);
     };
     return events;
   }
 
   /// Whether there is a step more.
-  using WentOn = std::variant<bool, NumericalFailure>;
+  using WentOn = Result<bool>;
 
   Step& newest() { return out_.steps.back(); }
   int most_effects() const { return options_.max_effects.value_or(limits().max_effects); }
@@ -109,12 +100,12 @@ class Search {
     out_.steps.push_back(std::move(step));
   }
 
-  std::optional<NumericalFailure> diagnose_newest() {
+  Result<void> diagnose_newest() {
     shadow_.tell_all(options_.fit.decided);
     Step& step = newest();
     auto diagnosis = diagnose(workspace_, step.fitted, options_.diagnosis);
-    if (auto* failure = std::get_if<NumericalFailure>(&diagnosis)) return *failure;
-    step.diagnosis = std::get<Diagnosis>(std::move(diagnosis));
+    if (!diagnosis) return failure_of(diagnosis);
+    step.diagnosis = *std::move(diagnosis);
     reach_for_mesh(step.fitted, step.diagnosis);
     out_.floor = step.diagnosis.floor;
     if (events_.step) events_.step(step);
@@ -129,8 +120,8 @@ class Search {
     mesh_refitted_ = false;
     refused_ = {};
     auto widened = widened_form(false);
-    if (auto* failure = std::get_if<NumericalFailure>(&widened)) return *failure;
-    if (std::get<bool>(widened)) return true;
+    if (!widened) return failure_of(widened);
+    if (*widened) return true;
     Step& step = newest();
     if (room <= 0 || only_numerical_left(step.fitted, step.diagnosis, all())) return false;
     if (auto better = swap_for_better(workspace_, step.fitted, out_.floor, base_, refused_swaps_,
@@ -140,17 +131,17 @@ class Search {
     }
     auto refitted =
         refit_leaders(workspace_, step, last_contest_.beaten(out_.steps), options_, events_);
-    if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
-    Contest& contest = std::get<Contest>(refitted);
+    if (!refitted) return failure_of(refitted);
+    Contest& contest = *refitted;
     mesh_refitted_ = std::any_of(contest.refits.begin(), contest.refits.end(),
                                  [](const Refit& refit) { return numerical(refit.effect); });
     if (contest.refits.empty()) return false;
     if (mesh_refitted_ && !numerical(contest.refits.front().effect)) {
       auto wide = widened_form(true);  // the mesh has been asked, and is not what is missing
-      if (std::holds_alternative<NumericalFailure>(wide) || std::get<bool>(wide)) return wide;
+      if (!wide || *wide) return wide;
     }
-    if (auto failure = wider_.mend(contest, step, out_.floor)) return *failure;
-    if (auto failure = wider_.ask_leaders(contest, step, out_.floor)) return *failure;
+    if (auto done = wider_.mend(contest, step, out_.floor); !done) return failure_of(done);
+    if (auto done = wider_.ask_leaders(contest, step, out_.floor); !done) return failure_of(done);
     if (auto found = swap_behind_refit(workspace_, contest.refits, out_.floor, base_,
                                        refused_swaps_, options_, events_);
         found && told_standing(options_.fit.decided, refused_by(step, found->second.in))) {
@@ -161,8 +152,8 @@ class Search {
     refused_ = why_refused(step, contest.before, contest.refits.front());
     if (!told_standing(options_.fit.decided, refused_)) return add_pair(contest, room);
     auto wider = wider_.instead_of(contest.refits.front(), step.fitted, out_.floor);
-    if (auto* failure = std::get_if<NumericalFailure>(&wider)) return *failure;
-    if (auto& wide = std::get<std::optional<Fitted>>(wider)) {
+    if (!wider) return failure_of(wider);
+    if (auto& wide = *wider) {
       stand_in(wider_step(step.fitted, std::move(*wide)));
       return true;
     }
@@ -185,8 +176,8 @@ class Search {
       if (numerical(name) || (on_floor(step.fitted, out_.floor) && !wider_.came_to(*all[at])))
         continue;
       auto result = wider_.ask(step.fitted, at, out_.floor);
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-      auto& wide = std::get<std::optional<Fitted>>(result);
+      if (!result) return failure_of(result);
+      auto& wide = *result;
       if (!wide) continue;
       out_.steps.push_back(step_with(name, std::move(*wide), {name}));
       return true;
@@ -231,13 +222,13 @@ class Search {
     const Step& step = newest();
     if (room < 2) return false;
     auto beside = refit_beside_best(workspace_, step, contest, options_, events_);
-    if (auto* failure = std::get_if<NumericalFailure>(&beside)) return *failure;
-    auto& pair = std::get<std::optional<Pair>>(beside);
+    if (!beside) return failure_of(beside);
+    auto& pair = *beside;
     if (!pair) {
       if (explained(step.fitted, step.diagnosis)) return false;
       auto tried = refit_pairs(workspace_, step, contest, options_, events_);
-      if (auto* failure = std::get_if<NumericalFailure>(&tried)) return *failure;
-      pair = std::get<std::optional<Pair>>(std::move(tried));
+      if (!tried) return failure_of(tried);
+      pair = *std::move(tried);
       if (!pair ||
           !told_standing(options_.fit.decided, why_refused(step, contest.before, pair->second)))
         return false;
@@ -294,17 +285,15 @@ class Search {
 
   /// Puts the step, if there is one, behind the others.
   WentOn taken(LastAnswer answer) {
-    if (auto* failure = std::get_if<NumericalFailure>(&answer)) return *failure;
-    auto& step = std::get<std::optional<Step>>(answer);
+    if (!answer) return failure_of(answer);
+    auto& step = *answer;
     if (step) out_.steps.push_back(std::move(*step));
     return step.has_value();
   }
 
   /// Where nothing can be added: last_questions.h.
   WentOn asked_last(int room) {
-    const auto stays = [](const WentOn& result) {
-      return std::holds_alternative<bool>(result) && !std::get<bool>(result);
-    };
+    const auto stays = [](const WentOn& result) { return result.has_value() && !*result; };
     if (room > 0 && !mesh_refitted_ && !out_.all)
       if (auto result = taken(settled_mesh(workspace_, newest(), options_, events_));
           !stays(result))
@@ -348,35 +337,9 @@ class Search {
     return steps;
   }
 
-  /// What speaks against photos that are at the floor.
-  std::string in_doubt(const Step& last) const {
-    // What was taken back took nothing, however its refits round.
-    const bool named = !std::all_of(out_.missing.begin(), out_.missing.end(), numerical);
-    std::string stays;
-    if (named)
-      stays = more_stays(last.fitted, last.diagnosis, taken_by_names(whole_run(), out_.floor));
-    return stays.empty() ? moved_at_rest(last.fitted, last.diagnosis) : stays;
-  }
-
   Discovery finish() {
     shadow_.tell_all(options_.fit.decided);
-    std::string why;
-    const Step& last = newest();
-    out_.missing = effects_in(last.fitted.form);
-    settle_tie(out_.tie, out_.missing);
-    out_.verdict = judge(last.fitted, last.diagnosis, out_.tie, &why, all());
-    if (out_.verdict != Verdict::unexplained && !out_.all)
-      if (const std::string doubt = in_doubt(last) + not_compared(whole_run(), out_.missing);
-          !doubt.empty())
-        out_.verdict = Verdict::unexplained, why += doubt;
-    if (out_.verdict == Verdict::unexplained) out_.untold = cannot_be_told(last.diagnosis);
-    out_.sentence = say(out_.verdict, out_.missing, out_.tie, why, refused_.words(), out_.untold);
-    tell(options_.fit.decided, {Asked::ended,
-                                "",
-                                out_.verdict == Verdict::explained,
-                                {last.fitted.evaluation.chi(false),
-                                 out_.floor.limits->floor.at * out_.floor.chi, "floor.at"},
-                                out_.sentence});
+    conclude(out_, whole_run(), refused_, options_.fit.decided);
     return std::move(out_);
   }
 
@@ -399,23 +362,20 @@ class Search {
 
 }  // namespace
 
-std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
-                                                        const DiscoverOptions& options,
-                                                        const DiscoverEvents& events) {
+Result<Discovery> discover_from(Workspace& workspace, Step first, const DiscoverOptions& options,
+                                const DiscoverEvents& events) {
   const OwnArchive archive(workspace);
   return Search(workspace, options, events).run(std::move(first));
 }
 
-std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const ModelForm& form,
-                                                   const VectorXd& start,
-                                                   const DiscoverOptions& options,
-                                                   const DiscoverEvents& events) {
+Result<Discovery> discover(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                           const DiscoverOptions& options, const DiscoverEvents& events) {
   const OwnArchive archive(workspace);
   auto base = fit(workspace, form, start, options.fit);
-  if (auto* failure = std::get_if<NumericalFailure>(&base)) return *failure;
+  if (!base) return failure_of(base);
   Step step;
   step.name = "base";
-  step.fitted = std::get<Fitted>(std::move(base));
+  step.fitted = *std::move(base);
   return discover_from(workspace, std::move(step), options, events);
 }
 

@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/diagnosis/diagnosis.h"
@@ -85,18 +84,14 @@ struct DiscoverEvents {
   std::function<void(const Step&)> step;
   std::function<void(const Racer&)> tried;
   std::function<void(const std::string& effect)> refitting;
-  std::function<void(const std::string& effect, const std::variant<Fitted, NumericalFailure>&)>
-      refitted;
+  std::function<void(const std::string& effect, const Result<Fitted>&)> refitted;
 };
 
-std::variant<Discovery, NumericalFailure> discover(Workspace& workspace, const ModelForm& form,
-                                                   const VectorXd& start,
-                                                   const DiscoverOptions& options,
-                                                   const DiscoverEvents& events = {});
+Result<Discovery> discover(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                           const DiscoverOptions& options, const DiscoverEvents& events = {});
 
 /// Continues a run from its last step's model.
-std::variant<Discovery, NumericalFailure> discover_from(Workspace& workspace, Step first,
-                                                        const DiscoverOptions& options,
-                                                        const DiscoverEvents& events = {});
+Result<Discovery> discover_from(Workspace& workspace, Step first, const DiscoverOptions& options,
+                                const DiscoverEvents& events = {});
 
 }  // namespace hookeye

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <utility>
-#include <variant>
 
 #include "estimation/diagnosis/diagnosis.h"
 
@@ -48,8 +47,7 @@ auto from_shares(const Fitted& current, const EffectScore& score, const FitOptio
   auto result = run(Extension(current, score, 1.0));
   if (starts_anywhere(current, score)) return result;
   for (double share : {0.3, 0.1, 0.0}) {
-    const auto* failure = std::get_if<NumericalFailure>(&result);
-    if (!failure || cancelled(*failure) || (options.cancel && options.cancel->load())) break;
+    if (result || cancelled(result.error()) || (options.cancel && options.cancel->load())) break;
     result = run(Extension(current, score, share));
   }
   return result;

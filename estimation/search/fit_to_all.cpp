@@ -119,11 +119,8 @@ std::vector<std::string> values_hardly_known(const Fitted& fitted, const Fitted&
   return out;
 }
 
-std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& workspace,
-                                                                   const Fitted& fitted,
-                                                                   const Diagnosis& diagnosis,
-                                                                   const FitOptions& options) {
-  using Result = std::variant<std::optional<FitToAll>, NumericalFailure>;
+Result<std::optional<FitToAll>> fit_to_all(Workspace& workspace, const Fitted& fitted,
+                                           const Diagnosis& diagnosis, const FitOptions& options) {
   const std::optional<FitToAll> none;
   const Floor& floor = diagnosis.floor;
   if (!spoils_held_out(fitted, floor) ||
@@ -134,10 +131,12 @@ std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& wo
   FitOptions warm = options;
   warm.coarse_to_fine = false;
   auto result = fit(workspace, moved->first, moved->second, warm);
-  if (auto* failure = std::get_if<NumericalFailure>(&result))
-    return cancelled(*failure) ? Result(*failure) : none;
+  if (!result) {
+    if (cancelled(result.error())) return failure_of(result);
+    return none;
+  }
   FitToAll out;
-  out.fitted = std::get<Fitted>(std::move(result));
+  out.fitted = *std::move(result);
   Evaluation& all = out.fitted.evaluation;
   use_as(fitted.form.scene->capture, all);
   out.chi_fit = all.chi(false);

@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/fit/at_floor.h"
@@ -27,10 +26,8 @@ std::vector<std::string> values_hardly_known(const Fitted& fitted, const Fitted&
 /// what is measured at its noise, and the fitted photos as they were but for what values and
 /// renderers (least_fall) err by. Empty where the held-out photos are at the floor, worse than the
 /// values make them, or where no such set is found.
-std::variant<std::optional<FitToAll>, NumericalFailure> fit_to_all(Workspace& workspace,
-                                                                   const Fitted& fitted,
-                                                                   const Diagnosis& diagnosis,
-                                                                   const FitOptions& options);
+Result<std::optional<FitToAll>> fit_to_all(Workspace& workspace, const Fitted& fitted,
+                                           const Diagnosis& diagnosis, const FitOptions& options);
 
 /// For the effects of `all`, the last first: who tied with one (`tie`, of which it is the first) or
 /// explained the fitted photos in a contest of `past` that it won, or who won it for it, and does

@@ -18,11 +18,11 @@ LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const Discover
     auto result = announced(events, score.effect, [&] {
       return add_effect(workspace, newest.fitted, score, options.fit);
     });
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
       continue;
     }
-    Refit refit{score.effect, std::get<Fitted>(std::move(result)), 0.0};
+    Refit refit{score.effect, *std::move(result), 0.0};
     if (told_standing(options.fit.decided, refused_by(newest, refit)))
       return step_with(score.effect, std::move(refit.fitted));
   }
@@ -76,8 +76,8 @@ LastAnswer wider_loser(Workspace& workspace, const Step& newest, const std::vect
         at + 1 != last.form.ingredients.size())
       continue;
     auto result = widened(workspace, loser.fitted, at, floor, options.fit, events);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    Refit wide{loser.effect, std::get<Fitted>(std::move(result)), 0.0};
+    if (!result) return failure_of(result);
+    Refit wide{loser.effect, *std::move(result), 0.0};
     const Yardstick yardstick{&wide.fitted, &floor, measured_noise2(wide.fitted)};
     wide.score = refit_score(wide.fitted, yardstick);
     if (wide.score < refit_score(last, yardstick) - newest.diagnosis.limits().tie ||

@@ -5,7 +5,6 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "estimation/search/swaps.h"
@@ -13,7 +12,7 @@
 namespace hookeye {
 
 /// The step that the answer makes; empty: the model stays.
-using LastAnswer = std::variant<std::optional<Step>, NumericalFailure>;
+using LastAnswer = Result<std::optional<Step>>;
 
 /// Before the photos are called unexplained the mesh is refitted, if the likelihood asks for it:
 /// where a hard wall meets a coarse body its linear change is no guide, and a step with it may have

@@ -28,18 +28,19 @@ DiscoverEvents told_with(const std::string& first, const DiscoverEvents& events)
 }
 
 /// The mesh first: nothing is named before it is settled.
-std::variant<std::optional<Pair>, NumericalFailure> on_finer_mesh(
-    Workspace& workspace, const Step& step, const Refit& best, const Diagnosis& diagnosis,
-    const DiscoverOptions& options, const DiscoverEvents& events) {
+Result<std::optional<Pair>> on_finer_mesh(Workspace& workspace, const Step& step, const Refit& best,
+                                          const Diagnosis& diagnosis,
+                                          const DiscoverOptions& options,
+                                          const DiscoverEvents& events) {
   for (const EffectScore& score : diagnosis.effects) {
     if (!numerical(score.effect) || !nameable(score, diagnosis)) continue;
     auto result = announced(events, score.effect,
                             [&] { return add_effect(workspace, best.fitted, score, options.fit); });
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
       continue;
     }
-    Fitted& both = std::get<Fitted>(result);
+    Fitted& both = *result;
     if (!refused_by(step, {best.effect, both, 0.0}))
       return Pair{best, {score.effect, std::move(both), 0.0}};
   }
@@ -48,11 +49,9 @@ std::variant<std::optional<Pair>, NumericalFailure> on_finer_mesh(
 
 }  // namespace
 
-std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
-                                                                const Step& step,
-                                                                const Contest& contest,
-                                                                const DiscoverOptions& options,
-                                                                const DiscoverEvents& events) {
+Result<std::optional<Pair>> refit_pairs(Workspace& workspace, const Step& step,
+                                        const Contest& contest, const DiscoverOptions& options,
+                                        const DiscoverEvents& events) {
   std::optional<Pair> best;
   const auto& refits = contest.refits;
   const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
@@ -60,20 +59,19 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
     for (size_t k = i + 1; k < refits.size(); ++k) {
       if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
       const auto& added = refits[k].fitted.form.ingredients.back();
-      const auto n = static_cast<Eigen::Index>(added->parameters().size());
       ModelForm form = refits[i].fitted.form;
       form.ingredients.push_back(added);
-      VectorXd p(refits[i].fitted.p.size() + n);
-      p << refits[i].fitted.p, refits[k].fitted.p.tail(n);
+      VectorXd p(form.size());
+      p << refits[i].fitted.p, refits[k].fitted.p.tail(p.size() - refits[i].fitted.p.size());
       FitOptions warm = options.fit;
       warm.coarse_to_fine = false;
       auto result = announced(events, refits[i].effect + " and " + refits[k].effect,
                               [&] { return fit(workspace, form, p, warm); });
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-        if (cancelled(*failure)) return *failure;
+      if (!result) {
+        if (cancelled(result.error())) return failure_of(result);
         continue;
       }
-      auto& fitted = std::get<Fitted>(result);
+      auto& fitted = *result;
       const double score = refit_score(fitted, yardstick);
       if (!best || score > best->second.score)
         best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
@@ -81,9 +79,10 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& works
   return best;
 }
 
-std::variant<std::optional<Pair>, NumericalFailure> refit_beside_best(
-    Workspace& workspace, const Step& step, const Contest& contest, const DiscoverOptions& options,
-    const DiscoverEvents& events) {
+Result<std::optional<Pair>> refit_beside_best(Workspace& workspace, const Step& step,
+                                              const Contest& contest,
+                                              const DiscoverOptions& options,
+                                              const DiscoverEvents& events) {
   const Refit& best = contest.refits.front();
   const Floor& floor = step.diagnosis.floor;
   if (numerical(best.effect) ||
@@ -92,19 +91,19 @@ std::variant<std::optional<Pair>, NumericalFailure> refit_beside_best(
       held_out_allows(best.fitted, step.fitted, floor, least_fall(step.diagnosis, best.effect)))
     return std::nullopt;
   auto diagnosed = diagnose(workspace, best.fitted, options.diagnosis);
-  if (auto* failure = std::get_if<NumericalFailure>(&diagnosed)) return *failure;
+  if (!diagnosed) return failure_of(diagnosed);
   Step beside;
   beside.name = beside.added = best.effect;
   beside.fitted = best.fitted;
-  beside.diagnosis = std::get<Diagnosis>(std::move(diagnosed));
+  beside.diagnosis = *std::move(diagnosed);
   const DiscoverEvents told = told_with(best.effect, events);
   auto on_mesh = on_finer_mesh(workspace, step, best, beside.diagnosis, options, told);
-  if (auto* found = std::get_if<std::optional<Pair>>(&on_mesh); !found || *found) return on_mesh;
+  if (!on_mesh || *on_mesh) return on_mesh;
   std::erase_if(beside.diagnosis.effects,
                 [](const EffectScore& score) { return numerical(score.effect); });
   auto refitted = refit_leaders(workspace, beside, {}, options, told);
-  if (auto* failure = std::get_if<NumericalFailure>(&refitted)) return *failure;
-  auto& second = std::get<Contest>(refitted);
+  if (!refitted) return failure_of(refitted);
+  auto& second = *refitted;
   for (Refit& both : second.refits)
     if (!why_refused(beside, second.before, both) &&
         !refused_by(step, {best.effect, both.fitted, 0.0}))

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <variant>
 
 #include "estimation/search/contest.h"
 
@@ -15,19 +14,18 @@ struct Pair {
   Refit first;   ///< alone, as it was refitted
   Refit second;  ///< with both
 };
-std::variant<std::optional<Pair>, NumericalFailure> refit_pairs(Workspace& workspace,
-                                                                const Step& step,
-                                                                const Contest& contest,
-                                                                const DiscoverOptions& options,
-                                                                const DiscoverEvents& events);
+Result<std::optional<Pair>> refit_pairs(Workspace& workspace, const Step& step,
+                                        const Contest& contest, const DiscoverOptions& options,
+                                        const DiscoverEvents& events);
 
 /// Held-out photos speak against the best of the contest, which takes more than half of what is
 /// over the floor from the fitted ones: what they lost may be the mesh's own error beside so much
 /// less, or what else is missing, which a modulus had made up for. The best and, where a finer mesh
 /// or another effect stands out beside it, that as the second; empty: none does, or with it they
 /// speak against the best as well.
-std::variant<std::optional<Pair>, NumericalFailure> refit_beside_best(
-    Workspace& workspace, const Step& step, const Contest& contest, const DiscoverOptions& options,
-    const DiscoverEvents& events);
+Result<std::optional<Pair>> refit_beside_best(Workspace& workspace, const Step& step,
+                                              const Contest& contest,
+                                              const DiscoverOptions& options,
+                                              const DiscoverEvents& events);
 
 }  // namespace hookeye

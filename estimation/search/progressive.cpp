@@ -20,18 +20,16 @@ struct Scored {
 };
 
 /// Refinements by falling log evidence over the present model.
-std::variant<std::vector<Scored>, NumericalFailure> score(Workspace& workspace,
-                                                          const Fitted& fitted,
-                                                          const std::vector<Refinement>& all,
-                                                          const FitOptions& options) {
+Result<std::vector<Scored>> score(Workspace& workspace, const Fitted& fitted,
+                                  const std::vector<Refinement>& all, const FitOptions& options) {
   EvaluationOptions evaluation;
   evaluation.pictures = true;
   evaluation.cancel = options.cancel;
   std::vector<std::shared_ptr<const Ingredient>> candidates;
   for (const Refinement& one : all) candidates.push_back(one.candidate);
   auto result = workspace.evaluate(fitted.form, fitted.p, evaluation, candidates);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  const Evaluation& seen = std::get<Evaluation>(result);
+  if (!result) return failure_of(result);
+  const Evaluation& seen = *result;
   const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
   const EffectiveSums sums = diagnosis_sums(seen, floor).effective;
   const int base = fitted.form.size();
@@ -121,27 +119,26 @@ std::vector<Next> next_models(const std::vector<AdditiveModel>& present,
 /// The next model fitted: the first that held-out examples like better than the present one, else
 /// the one they like best; without held-out examples the first. Empty where the residual asks for
 /// nothing.
-std::variant<std::optional<Fitted>, NumericalFailure> one_more(
-    Workspace& workspace, const Fitted& present, const FitOptions& options,
-    std::vector<RefinementStage>& stages) {
+Result<std::optional<Fitted>> one_more(Workspace& workspace, const Fitted& present,
+                                       const FitOptions& options,
+                                       std::vector<RefinementStage>& stages) {
   const std::vector<Refinement> all = refinements(present.form, present);
   if (all.empty()) return std::nullopt;
   auto scored = score(workspace, present, all, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&scored)) return *failure;
+  if (!scored) return failure_of(scored);
   const auto before = held_out_misfit(present);
   std::optional<Fitted> best;
   std::vector<AdditiveModel> models;
   for (const AdditivePart& part : additive_parts(present.form, present.p))
     models.push_back(part.model);
-  for (const Next& one : next_models(models, all, std::get<std::vector<Scored>>(scored),
-                                     *present.form.scene->limits)) {
+  for (const Next& one : next_models(models, all, *scored, *present.form.scene->limits)) {
     const auto [larger, p] = with_structures(present.form, present.p, one.models);
     auto result = fit(workspace, larger, p, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
       continue;
     }
-    Fitted& next = std::get<Fitted>(result);
+    Fitted& next = *result;
     stages.push_back(stage_of(one.what, one.evidence, next));
     const auto after = held_out_misfit(next);
     if (!best || (after && *after < *held_out_misfit(*best))) best = std::move(next);
@@ -150,17 +147,14 @@ std::variant<std::optional<Fitted>, NumericalFailure> one_more(
   return best;
 }
 
-std::variant<Fitted, NumericalFailure> best_start(Workspace& workspace,
-                                                  const std::vector<AdditiveStart>& starts,
-                                                  const FitOptions& options) {
-  std::variant<Fitted, NumericalFailure> best = NumericalFailure{"", 0.0, "no start"};
+Result<Fitted> best_start(Workspace& workspace, const std::vector<AdditiveStart>& starts,
+                          const FitOptions& options) {
+  Result<Fitted> best = no_result({"", 0.0, "no start"});
   for (const auto& [form, p] : starts) {
     auto result = fit(workspace, form, p, options);
-    const auto* failure = std::get_if<NumericalFailure>(&result);
-    if (failure && cancelled(*failure)) return *failure;
-    const auto* other = std::get_if<Fitted>(&best);
-    if (!other || (!failure && normal_equations(std::get<Fitted>(result).evaluation).r2 <
-                                   normal_equations(other->evaluation).r2))
+    if (!result && cancelled(result.error())) return failure_of(result);
+    if (!best ||
+        (result && normal_equations(result->evaluation).r2 < normal_equations(best->evaluation).r2))
       best = std::move(result);
   }
   return best;
@@ -168,12 +162,11 @@ std::variant<Fitted, NumericalFailure> best_start(Workspace& workspace,
 
 }  // namespace
 
-std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace,
-                                                       const std::vector<AdditiveStart>& starts,
-                                                       const ProgressiveOptions& options) {
+Result<Fitted> fit_progressive(Workspace& workspace, const std::vector<AdditiveStart>& starts,
+                               const ProgressiveOptions& options) {
   auto first = best_start(workspace, starts, options.fit);
-  if (std::holds_alternative<NumericalFailure>(first)) return first;
-  Fitted present = std::get<Fitted>(std::move(first)), best = present;
+  if (!first) return first;
+  Fitted present = *std::move(first), best = present;
   std::vector<RefinementStage> stages = {stage_of("start", 0.0, best)};
   stages.back().kept = true;
   // A refinement may pay only together with the next, so a refused one is followed further.
@@ -181,8 +174,8 @@ std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace,
   for (int round = 0; round < options.most_refinements; ++round) {
     const size_t tried = stages.size();
     auto result = one_more(workspace, present, options.fit, stages);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    auto& next = std::get<std::optional<Fitted>>(result);
+    if (!result) return failure_of(result);
+    auto& next = *result;
     if (!next) break;
     present = std::move(*next);
     const auto held_out = held_out_misfit(present);

@@ -39,8 +39,7 @@ using AdditiveStart = std::pair<ModelForm, VectorXd>;
 /// other, scored without refitting, the leading ones fitted; what is returned agrees best with the
 /// held-out examples, and `Fitted::refinements` tells which led there. Without held-out examples
 /// the log evidence alone decides (DiagnosisLimits::tie).
-std::variant<Fitted, NumericalFailure> fit_progressive(Workspace& workspace,
-                                                       const std::vector<AdditiveStart>& starts,
-                                                       const ProgressiveOptions& options = {});
+Result<Fitted> fit_progressive(Workspace& workspace, const std::vector<AdditiveStart>& starts,
+                               const ProgressiveOptions& options = {});
 
 }  // namespace hookeye

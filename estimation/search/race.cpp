@@ -14,7 +14,7 @@ namespace hookeye {
 
 namespace {
 
-/// After its second step, or where it stands if there is none.
+/// After its second step (run_ahead: or a later one), or where it stands if there is none.
 const Trial& newest(const Racer& racer) { return racer.next ? *racer.next : racer.trial; }
 
 /// Which of two forms of an effect gets farther on fitted and held-out photos together; one that
@@ -41,28 +41,29 @@ Racer joined_by(const Racer& alone, const Fitted& before, const EffectScore& won
   auto [ingredient, values] = entering(model, won, 0.0);
   Racer both = alone;
   both.next.reset();
-  const auto own = static_cast<Eigen::Index>(alone.form.ingredients.back()->parameters().size());
+  const ParameterLayout at = alone.form.layout();
   both.form.ingredients.insert(both.form.ingredients.end() - 1, std::move(ingredient));
   const VectorXd& p = alone.trial.p;
   both.trial.p.resize(p.size() + values.size());
-  both.trial.p << p.head(p.size() - own), values, p.tail(own);
+  both.trial.p << at.before(p, at.last()), values, at.of(p, at.last());
   return both;
 }
 
 /// Steps once more from where the racer stands.
-std::variant<Trial, NumericalFailure> step_on(Workspace& workspace, const Racer& racer,
-                                              const TrialScale& scale, const FitOptions& options) {
+Result<Trial> step_on(Workspace& workspace, const Racer& racer, const TrialScale& scale,
+                      const FitOptions& options) {
   if (racer.next) return *racer.next;
   return try_step(workspace, racer.form, racer.trial.p, scale, options);
 }
 /// The racer's second step, where there is one.
-std::optional<NumericalFailure> run_on(Workspace& workspace, Racer& racer, const TrialScale& scale,
-                                       const FitOptions& options,
-                                       const std::function<void(const Racer&)>& tried) {
+Result<void> run_on(Workspace& workspace, Racer& racer, const TrialScale& scale,
+                    const FitOptions& options, const std::function<void(const Racer&)>& tried) {
   auto result = step_on(workspace, racer, scale, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&result))
-    return cancelled(*failure) ? std::optional(*failure) : std::nullopt;
-  racer.trial = std::get<Trial>(std::move(result));
+  if (!result) {
+    if (cancelled(result.error())) return failure_of(result);
+    return {};
+  }
+  racer.trial = *std::move(result);
   if (tried) tried(racer);
   return {};
 }
@@ -80,6 +81,43 @@ bool explains_nearly_all(const Trial& left, const TrialScale& start, const Searc
   };
   return nearly(left.chi_fit, start.chi) && nearly(left.chi_validate, start.chi_validate);
 }
+
+/// The first takes its second step before the others their first, and more while they bring it to
+/// where it explains nearly all: who need not run shows then.
+Result<void> run_ahead(Workspace& workspace, Racer& first, const TrialScale& start,
+                       const FitOptions& options) {
+  for (int step = 1; step < kMostTrials; ++step) {
+    const Trial before = step == 1 ? first.trial : *first.next;
+    if (step > 1 || !first.next) {  // of two forms it may have taken it already
+      auto further = try_step(workspace, first.form, before.p, start, options);
+      if (!further) {
+        if (cancelled(further.error())) return failure_of(further);
+        return {};
+      }
+      first.next = *std::move(further);
+    }
+    if (!brings_nearly_all(before, *first.next, start, first.limits())) return {};
+  }
+  return {};
+}
+
+}  // namespace
+
+bool brings_nearly_all(const Trial& before, const Trial& now, const TrialScale& start,
+                       const SearchLimits& limits) {
+  const auto over = [&](double chi) {
+    return std::max(0.0, chi * chi - start.floor * start.floor);
+  };
+  const auto brings = [&](double at_start, double then, double left) {
+    const double most = limits.nearly_all * over(at_start);
+    return over(left) <= most || over(left) * over(left) <= most * over(then);
+  };
+  return !explains_nearly_all(now, start, limits) &&
+         brings(start.chi, before.chi_fit, now.chi_fit) &&
+         brings(start.chi_validate, before.chi_validate, now.chi_validate);
+}
+
+namespace {
 
 /// The first explains nearly all, and this one promises less than half of what the first did and
 /// would be out of its reach with that: it could only come from there to tie, as a double whose
@@ -143,10 +181,9 @@ double Racer::structured() const {
   return over(trial.chi_fit) + (trial.chi_validate > 0.0 ? over(trial.chi_validate) : 0.0);
 }
 
-std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& current,
-                                            const EffectScore& score, const TrialScale& scale,
-                                            const FitOptions& options) {
-  std::variant<Racer, NumericalFailure> best = NumericalFailure{"", 0.0, "no start"};
+Result<Racer> enter(Workspace& workspace, const Fitted& current, const EffectScore& score,
+                    const TrialScale& scale, const FitOptions& options) {
+  Result<Racer> best = no_result({"", 0.0, "no start"});
   for (const EffectScore* form : {&score, score.other_form.get()}) {
     if (!form) continue;
     ModelForm started;
@@ -157,37 +194,35 @@ std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& 
       started = extension.form;
       return try_step(workspace, started, extension.start, own, options);
     });
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (form == &score || cancelled(*failure)) best = *failure;
-      if (cancelled(*failure)) break;
+    if (!result) {
+      if (form == &score || cancelled(result.error())) best = failure_of(result);
+      if (cancelled(result.error())) break;
       continue;
     }
-    Racer racer{score.effect, std::move(started), std::get<Trial>(std::move(result)), {}, scale};
-    auto* other = std::get_if<Racer>(&best);
-    if (other)
-      for (Racer* one : {other, &racer}) {
+    Racer racer{score.effect, std::move(started), *std::move(result), {}, scale};
+    if (best)
+      for (Racer* one : {&*best, &racer}) {
         auto further = step_on(workspace, *one, scale, options);
-        if (const auto* failure = std::get_if<NumericalFailure>(&further)) {
-          if (cancelled(*failure)) return *failure;
+        if (!further) {
+          if (cancelled(further.error())) return failure_of(further);
         } else {
-          one->next = std::get<Trial>(std::move(further));
+          one->next = *std::move(further);
         }
       }
-    if (!other || gets_farther(racer, *other, scale)) best = std::move(racer);
+    if (!best || gets_farther(racer, *best, scale)) best = std::move(racer);
   }
   return best;
 }
 
-std::variant<std::vector<Racer>, NumericalFailure> race(
-    Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
-    const FitOptions& options, const std::function<void(const Racer&)>& tried) {
+Result<std::vector<Racer>> race(Workspace& workspace, const Fitted& current,
+                                const Diagnosis& diagnosis, const FitOptions& options,
+                                const std::function<void(const Racer&)>& tried) {
   std::vector<Racer> racers;
   const auto scale = trial_scale(workspace, current.form, current.p, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+  if (!scale) return failure_of(scale);
   for (const EffectScore& score : diagnosis.effects) {
     if (!nameable(score, diagnosis)) continue;
-    if (!racers.empty() &&
-        no_rival(score, diagnosis, racers.front(), std::get<TrialScale>(scale))) {
+    if (!racers.empty() && no_rival(score, diagnosis, racers.front(), *scale)) {
       tell(options.decided,
            {Asked::screened,
             score.effect,
@@ -198,22 +233,18 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
                 " explains nearly all, and this promises too little to equal it"});
       continue;
     }
-    auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
-    if (auto* failure = std::get_if<NumericalFailure>(&entered)) {
-      if (cancelled(*failure)) return *failure;
-      tell(options.decided, {Asked::screened, score.effect, false, {}, failure->reason});
+    auto entered = enter(workspace, current, score, *scale, options);
+    if (!entered) {
+      if (cancelled(entered.error())) return failure_of(entered);
+      tell(options.decided, {Asked::screened, score.effect, false, {}, entered.error().reason});
       continue;
     }
-    racers.push_back(std::get<Racer>(std::move(entered)));
-    tell_of_trial(options, racers.back(), std::get<TrialScale>(scale));
+    racers.push_back(*std::move(entered));
+    tell_of_trial(options, racers.back(), *scale);
     if (tried) tried(racers.back());
     if (racers.size() > 1 || &score == &diagnosis.effects.back()) continue;
-    // The first is asked for its second step at once: who need not run shows then.
-    auto further = step_on(workspace, racers.front(), std::get<TrialScale>(scale), options);
-    if (auto* trial = std::get_if<Trial>(&further))
-      racers.front().next = std::move(*trial);
-    else if (cancelled(std::get<NumericalFailure>(further)))
-      return std::get<NumericalFailure>(further);
+    if (auto ran = run_ahead(workspace, racers.front(), *scale, options); !ran)
+      return failure_of(ran);
   }
   sort_by_success(racers);
   const Racer first = racers.empty() ? Racer() : racers.front();
@@ -238,40 +269,39 @@ std::variant<std::vector<Racer>, NumericalFailure> race(
                            "after one step too far behind " + first.effect + ": no second one"});
       continue;
     }
-    if (auto stopped = run_on(workspace, racers[i], std::get<TrialScale>(scale), options, tried))
-      return *stopped;
+    if (auto ran = run_on(workspace, racers[i], *scale, options, tried); !ran)
+      return failure_of(ran);
   }
   sort_by_success(racers);
   return racers;
 }
 
-std::variant<std::vector<Racer>, NumericalFailure> race_beside(
-    Workspace& workspace, const Fitted& before, const EffectScore& won,
-    const std::vector<Racer>& racers, const FitOptions& options,
-    const std::function<void(const Racer&)>& tried) {
+Result<std::vector<Racer>> race_beside(Workspace& workspace, const Fitted& before,
+                                       const EffectScore& won, const std::vector<Racer>& racers,
+                                       const FitOptions& options,
+                                       const std::function<void(const Racer&)>& tried) {
   std::vector<Racer> beside;
   const auto scale = trial_scale(workspace, before.form, before.p, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+  if (!scale) return failure_of(scale);
   for (const Racer& alone : racers) {
     const auto& own = alone.form.ingredients.back();
     if (alone.effect == won.effect || numerical(alone.effect) || sensors_alone(*own)) continue;
     Racer racer = joined_by(alone, before, won);
-    auto result =
-        try_step(workspace, racer.form, racer.trial.p, std::get<TrialScale>(scale), options);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-      if (cancelled(*failure)) return *failure;
+    auto result = try_step(workspace, racer.form, racer.trial.p, *scale, options);
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
       continue;
     }
-    racer.trial = std::get<Trial>(std::move(result));
-    racer.start = std::get<TrialScale>(scale);
+    racer.trial = *std::move(result);
+    racer.start = *scale;
     if (tried) tried(racer);
     beside.push_back(std::move(racer));
   }
   sort_by_success(beside);
   const auto second = static_cast<size_t>(before.form.scene->limits->search.second_round);
   for (size_t i = 0; i < std::min(beside.size(), second); ++i) {
-    if (auto stopped = run_on(workspace, beside[i], std::get<TrialScale>(scale), options, tried))
-      return *stopped;
+    if (auto ran = run_on(workspace, beside[i], *scale, options, tried); !ran)
+      return failure_of(ran);
   }
   sort_by_success(beside);
   return beside;

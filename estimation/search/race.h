@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/diagnosis/diagnosis.h"
@@ -56,27 +55,33 @@ struct Raced {
 /// One Gauss-Newton step with the effect from its linear step; of its two forms, where there are
 /// two, the one that gets farther on fitted and held-out photos together in two: one step from afar
 /// is luck where both fit.
-std::variant<Racer, NumericalFailure> enter(Workspace& workspace, const Fitted& current,
-                                            const EffectScore& score, const TrialScale& scale,
-                                            const FitOptions& options);
+Result<Racer> enter(Workspace& workspace, const Fitted& current, const EffectScore& score,
+                    const TrialScale& scale, const FitOptions& options);
+
+/// A racer that went on from `before` to `now` does not yet explain nearly all, and its next step
+/// brings it there if that takes as large a part of what is left as the last one did. (Steps of a
+/// fit that converges take more.) `start`: of the model without it.
+bool brings_nearly_all(const Trial& before, const Trial& now, const TrialScale& start,
+                       const SearchLimits& limits);
 
 /// All nameable effects, each given one Gauss-Newton step from its linear step and the first four
 /// another, where they are within reach, by falling success on fitted and held-out photos together.
 /// The linear score knows a model's first step only: an effect that needs three (stiffening, a
-/// clamp) loses there to a field that needs one. Where the first has explained nearly all those
-/// that promise little do not run. Effects without equilibrium on the way drop out. A finer mesh
+/// clamp) loses there to a field that needs one. The first runs ahead: it takes its second step at
+/// once, and more while they bring it to explain nearly all; then those that promise little do not
+/// run. Effects without equilibrium on the way drop out. A finer mesh
 /// runs as what it changes, to first order: only its refit is on that mesh.
-std::variant<std::vector<Racer>, NumericalFailure> race(
-    Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
-    const FitOptions& options, const std::function<void(const Racer&)>& tried = {});
+Result<std::vector<Racer>> race(Workspace& workspace, const Fitted& current,
+                                const Diagnosis& diagnosis, const FitOptions& options,
+                                const std::function<void(const Racer&)>& tried = {});
 
 /// Who lost a race from `before` to `won` and may be missing too: from where it got there, the
 /// winner joins it from its null, for one step, and the first four for another. (A field that was
 /// fitted to all has taken on what a clamp does: from there the clamp finds nothing to explain.)
 /// `racers`: of that race. What moves no photo, the winner and numerical errors do not run.
-std::variant<std::vector<Racer>, NumericalFailure> race_beside(
-    Workspace& workspace, const Fitted& before, const EffectScore& won,
-    const std::vector<Racer>& racers, const FitOptions& options,
-    const std::function<void(const Racer&)>& tried = {});
+Result<std::vector<Racer>> race_beside(Workspace& workspace, const Fitted& before,
+                                       const EffectScore& won, const std::vector<Racer>& racers,
+                                       const FitOptions& options,
+                                       const std::function<void(const Racer&)>& tried = {});
 
 }  // namespace hookeye

@@ -30,9 +30,8 @@ std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
 }
 
 /// Fits `model` with `remeshing` on the mesh that it asks for.
-std::variant<Fitted, NumericalFailure> fit_on_its_mesh(Workspace& workspace, const Model& model,
-                                                       const Ingredient& remeshing,
-                                                       const FitOptions& options) {
+Result<Fitted> fit_on_its_mesh(Workspace& workspace, const Model& model,
+                               const Ingredient& remeshing, const FitOptions& options) {
   const auto [form, start] = on_its_mesh(model, remeshing);
   FitOptions from_rest = warm(options);  // no equilibrium is known on this mesh
   from_rest.most_iterations = FitOptions{}.most_iterations;
@@ -46,19 +45,18 @@ std::optional<std::pair<ModelForm, VectorXd>> with_other_form(
     std::shared_ptr<const Ingredient> (Effect::*change)(const Model&, const Ingredient&,
                                                         VectorXd& values) const) {
   const Ingredient& last = *fitted.form.ingredients.back();
-  const auto own = static_cast<Eigen::Index>(last.parameters().size());
-  const VectorXd before = fitted.p.head(fitted.p.size() - own);
+  const ParameterLayout at = fitted.form.layout();
+  const VectorXd before = at.before(fitted.p, at.last());
   ModelForm other = fitted.form;
   other.ingredients.pop_back();
-  VectorXd values = fitted.p.tail(own);
+  VectorXd values = at.of(fitted.p, at.last());
   auto form = (find_effect(last.name())->*change)(other.realise(before), last, values);
   if (!form) return std::nullopt;
   const auto parameters = form->parameters();
   for (int i = 0; i < values.size(); ++i)
     values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
   other.ingredients.push_back(std::move(form));
-  VectorXd there(before.size() + values.size());
-  there << before, values;
+  VectorXd there = at.with(fitted.p, at.last(), values);
   there = with_stiffness_of(fitted.form.realise(fitted.p), other, std::move(there));
   return std::pair{std::move(other), std::move(there)};
 }
@@ -87,19 +85,17 @@ bool pays_for_itself(const Fitted& fitted, const Ingredient& plainer) {
 
 /// The plainer form of the last effect where what it does without does not pay for itself
 /// (refit_score), else `fitted`.
-std::variant<Fitted, NumericalFailure> fit_plainest(Workspace& workspace, Fitted fitted,
-                                                    const FitOptions& options) {
+Result<Fitted> fit_plainest(Workspace& workspace, Fitted fitted, const FitOptions& options) {
   const auto other = with_other_form(fitted, &Effect::plainer_form);
   if (!other || pays_for_itself(fitted, *other->first.ingredients.back())) return fitted;
   auto second = fit(workspace, other->first, other->second, warm(options));
-  if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
-    if (cancelled(*failure)) return *failure;
+  if (!second) {
+    if (cancelled(second.error())) return failure_of(second);
     return fitted;
   }
   const Floor floor = measure_floor(workspace.scene(), fitted.evaluation);
   const Yardstick yardstick{&fitted, &floor, measured_noise2(fitted)};
-  const double gain =
-      refit_score(std::get<Fitted>(second), yardstick) - refit_score(fitted, yardstick);
+  const double gain = refit_score(*second, yardstick) - refit_score(fitted, yardstick);
   return tell(options.decided,
               {Asked::widened,
                form_in_words(other->first),
@@ -112,21 +108,19 @@ std::variant<Fitted, NumericalFailure> fit_plainest(Workspace& workspace, Fitted
 
 /// Fits; then the smaller form of the last effect, where it has one, from where the larger ended.
 /// The smaller one is kept where it misses no more. The plainer form of either comes last.
-std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const ModelForm& form,
-                                                    const VectorXd& start,
-                                                    const FitOptions& options) {
-  auto result = fit(workspace, form, start, warm(options));
-  auto* larger = std::get_if<Fitted>(&result);
-  if (!larger) return result;
+Result<Fitted> fit_smallest(Workspace& workspace, const ModelForm& form, const VectorXd& start,
+                            const FitOptions& options) {
+  auto larger = fit(workspace, form, start, warm(options));
+  if (!larger) return larger;
   const auto other = with_other_form(*larger, &Effect::smaller_form);
-  if (!other) return fit_plainest(workspace, std::move(*larger), options);
+  if (!other) return fit_plainest(workspace, *std::move(larger), options);
   // far from there: coarse to fine
   auto second = fit(workspace, other->first, other->second, options);
-  if (const auto* failure = std::get_if<NumericalFailure>(&second)) {
-    if (cancelled(*failure)) return *failure;
-    return fit_plainest(workspace, std::move(*larger), options);
+  if (!second) {
+    if (cancelled(second.error())) return failure_of(second);
+    return fit_plainest(workspace, *std::move(larger), options);
   }
-  Fitted& smaller = std::get<Fitted>(second);
+  Fitted& smaller = *second;
   const bool as_good = tell(
       options.decided, {Asked::widened,
                         form_in_words(other->first),
@@ -138,15 +132,14 @@ std::variant<Fitted, NumericalFailure> fit_smallest(Workspace& workspace, const 
 
 }  // namespace
 
-std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fitted& current,
-                                                  const EffectScore& score,
-                                                  const FitOptions& options) {
+Result<Fitted> add_effect(Workspace& workspace, const Fitted& current, const EffectScore& score,
+                          const FitOptions& options) {
   if (score.other_form) {
     const auto scale = trial_scale(workspace, current.form, current.p, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
-    const auto entered = enter(workspace, current, score, std::get<TrialScale>(scale), options);
-    if (const auto* racer = std::get_if<Racer>(&entered)) return refit(workspace, *racer, options);
-    if (cancelled(std::get<NumericalFailure>(entered))) return std::get<NumericalFailure>(entered);
+    if (!scale) return failure_of(scale);
+    const auto entered = enter(workspace, current, score, *scale, options);
+    if (entered) return refit(workspace, *entered, options);
+    if (cancelled(entered.error())) return failure_of(entered);
   }
   const Model model = current.form.realise(current.p);
   if (auto remeshing = remeshing_form(model, score.best, score.values))
@@ -156,14 +149,13 @@ std::variant<Fitted, NumericalFailure> add_effect(Workspace& workspace, const Fi
   });
 }
 
-std::variant<Fitted, NumericalFailure> refit(Workspace& workspace, const Racer& racer,
-                                             const FitOptions& options) {
+Result<Fitted> refit(Workspace& workspace, const Racer& racer, const FitOptions& options) {
   const auto& scored = racer.form.ingredients.back();
-  const auto added = static_cast<Eigen::Index>(scored->parameters().size());
+  const ParameterLayout at = racer.form.layout();
   ModelForm before = racer.form;
   before.ingredients.pop_back();
-  const Model model = before.realise(racer.trial.p.head(racer.trial.p.size() - added));
-  if (auto remeshing = remeshing_form(model, scored, racer.trial.p.tail(added)))
+  const Model model = before.realise(at.before(racer.trial.p, at.last()));
+  if (auto remeshing = remeshing_form(model, scored, at.of(racer.trial.p, at.last())))
     return fit_on_its_mesh(workspace, model, *remeshing, options);
   return fit_smallest(workspace, racer.form, racer.trial.p, options);
 }

@@ -35,7 +35,7 @@ std::optional<Evaluation> with_mesh(Workspace& workspace, const Fitted& fitted,
   const Workspace::Place place = workspace.place();
   auto result = workspace.evaluate(fitted.form, fitted.p, evaluation, {mesh});
   workspace.start_from(place);
-  if (auto* known = std::get_if<Evaluation>(&result)) return std::move(*known);
+  if (result) return *std::move(result);
   return {};
 }
 

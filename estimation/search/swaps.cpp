@@ -20,13 +20,6 @@ std::string forms_of(const ModelForm& form) {
   return out;
 }
 
-Eigen::Index offset_of(const ModelForm& form, size_t ingredient) {
-  Eigen::Index offset = 0;
-  for (size_t k = 0; k < ingredient; ++k)
-    offset += static_cast<Eigen::Index>(form.ingredients[k]->parameters().size());
-  return offset;
-}
-
 namespace {
 
 /// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
@@ -45,11 +38,8 @@ bool stands(const Fitted& fitted, Eigen::Index offset, const std::vector<Paramet
 }  // namespace
 
 Parted parted_from(const Fitted& fitted, size_t i) {
-  const Eigen::Index offset = offset_of(fitted.form, i);
-  const auto n = static_cast<Eigen::Index>(fitted.form.ingredients[i]->parameters().size());
-  Parted out{fitted.form, VectorXd(fitted.p.size() - n)};
+  Parted out{fitted.form, fitted.form.layout().without(fitted.p, i)};
   out.form.ingredients.erase(out.form.ingredients.begin() + static_cast<std::ptrdiff_t>(i));
-  out.p << fitted.p.head(offset), fitted.p.tail(fitted.p.size() - offset - n);
   work_out_anew(out.form, out.p);
   return out;
 }
@@ -64,19 +54,18 @@ std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, si
   const auto [form, stands] = parted_from(fitted, i);
   VectorXd told = stands;
   const Eigen::Index own =
-      std::min(offset_of(fitted.form, i), base_form(form.scene).initial().size());
+      std::min(fitted.form.layout()[i].first, base_form(form.scene).initial().size());
   told.head(own) = form.initial().head(own);
   double least = std::numeric_limits<double>::infinity();
   VectorXd start = stands;
   for (const VectorXd& p : {stands, told}) {
     const auto there = assess(workspace, form, p, options);
-    const auto* known = std::get_if<Fitted>(&there);
-    if (known && misfit(*known) < least) least = misfit(*known), start = p;
+    if (there && misfit(*there) < least) least = misfit(*there), start = p;
   }
   FitOptions from_there = options;
   from_there.coarse_to_fine = least > form.scene->limits->search.coarse_again * misfit(fitted);
   auto result = fit(workspace, form, start, from_there);
-  if (auto* lighter = std::get_if<Fitted>(&result)) return std::move(*lighter);
+  if (result) return *std::move(result);
   return {};
 }
 
@@ -88,7 +77,8 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
   const double full = refit_score(current, yardstick);
   for (size_t i = first_effect; i + 1 < current.form.ingredients.size(); ++i) {
     const Ingredient& one = *current.form.ingredients[i];
-    if (remeshed_by(one) || stands(current, offset_of(current.form, i), one.parameters())) continue;
+    if (remeshed_by(one) || stands(current, current.form.layout()[i].first, one.parameters()))
+      continue;
     auto lighter = fit_without(workspace, current, i, options.fit);
     if (!lighter) continue;
     const double score = refit_score(*lighter, yardstick), tie = floor.limits->diagnosis.tie;
@@ -109,7 +99,7 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
   if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
   for (size_t i = first_effect; i < all.size(); ++i) {
     const auto own = all[i]->parameters();
-    const Eigen::Index offset = offset_of(fitted.form, i);
+    const Eigen::Index offset = fitted.form.layout()[i].first;
     bool null = !remeshed_by(*all[i]);
     for (size_t k = 0; k < own.size(); ++k) {
       const auto at = offset + static_cast<Eigen::Index>(k);
@@ -179,8 +169,8 @@ std::optional<Without> diagnosed(Workspace& workspace, const Ingredient& dropped
                                  std::optional<Fitted> lighter, const DiscoverOptions& options) {
   if (!lighter) return {};
   auto diagnosis = diagnose(workspace, *lighter, options.diagnosis);
-  if (!std::holds_alternative<Diagnosis>(diagnosis)) return {};
-  return Without{dropped, std::move(*lighter), std::get<Diagnosis>(std::move(diagnosis))};
+  if (!diagnosis) return {};
+  return Without{dropped, std::move(*lighter), *std::move(diagnosis)};
 }
 
 /// The refit of a swap, announced to who watches. Empty: it failed.
@@ -188,10 +178,9 @@ template <class Fit>
 std::optional<Refit> told_of_swap(const std::string& in, const std::string& out,
                                   const DiscoverEvents& events, const Fit& fit) {
   const std::string words = in + (in == out ? ", started again" : " in place of " + out);
-  auto result = announced(events, words, fit);
-  auto* refitted = std::get_if<Fitted>(&result);
+  auto refitted = announced(events, words, fit);
   if (!refitted) return {};
-  return Refit{in, std::move(*refitted), 0.0};
+  return Refit{in, *std::move(refitted), 0.0};
 }
 
 std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
@@ -251,8 +240,7 @@ bool falls_short(Workspace& workspace, Racer racer, const Racer& last, const Tri
     return racer.structured() > last.limits().out_of_reach * last.structured();
   };
   if (!far()) return false;
-  auto result = follow(workspace, racer.form, racer.trial.p, scale, options);
-  auto* followed = std::get_if<Followed>(&result);
+  auto followed = follow(workspace, racer.form, racer.trial.p, scale, options);
   if (!followed || !followed->stalled) return false;
   racer.trial = std::move(followed->trial);
   return far();
@@ -268,10 +256,8 @@ std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without, 
   std::erase_if(asked.effects, [&](const EffectScore& score) {
     return std::find(effects.begin(), effects.end(), score.effect) == effects.end();
   });
-  auto raced = race(workspace, without.fitted, asked, options.fit);
-  auto* racers = std::get_if<std::vector<Racer>>(&raced);
-  const auto scale = trial_scale(workspace, last.form, last.p, options.fit);
-  const auto* now = std::get_if<TrialScale>(&scale);
+  const auto racers = race(workspace, without.fitted, asked, options.fit);
+  const auto now = trial_scale(workspace, last.form, last.p, options.fit);
   if (!racers || !now) return out;
   const Racer stands{
       effects.front(), last.form, Trial{last.p, now->chi, now->chi_validate, now->floor}, {}};
@@ -308,16 +294,14 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
       continue;
     }
     auto there = assess(workspace, known->second.form, known->second.p, options.fit);
-    if (auto* fitted = std::get_if<Fitted>(&there))
-      refits.push_back({*rival, std::move(*fitted), 0.0});
+    if (there) refits.push_back({*rival, *std::move(there), 0.0});
   }
   if (open.size() > 1) {
     // As it stands, what the first explained is what is missing: who equals it explains that.
     const auto [form, stands] = parted_from(last, i);
-    auto there = assess(workspace, form, stands, options.fit);
-    auto* lighter = std::get_if<Fitted>(&there);
+    auto lighter = assess(workspace, form, stands, options.fit);
     const auto without = diagnosed(
-        workspace, *all[i], lighter ? std::optional(std::move(*lighter)) : std::nullopt, options);
+        workspace, *all[i], lighter ? std::optional(*std::move(lighter)) : std::nullopt, options);
     if (!without) return {};
     const bool ties_alone = on_floor(last, floor);
     for (Refit& refit :

@@ -15,8 +15,6 @@ namespace hookeye {
 std::string form_of(const Ingredient& one);
 /// Of all of a model.
 std::string forms_of(const ModelForm& form);
-/// Where the values of an ingredient begin.
-Eigen::Index offset_of(const ModelForm& form, size_t ingredient);
 
 struct Parted {
   ModelForm form;

@@ -29,9 +29,8 @@ Tested::Example tested_example(const ExampleEvaluation& seen, const ExampleSpec&
 
 }  // namespace
 
-std::variant<std::optional<Tested>, NumericalFailure> test(const Fitted& fitted,
-                                                           const Capture& whole,
-                                                           const FitOptions& options) {
+Result<std::optional<Tested>> test(const Fitted& fitted, const Capture& whole,
+                                   const FitOptions& options) {
   const auto scene = with_tests(*fitted.form.scene, whole);
   const auto& examples = scene->capture.examples;
   const size_t own = fitted.form.scene->capture.examples.size();
@@ -41,18 +40,18 @@ std::variant<std::optional<Tested>, NumericalFailure> test(const Fitted& fitted,
   try {
     std::tie(form, start) = transfer(realised(fitted), scene, catalogue());
   } catch (const std::runtime_error& error) {
-    return NumericalFailure{examples[own].name, 0.0, error.what()};
+    return no_result({examples[own].name, 0.0, error.what()});
   }
   Workspace workspace(scene);
   auto settled = settle_held_out(workspace, form, start, options);
-  if (auto* failure = std::get_if<NumericalFailure>(&settled)) return *failure;
+  if (!settled) return failure_of(settled);
   EvaluationOptions pictures = only_pictures(0, options);
   for (size_t e = own; e < examples.size(); ++e) pictures.only.push_back(static_cast<int>(e));
-  const auto seen = workspace.evaluate(form, std::get<VectorXd>(settled), pictures);
-  if (auto* failure = std::get_if<NumericalFailure>(&seen)) return *failure;
+  const auto seen = workspace.evaluate(form, *settled, pictures);
+  if (!seen) return failure_of(seen);
   Tested out;
   double r2 = 0.0, count = 0.0;
-  for (const auto& example : std::get<Evaluation>(seen).examples)
+  for (const auto& example : seen->examples)
     if (example.example >= static_cast<int>(own))
       out.examples.push_back(tested_example(example, examples[example.example], &r2, &count));
   if (count > 0.0) out.chi = std::sqrt(r2 / count);

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "estimation/fit/fit.h"
@@ -26,9 +25,8 @@ struct Tested {
 /// (without_tests). Numbers of one such example alone (where its jaw stood) are fitted to it, as
 /// those of a held-out one are. Empty: it has none. Fails where a test example has no equilibrium,
 /// or the model has a part that cannot be told with them.
-std::variant<std::optional<Tested>, NumericalFailure> test(const Fitted& fitted,
-                                                           const Capture& whole,
-                                                           const FitOptions& options);
+Result<std::optional<Tested>> test(const Fitted& fitted, const Capture& whole,
+                                   const FitOptions& options);
 
 nlohmann::json to_json(const Tested& tested);
 

@@ -233,14 +233,15 @@ std::vector<std::string> effects_in_words(const Fitted& fitted) {
   std::vector<std::string> out;
   ModelForm before = fitted.form;
   before.ingredients.clear();
-  for (const auto& ingredient : fitted.form.ingredients) {
-    const auto size = static_cast<Eigen::Index>(ingredient->parameters().size());
-    const Eigen::Index at = before.size();
+  const ParameterLayout at = fitted.form.layout();
+  for (size_t i = 0; i < fitted.form.ingredients.size(); ++i) {
+    const auto& ingredient = fitted.form.ingredients[i];
+    const VectorXd values = at.of(fitted.p, i);
     if (const Effect* effect = find_effect(ingredient->name()))
-      out.push_back(fmt::format("{}: {}{}", effect->name(),
-                                effect->sentence(before.realise(fitted.p.head(at)), *ingredient,
-                                                 fitted.p.segment(at, size)),
-                                at_their_bounds(*ingredient, fitted.p.segment(at, size))));
+      out.push_back(
+          fmt::format("{}: {}{}", effect->name(),
+                      effect->sentence(before.realise(at.before(fitted.p, i)), *ingredient, values),
+                      at_their_bounds(*ingredient, values)));
     before.ingredients.push_back(ingredient);
   }
   return out;

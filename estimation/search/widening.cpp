@@ -18,9 +18,7 @@ namespace hookeye {
 namespace {
 
 VectorXd values_of(const Fitted& fitted, size_t at) {
-  return fitted.p.segment(
-      offset_of(fitted.form, at),
-      static_cast<Eigen::Index>(fitted.form.ingredients[at]->parameters().size()));
+  return fitted.form.layout().of(fitted.p, at);
 }
 
 /// The model without the ingredient.
@@ -55,9 +53,7 @@ struct Reformed {
 Reformed reformed(const Fitted& narrow, size_t at, const Effect::Further& further) {
   ModelForm form = narrow.form;
   form.ingredients[at] = further.form;
-  const Eigen::Index first = offset_of(narrow.form, at), own = values_of(narrow, at).size();
-  VectorXd start(narrow.p.size() - own + further.values.size());
-  start << narrow.p.head(first), further.values, narrow.p.tail(narrow.p.size() - first - own);
+  VectorXd start = narrow.form.layout().with(narrow.p, at, further.values);
   const auto parameters = form.parameters();
   for (Eigen::Index i = 0; i < start.size(); ++i)
     start[i] = std::clamp(start[i], parameters[i].low, parameters[i].high);
@@ -66,14 +62,14 @@ Reformed reformed(const Fitted& narrow, size_t at, const Effect::Further& furthe
   return {std::move(form), std::move(start)};
 }
 
-std::variant<Fitted, NumericalFailure> fit_in(Workspace& workspace, const Fitted& narrow,
-                                              const Reformed& other, const FitOptions& options) {
+Result<Fitted> fit_in(Workspace& workspace, const Fitted& narrow, const Reformed& other,
+                      const FitOptions& options) {
   // From farther off than twice the narrow form's misfit, motions may be beyond full-size pictures.
   const auto there = assess(workspace, other.form, other.start, options);
-  if (const auto* failure = std::get_if<NumericalFailure>(&there)) return *failure;
+  if (!there) return failure_of(there);
   FitOptions from_there = options;
-  from_there.coarse_to_fine = misfit(std::get<Fitted>(there)) >
-                              narrow.form.scene->limits->search.coarse_again * misfit(narrow);
+  from_there.coarse_to_fine =
+      misfit(*there) > narrow.form.scene->limits->search.coarse_again * misfit(narrow);
   return fit(workspace, other.form, other.start, from_there);
 }
 
@@ -82,13 +78,11 @@ double over_floor(const Fitted& fitted, const Floor& floor) {
 }
 
 /// In the further form; where that starts from another's end, `first` is that one.
-std::variant<Fitted, NumericalFailure> fit_further(Workspace& workspace, const Fitted& narrow,
-                                                   size_t at, const Effect::Further& further,
-                                                   const Reformed& first,
-                                                   const FitOptions& options) {
-  auto result = fit_in(workspace, narrow, first, options);
-  const auto* way = std::get_if<Fitted>(&result);
-  if (!way || !further.by_way_of) return result;
+Result<Fitted> fit_further(Workspace& workspace, const Fitted& narrow, size_t at,
+                           const Effect::Further& further, const Reformed& first,
+                           const FitOptions& options) {
+  auto way = fit_in(workspace, narrow, first, options);
+  if (!way || !further.by_way_of) return way;
   const Reformed last = reformed(*way, at, {further.form, values_of(*way, at)});
   return fit_in(workspace, narrow, last, options);
 }
@@ -98,8 +92,7 @@ std::variant<Fitted, NumericalFailure> fit_further(Workspace& workspace, const F
 bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale& narrow,
                   const FitOptions& options) {
   if (narrow.floor <= 0.0) return false;
-  const auto result = follow(workspace, other.form, other.start, narrow, options);
-  const auto* followed = std::get_if<Followed>(&result);
+  const auto followed = follow(workspace, other.form, other.start, narrow, options);
   const Trial now{{}, narrow.chi, narrow.chi_validate, narrow.floor};
   return followed && followed->stalled &&
          over_floor(followed->trial) >
@@ -110,8 +103,7 @@ bool gets_nowhere(Workspace& workspace, const Reformed& other, const TrialScale&
 /// remains, from where nobody in a race came to win (Racer::out_of_reach_of).
 bool ends_far_off(Workspace& workspace, const Reformed& other, const TrialScale& now,
                   const FitOptions& options) {
-  const auto result = follow(workspace, other.form, other.start, now, options);
-  const auto* followed = std::get_if<Followed>(&result);
+  const auto followed = follow(workspace, other.form, other.start, now, options);
   const auto over = [&](const Trial& trial) {
     return Racer{"", other.form, trial, {}}.structured();
   };
@@ -155,9 +147,8 @@ bool told_paying(const Decided& decided, const std::string& words, const Fitted&
 
 /// The wide form's plainer one, where it has one that scores as well: all constants of a material
 /// that has axes of symmetry.
-std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wide, size_t at,
-                                                const Floor& floor, const FitOptions& options,
-                                                const DiscoverEvents& events) {
+Result<Fitted> plainest(Workspace& workspace, Fitted wide, size_t at, const Floor& floor,
+                        const FitOptions& options, const DiscoverEvents& events) {
   const Ingredient& ingredient = *wide.form.ingredients[at];
   VectorXd values = values_of(wide, at);
   const auto form =
@@ -167,27 +158,26 @@ std::variant<Fitted, NumericalFailure> plainest(Workspace& workspace, Fitted wid
   auto result = announced(events, words, [&] {
     return fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
   });
-  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
-    if (cancelled(*failure)) return *failure;
+  if (!result) {
+    if (cancelled(result.error())) return failure_of(result);
     return wide;
   }
-  const Fitted& plain = std::get<Fitted>(result);
+  const Fitted& plain = *result;
   const Yardstick yardstick{&wide, &floor, std::min(measured_noise2(wide), measured_noise2(plain))};
   return refit_score(plain, yardstick) >= refit_score(wide, yardstick) ? result : wide;
 }
 
 }  // namespace
 
-std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
-                                               const Floor& floor, const FitOptions& options,
-                                               const DiscoverEvents& events,
-                                               std::optional<Fitted>* left_much) {
+Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
+                       const FitOptions& options, const DiscoverEvents& events,
+                       std::optional<Fitted>* left_much) {
   const std::string first = narrow.form.ingredients[at]->variant();
   std::set<std::string> tried = {first};
   for (bool better = true; better && !on_floor(narrow, floor);) {
     better = false;
     const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&scale)) return *failure;
+    if (!scale) return failure_of(scale);
     Fitted best = narrow;
     for (const auto& further : further_forms(narrow, at)) {
       const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
@@ -198,8 +188,7 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       const auto& way = further.by_way_of;
       const Reformed first =
           reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
-      if (!further.same_claim &&
-          gets_nowhere(workspace, first, std::get<TrialScale>(scale), options)) {
+      if (!further.same_claim && gets_nowhere(workspace, first, *scale, options)) {
         tell(options.decided,
              {Asked::widened,
               words,
@@ -214,12 +203,12 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
       auto result = announced(events, words, [&] {
         return fit_further(workspace, narrow, at, further, first, farther);
       });
-      if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-        if (cancelled(*failure)) return *failure;
-        tell(options.decided, {Asked::widened, words, false, {}, failure->reason});
+      if (!result) {
+        if (cancelled(result.error())) return failure_of(result);
+        tell(options.decided, {Asked::widened, words, false, {}, result.error().reason});
         continue;
       }
-      Fitted& wide = std::get<Fitted>(result);
+      Fitted& wide = *result;
       if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) {
         if (left_much && worth_its_parameters(wide, best, floor) &&
             (!*left_much || score_above(wide, **left_much, floor) > 0.0)) {
@@ -237,25 +226,22 @@ std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narr
   return plainest(workspace, std::move(narrow), at, floor, options, events);
 }
 
-std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::ask(const Fitted& fitted,
-                                                                      size_t at,
-                                                                      const Floor& floor) {
+Result<std::optional<Fitted>> WiderForms::ask(const Fitted& fitted, size_t at, const Floor& floor) {
   const std::string narrow = form_of(*fitted.form.ingredients[at]);
   if (!asked_.insert({forms_of(fitted.form), at}).second) return std::nullopt;
   std::optional<Fitted> left_much;
   auto result = widened(workspace_, fitted, at, floor, options_, events_, &left_much);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
+  if (!result) return failure_of(result);
   if (left_much) left_much_.push_back({forms_of(fitted.form), at, std::move(*left_much)});
-  Fitted& wide = std::get<Fitted>(result);
+  Fitted& wide = *result;
   const std::string form = form_of(*wide.form.ingredients[at]);
   if (form == narrow && wide.p == fitted.p) return std::nullopt;
   came_to_.insert(form);
   return std::move(wide);
 }
 
-std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::instead_of(const Refit& winner,
-                                                                             const Fitted& now,
-                                                                             const Floor& floor) {
+Result<std::optional<Fitted>> WiderForms::instead_of(const Refit& winner, const Fitted& now,
+                                                     const Floor& floor) {
   std::optional<Fitted> best;
   size_t at = 0;
   for (LeftMuch& one : left_much_)
@@ -273,15 +259,14 @@ std::variant<std::optional<Fitted>, NumericalFailure> WiderForms::instead_of(con
              "enriched, in place of " + winner.effect + ": penalised log likelihood over that"}))
     return std::nullopt;
   auto result = plainest(workspace_, std::move(*best), at, floor, options_, events_);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  const Fitted& wide = std::get<Fitted>(result);
+  if (!result) return failure_of(result);
+  const Fitted& wide = *result;
   if (forms_of(wide.form) == forms_of(now.form)) return std::nullopt;
   came_to_.insert(form_of(*wide.form.ingredients[at]));
-  return std::get<Fitted>(std::move(result));
+  return *std::move(result);
 }
 
-std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& step,
-                                                 const Floor& floor) {
+Result<void> WiderForms::mend(Contest& contest, const Step& step, const Floor& floor) {
   auto& refits = contest.refits;
   const auto spoiler = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
     return spoils_held_out(refit.fitted, floor) && !numerical(refit.effect);
@@ -291,16 +276,15 @@ std::optional<NumericalFailure> WiderForms::mend(Contest& contest, const Step& s
       }))
     return {};
   auto result = ask(spoiler->fitted, spoiler->fitted.form.ingredients.size() - 1, floor);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-  if (auto& wide = std::get<std::optional<Fitted>>(result)) {
+  if (!result) return failure_of(result);
+  if (auto& wide = *result) {
     spoiler->fitted = std::move(*wide);
     rank(contest, step);
   }
   return {};
 }
 
-std::optional<NumericalFailure> WiderForms::ask_leaders(Contest& contest, const Step& step,
-                                                        const Floor& floor) {
+Result<void> WiderForms::ask_leaders(Contest& contest, const Step& step, const Floor& floor) {
   const std::string winner = contest.refits.front().effect;
   if (numerical(winner)) return {};
   bool any = false;
@@ -311,9 +295,8 @@ std::optional<NumericalFailure> WiderForms::ask_leaders(Contest& contest, const 
         });
     if (!leading || refit.effect == winner) continue;
     auto result = ask(refit.fitted, refit.fitted.form.ingredients.size() - 1, floor);
-    if (auto* failure = std::get_if<NumericalFailure>(&result)) return *failure;
-    if (auto& wide = std::get<std::optional<Fitted>>(result))
-      refit.fitted = std::move(*wide), any = true;
+    if (!result) return failure_of(result);
+    if (auto& wide = *result) refit.fitted = std::move(*wide), any = true;
   }
   if (any) rank(contest, step);
   return {};
@@ -324,8 +307,7 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
                                          const FitOptions& options, const DiscoverEvents& events) {
   const auto& all = fitted.form.ingredients;
   if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
-  const auto scale = trial_scale(workspace, fitted.form, fitted.p, options);
-  const auto* now = std::get_if<TrialScale>(&scale);
+  const auto now = trial_scale(workspace, fitted.form, fitted.p, options);
   if (!now) return {};
   for (size_t i = first_effect; i < all.size(); ++i) {
     if (!find_effect(all[i]->name()) || remeshed_by(*all[i])) continue;
@@ -343,9 +325,8 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
           smaller->name() + " as '" + smaller->variant() + "' without " + all[i]->name();
       const Reformed other = reformed(without, at, {std::move(smaller), std::move(values)});
       if (ends_far_off(workspace, other, *now, options)) continue;
-      auto result =
+      auto lighter =
           announced(events, words, [&] { return fit_in(workspace, without, other, options); });
-      auto* lighter = std::get_if<Fitted>(&result);
       if (!lighter) continue;
       const double score = score_above(*lighter, fitted, floor), tie = floor.limits->diagnosis.tie;
       if (tell(options.decided,
@@ -354,7 +335,7 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
                 at_floor(*lighter, floor) && score > -tie,
                 {score, -tie, "diagnosis.tie"},
                 "beside a smaller form: penalised log likelihood " + words + " over that with it"}))
-        return Refit{all[i]->name(), std::move(*lighter), 0.0};
+        return Refit{all[i]->name(), *std::move(lighter), 0.0};
     }
   }
   return {};

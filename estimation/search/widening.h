@@ -5,7 +5,6 @@
 #include <set>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "estimation/search/contest.h"
 
@@ -20,10 +19,9 @@ namespace hookeye {
 /// else it is another effect that is missing. Of what a wide form says a plainer one
 /// (Effect::plainer_form) stays where it scores as well. `left_much`: of those that pay and leave
 /// too much for that, the one that says most, without its pictures.
-std::variant<Fitted, NumericalFailure> widened(Workspace& workspace, Fitted narrow, size_t at,
-                                               const Floor& floor, const FitOptions& options,
-                                               const DiscoverEvents& events = {},
-                                               std::optional<Fitted>* left_much = nullptr);
+Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
+                       const FitOptions& options, const DiscoverEvents& events = {},
+                       std::optional<Fitted>* left_much = nullptr);
 
 /// An effect that only the larger form of another makes room for: without it, and with that other
 /// in its smaller form (Effect::smaller_form), the photos stay at the floor and the score falls by
@@ -40,21 +38,18 @@ class WiderForms {
   WiderForms(Workspace& workspace, const FitOptions& options, const DiscoverEvents& events)
       : workspace_(workspace), options_(options), events_(events) {}
   /// Empty: none is better, or it was asked before.
-  std::variant<std::optional<Fitted>, NumericalFailure> ask(const Fitted& fitted, size_t at,
-                                                            const Floor& floor);
+  Result<std::optional<Fitted>> ask(const Fitted& fitted, size_t at, const Floor& floor);
   /// A form that was asked of `now` and left much over the floor, where it says more than `winner`,
   /// which is `now` and another effect: what a named effect accounts for needs no second name.
-  std::variant<std::optional<Fitted>, NumericalFailure> instead_of(const Refit& winner,
-                                                                   const Fitted& now,
-                                                                   const Floor& floor);
+  Result<std::optional<Fitted>> instead_of(const Refit& winner, const Fitted& now,
+                                           const Floor& floor);
   /// The best refit explains the fitted photos and misses the held-out ones, and none explains
   /// both: before what stands is doubted for it, it is asked for a wider form, and the contest is
   /// ranked anew. (Creep that levels off is growing creep to the first loads.)
-  std::optional<NumericalFailure> mend(Contest& contest, const Step& step, const Floor& floor);
+  Result<void> mend(Contest& contest, const Step& step, const Floor& floor);
   /// Who leads by evidence and lost the contest may have stood in a form that did not suit it (a
   /// ball for two halves): it is asked for its further forms, and the contest is ranked anew.
-  std::optional<NumericalFailure> ask_leaders(Contest& contest, const Step& step,
-                                              const Floor& floor);
+  Result<void> ask_leaders(Contest& contest, const Step& step, const Floor& floor);
   /// Widening came to this form: a plainer one may do at the floor.
   bool came_to(const Ingredient& form) const;
 

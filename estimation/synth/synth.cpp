@@ -242,8 +242,8 @@ SynthBody write_body(const Recipe& recipe, const fs::path& folder) {
 
 }  // namespace
 
-std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const fs::path& given,
-                                                     const SynthOptions& options) {
+Result<Synthesis> synthesize(const Recipe& recipe, const fs::path& given,
+                             const SynthOptions& options) {
   fs::path out = fs::absolute(given).lexically_normal();
   if (out.filename().empty()) out = out.parent_path();
   if (fs::exists(out))
@@ -259,14 +259,14 @@ std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe, const
   const auto told = load_scene(true_capture(recipe, body, folder), false);
   const auto scene = remeshed(*told, recipe.truth.edge_factor, 0, true);
   auto found = detail::find_truth(recipe, scene, options.cancel);
-  if (auto* failure = std::get_if<NumericalFailure>(&found)) return std::move(*failure);
-  const auto& truth = std::get<detail::Truth>(found);
+  if (!found) return failure_of(found);
+  const auto& truth = *found;
   check_in_view(recipe, truth);
   auto pictures = options.photographer.empty()
                       ? our_pictures(recipe, truth, options)
                       : detail::photographed_by(options.photographer, truth, folder / "albedo.png",
                                                 staging.stage());
-  if (options.cancel && *options.cancel) return NumericalFailure{"", 0.0, "cancelled"};
+  if (options.cancel && *options.cancel) return stopped();
   write_photos(recipe, truth, std::move(pictures), folder);
   write_text(folder / "capture.yaml",
              detail::capture_text(

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/numerical_failure.h"
@@ -40,8 +39,7 @@ std::filesystem::path truth_file(const std::filesystem::path& capture);
 
 /// Writes the capture folder `out` (which must not exist) whole or not at all, the truth beside it.
 /// Throws InputError for what the recipe asks and the body or the catalogue cannot give.
-std::variant<Synthesis, NumericalFailure> synthesize(const Recipe& recipe,
-                                                     const std::filesystem::path& out,
-                                                     const SynthOptions& options = {});
+Result<Synthesis> synthesize(const Recipe& recipe, const std::filesystem::path& out,
+                             const SynthOptions& options = {});
 
 }  // namespace hookeye

@@ -23,8 +23,7 @@ TruthSolver::TruthSolver(std::shared_ptr<const Scene> scene, const std::atomic<b
     solvers_.emplace_back(scene_->mesh());
 }
 
-std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::solve(
-    const Model& model) {
+Result<std::vector<TruthSolver::State>> TruthSolver::solve(const Model& model) {
   EquilibriumOptions options;
   // Those that stand take some ten to forty; a drawn load under which the body snaps through can be
   // sought for thousands, and is drawn smaller when it has none.
@@ -37,13 +36,13 @@ std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::sol
     const ExampleSpec& example = scene_->capture.examples[e];
     auto solved =
         solvers_[e].solve(model.energy_of(static_cast<int>(e)), model.examples[e].loading, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
+    if (!solved) {
       const std::lock_guard lock(mutex);
-      failed = std::move(*failure);
+      failed = std::move(solved.error());
       failed->example = example.name;
       return;
     }
-    const auto& equilibrium = std::get<Equilibrium>(solved);
+    const auto& equilibrium = *solved;
     states[e].q = equilibrium.q;
     for (const MeasuredSpec& spec : example.measured) {
       const Region& region = scene_->body->regions.at(spec.region);
@@ -53,7 +52,7 @@ std::variant<std::vector<TruthSolver::State>, NumericalFailure> TruthSolver::sol
         states[e].grip.moment = support_moment(equilibrium, region, spec.direction);
     }
   });
-  if (failed) return std::move(*failed);
+  if (failed) return no_result(*std::move(failed));
   return states;
 }
 
@@ -185,16 +184,16 @@ int elements_lost(const Model& model, const std::vector<TruthSolver::State>& sta
   return lost;
 }
 
-std::variant<Addition, NumericalFailure> add_to(const Truth& truth, TruthSolver& solver,
-                                                const std::shared_ptr<const Ingredient>& ingredient,
-                                                const VectorXd& values) {
+Result<Addition> add_to(const Truth& truth, TruthSolver& solver,
+                        const std::shared_ptr<const Ingredient>& ingredient,
+                        const VectorXd& values) {
   Addition out{truth.form, VectorXd(truth.p.size() + values.size()), {}, {}, 0.0, false};
   out.form.ingredients.push_back(ingredient);
   out.p << truth.p, values;
   out.model = out.form.realise(out.p);
   auto solved = solver.solve(out.model);
-  if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
-  out.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
+  if (!solved) return failure_of(solved);
+  out.states = *std::move(solved);
   out.rms_px = rms_px(*out.model.scene, truth.model, truth.states, out.model, out.states);
   out.unstable = ingredient->touches().energy &&
                  elements_lost(out.model, out.states) > elements_lost(truth.model, truth.states);
@@ -224,8 +223,7 @@ std::vector<char> strengths(const Truth& truth, TruthSolver& solver,
     VectorXd without = told;
     without[i] = null[i];
     const auto added = add_to(truth, solver, ingredient, without);
-    const auto* addition = std::get_if<Addition>(&added);
-    grows[i] = addition && !(addition->rms_px > kStill);
+    grows[i] = added && !(added->rms_px > kStill);
   }
   if (std::find(grows.begin(), grows.end(), 1) == grows.end()) grows.assign(grows.size(), 1);
   return grows;
@@ -264,10 +262,8 @@ class Scaling {
 /// them to the truth. False: drawn values of an effect on forces or material that move nothing, or
 /// less than `least` of what was asked for (a plane that no fitted example reaches, or with a
 /// corner alone).
-std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
-                                            const std::shared_ptr<const Ingredient>& ingredient,
-                                            double least, std::mt19937_64& random,
-                                            TruthSolver& solver, Truth& truth) {
+Result<bool> put_in(const HiddenRecipe& hidden, const std::shared_ptr<const Ingredient>& ingredient,
+                    double least, std::mt19937_64& random, TruthSolver& solver, Truth& truth) {
   const auto parameters = ingredient->parameters();
   const VectorXd told =
       hidden.drawn ? drawn_values(parameters, random) : told_values(hidden, parameters);
@@ -289,14 +285,13 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
       check_range(parameters[k], values[k], hidden.values_place,
                   fmt::format("{} px cannot be reached", hidden.rms_px.value_or(0.0)));
     auto added = add_to(truth, solver, ingredient, values);
-    auto* failure = std::get_if<NumericalFailure>(&added);
-    if (failure && (!hidden.drawn || i + 1 == most)) return std::move(*failure);
-    if (failure || (hidden.drawn && i + 1 < most && std::get<Addition>(added).unstable)) {
+    if (!added && (!hidden.drawn || i + 1 == most)) return failure_of(added);
+    if (!added || (hidden.drawn && i + 1 < most && added->unstable)) {
       largest = 0.7 * factor;  // drawn too large for an equilibrium, or for one alone
       factor *= 0.5;
       continue;
     }
-    Addition& addition = std::get<Addition>(added);
+    Addition& addition = *added;
     const double wanted = hidden.rms_px.value_or(0.0);
     const bool still = !(addition.rms_px > kStill);  // light, exposure: there is nothing to scale
     if (still && hidden.drawn && (touches.loading || touches.energy)) return false;
@@ -328,15 +323,14 @@ std::variant<bool, NumericalFailure> put_in(const HiddenRecipe& hidden,
 }
 
 /// Adds one hidden effect to the truth found so far.
-std::optional<NumericalFailure> hide(const HiddenRecipe& hidden, unsigned seed, TruthSolver& solver,
-                                     Truth& truth) {
+Result<void> hide(const HiddenRecipe& hidden, unsigned seed, TruthSolver& solver, Truth& truth) {
   auto random = random_of(seed, "hidden " + hidden.effect);
   const auto all = choices(hidden, *find_effect(hidden.effect), truth.model, random);
   for (const double least : {0.5, 0.0})
     for (const auto& ingredient : all) {
       auto put = put_in(hidden, ingredient, least, random, solver, truth);
-      if (auto* failure = std::get_if<NumericalFailure>(&put)) return std::move(*failure);
-      if (std::get<bool>(put)) return {};
+      if (!put) return failure_of(put);
+      if (*put) return {};
     }
   throw InputError(hidden.place, fmt::format("`{}` moves nothing in these pictures", hidden.effect),
                    "leave rms_px out and give the values as they are");
@@ -344,19 +338,18 @@ std::optional<NumericalFailure> hide(const HiddenRecipe& hidden, unsigned seed, 
 
 }  // namespace
 
-std::variant<Truth, NumericalFailure> find_truth(const Recipe& recipe,
-                                                 std::shared_ptr<const Scene> scene,
-                                                 const std::atomic<bool>* cancel) {
+Result<Truth> find_truth(const Recipe& recipe, std::shared_ptr<const Scene> scene,
+                         const std::atomic<bool>* cancel) {
   Truth truth;
   truth.form = base_form(scene);
   truth.p = truth.form.initial();
   truth.model = truth.form.realise(truth.p);
   TruthSolver solver(scene, cancel);
   auto solved = solver.solve(truth.model);
-  if (auto* failure = std::get_if<NumericalFailure>(&solved)) return std::move(*failure);
-  truth.states = std::get<std::vector<TruthSolver::State>>(std::move(solved));
+  if (!solved) return failure_of(solved);
+  truth.states = *std::move(solved);
   for (const HiddenRecipe& hidden : recipe.hidden)
-    if (auto failure = hide(hidden, recipe.seed, solver, truth)) return std::move(*failure);
+    if (auto done = hide(hidden, recipe.seed, solver, truth); !done) return failure_of(done);
   truth.elements_lost = elements_lost(truth.model, truth.states);
   return truth;
 }

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <memory>
-#include <variant>
 #include <vector>
 
 #include "core/numerical_failure.h"
@@ -22,7 +21,7 @@ class TruthSolver {
     VectorXd q;
     GripForce grip;  ///< on the example's moved region, zero where there is none
   };
-  std::variant<std::vector<State>, NumericalFailure> solve(const Model& model);
+  Result<std::vector<State>> solve(const Model& model);
 
  private:
   std::shared_ptr<const Scene> scene_;
@@ -49,8 +48,7 @@ struct Truth {
 };
 
 /// Puts the recipe's hidden effects in, one after another, scaling those with rms_px.
-std::variant<Truth, NumericalFailure> find_truth(const Recipe& recipe,
-                                                 std::shared_ptr<const Scene> scene,
-                                                 const std::atomic<bool>* cancel);
+Result<Truth> find_truth(const Recipe& recipe, std::shared_ptr<const Scene> scene,
+                         const std::atomic<bool>* cancel);
 
 }  // namespace hookeye::detail

@@ -37,6 +37,7 @@ class Hookeye(CMakePackage):
     depends_on("intel-oneapi-tbb")
     depends_on("tetgen")
     depends_on("tinyobjloader")
+    depends_on("tl-expected")
     depends_on("sqlite")
     depends_on("xxhash")
     depends_on("yaml-cpp")

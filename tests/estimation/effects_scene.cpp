@@ -103,7 +103,7 @@ Model with_states(Model model) {
     if (model.scene->capture.examples[e].validate) continue;
     auto solved = solve_equilibrium(model.scene->body->mesh, model.energy_of(static_cast<int>(e)),
                                     model.examples[e].loading);
-    model.states.push_back(std::make_shared<Equilibrium>(std::get<Equilibrium>(std::move(solved))));
+    model.states.push_back(std::make_shared<Equilibrium>(*std::move(solved)));
   }
   return model;
 }

@@ -151,7 +151,7 @@ void FieldBlock::write(const fs::path& folder) const {
   EvaluationOptions options;
   options.derivatives = false;
   options.held_out = true;
-  const auto seen = std::get<Evaluation>(workspace.evaluate(form, p, options));
+  const auto seen = workspace.evaluate(form, p, options).value();
   std::mt19937 engine(seed);
   for (const auto& example : seen.examples) {
     const std::string name = scene->capture.examples[static_cast<size_t>(example.example)].name;

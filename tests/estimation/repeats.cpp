@@ -21,8 +21,8 @@ Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
   const SmallScene small(capture);
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
-  auto fitted = std::get<Fitted>(fit(workspace, form, form.initial()));
-  const auto diagnosis = std::get<Diagnosis>(diagnose(workspace, fitted, options));
+  auto fitted = fit(workspace, form, form.initial()).value();
+  const auto diagnosis = diagnose(workspace, fitted, options).value();
   Repeat out;
   const bool other_mesh = capture.truth_mesh != "1";
   if (other_mesh) reach_for_mesh(fitted, diagnosis);

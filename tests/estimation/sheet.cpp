@@ -256,9 +256,8 @@ std::shared_ptr<const Scene> make_sheet(const SheetOptions& o) {
   for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
     const ExampleSpec& example = scene->capture.examples[e];
     const auto solved = solver.solve(model.energy, model.examples[e].loading);
-    if (const auto* failure = std::get_if<NumericalFailure>(&solved))
-      throw std::runtime_error(example.name + ": " + failure->reason);
-    const Equilibrium& state = std::get<Equilibrium>(solved);
+    if (!solved) throw std::runtime_error(example.name + ": " + solved.error().reason);
+    const Equilibrium& state = *solved;
     std::string& text = measured[example.name];
     if (o.kinds.count("positions") && example.name != "rest")
       for (const Vector3d& X : markers())
@@ -303,8 +302,7 @@ MarkerErrors marker_errors(const Scene& scene, const Fitted& fitted) {
   return {std::sqrt(sum[0] / count[0]), std::sqrt(sum[1] / count[1])};
 }
 
-std::variant<Fitted, NumericalFailure> shown_on(const std::shared_ptr<const Scene>& scene,
-                                                const Fitted& fitted) {
+Result<Fitted> shown_on(const std::shared_ptr<const Scene>& scene, const Fitted& fitted) {
   ModelForm form = fitted.form;
   form.scene = scene;
   form.start = base_form(scene).start;

@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <variant>
 
 #include "estimation/fit/fit.h"
 #include "estimation/model/model.h"
@@ -58,7 +57,6 @@ struct MarkerErrors {
 MarkerErrors marker_errors(const Scene& scene, const Fitted& fitted);
 
 /// The fitted model on another scene of the same sheet, nothing moved.
-std::variant<Fitted, NumericalFailure> shown_on(const std::shared_ptr<const Scene>& scene,
-                                                const Fitted& fitted);
+Result<Fitted> shown_on(const std::shared_ptr<const Scene>& scene, const Fitted& fitted);
 
 }  // namespace hookeye::test

@@ -43,19 +43,19 @@ SmallScene::SmallScene(const SmallCapture& capture) {
   const auto made = synthesize(
       parse_recipe(capture.recipe.empty() ? recipe(capture) : capture.recipe, "recipe.yaml"),
       folder_ / "capture");
-  scene = load_scene(read_capture(std::get<Synthesis>(made).capture));
+  scene = load_scene(read_capture(made->capture));
 }
 
 Fitted base_fit(Workspace& workspace) {
   const ModelForm form = base_form(workspace.scene().shared_from_this());
-  return std::get<Fitted>(fit(workspace, form, form.initial()));
+  return fit(workspace, form, form.initial()).value();
 }
 
 Step base_step(Workspace& workspace) {
   Step step;
   step.name = "base";
   step.fitted = base_fit(workspace);
-  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+  step.diagnosis = diagnose(workspace, step.fitted).value();
   return step;
 }
 
@@ -63,9 +63,8 @@ Discovery discover(const SmallScene& small, const DiscoverOptions& options) {
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
   auto found = hookeye::discover(workspace, form, form.initial(), options);
-  if (const auto* failure = std::get_if<NumericalFailure>(&found))
-    throw std::runtime_error(failure->example + ": " + failure->reason);
-  return std::get<Discovery>(std::move(found));
+  if (!found) throw std::runtime_error(found.error().example + ": " + found.error().reason);
+  return *std::move(found);
 }
 
 double value_of(const Fitted& fitted, const std::string& name) {

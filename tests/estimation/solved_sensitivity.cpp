@@ -13,11 +13,11 @@ States solve(const ModelForm& form, const VectorXd& p, const States& start) {
     EquilibriumSolver solver(model.scene->mesh());
     auto solved = solver.solve(model.energy_of(static_cast<int>(e)), model.examples[e].loading,
                                options, start.empty() ? nullptr : &start[e]);
-    if (auto* failure = std::get_if<NumericalFailure>(&solved)) {
-      ADD_FAILURE() << model.scene->capture.examples[e].name << ": " << failure->reason;
+    if (!solved) {
+      ADD_FAILURE() << model.scene->capture.examples[e].name << ": " << solved.error().reason;
       return {};
     }
-    q.push_back(std::get<Equilibrium>(solved).q);
+    q.push_back(solved->q);
   }
   return q;
 }
@@ -47,11 +47,11 @@ Evaluation evaluated(const ModelForm& form, const VectorXd& p,
   EvaluationOptions options;
   options.held_out = true;
   auto result = workspace().evaluate(form, p, options, candidates);
-  if (auto* failure = std::get_if<NumericalFailure>(&result)) {
-    ADD_FAILURE() << failure->example << ": " << failure->reason;
+  if (!result) {
+    ADD_FAILURE() << result.error().example << ": " << result.error().reason;
     return {};
   }
-  return std::get<Evaluation>(std::move(result));
+  return *std::move(result);
 }
 
 bool expect_same(const Evaluation& evaluation, int column, const States& solved, double h,

@@ -61,12 +61,12 @@ inline double distance_to_calculix(const Model& model, const std::string& name,
   const int e = model.scene->example_index(name);
   const auto solved = solve_equilibrium(model.scene->body->mesh, model.energy_of(e),
                                         model.examples[static_cast<size_t>(e)].loading);
-  if (!std::holds_alternative<Equilibrium>(solved)) {
+  if (!solved.has_value()) {
     ADD_FAILURE() << name << ": no equilibrium here";
     return HUGE_VAL;
   }
   SolverModel solver = solver_model(model);
-  set_found(solver, e, std::get<Equilibrium>(solved).q);
+  set_found(solver, e, solved->q);
   const Exported exported = export_model(*find_exporter("calculix"), solver);
   if (lacks) *lacks = exported.lacks;
   const TemporaryFolder folder;

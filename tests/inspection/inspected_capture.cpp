@@ -61,7 +61,7 @@ const fs::path& right_capture(const std::string& recipe) {
   if (found != made.end()) return found->second;
   const auto out =
       synthesize(parse_recipe(recipe, "recipe.yaml"), folder / std::to_string(made.size()));
-  return made.emplace(recipe, std::get<Synthesis>(out).capture).first->second;
+  return made.emplace(recipe, out->capture).first->second;
 }
 
 }  // namespace

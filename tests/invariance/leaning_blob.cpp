@@ -38,7 +38,7 @@ truth: {edge_factor: 1, rays_per_axis: 4, visibility_rays: 256}
 const std::filesystem::path& first_telling() {
   static const TemporaryFolder folder;
   static const std::filesystem::path path = [] {
-    std::get<Synthesis>(synthesize(parse_recipe(kRecipe, "recipe.yaml"), folder / "synthesised"));
+    synthesize(parse_recipe(kRecipe, "recipe.yaml"), folder / "synthesised").value();
     keep_own_mesh(folder / "synthesised");
     write_transformed(folder / "synthesised", folder / "first", {});
     return folder / "first";

@@ -82,11 +82,10 @@ VectorXd retold(const std::vector<Parameter>& parameters, const VectorXd& values
   return out;
 }
 
-template <class Result, class Value>
-Result value_of(Value value) {
-  if (const auto* failure = std::get_if<NumericalFailure>(&value))
-    throw std::runtime_error(failure->example + ": " + failure->reason);
-  return std::get<Result>(std::move(value));
+template <class T>
+T value_of(Result<T> value) {
+  if (!value) throw std::runtime_error(value.error().example + ": " + value.error().reason);
+  return *std::move(value);
 }
 
 /// What each telling is asked: the misfit and the diagnosis of the first telling's values, and its

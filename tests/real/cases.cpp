@@ -24,17 +24,15 @@ Case fit_capture(const fs::path& folder) {
   out.workspace = std::make_unique<Workspace>(out.scene);
   const ModelForm form = base_form(out.scene);
   auto result = fit(*out.workspace, form, form.initial());
-  if (auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(failure->example + ": " + failure->reason);
-  out.fitted = std::get<Fitted>(std::move(result));
+  if (!result) throw std::runtime_error(result.error().example + ": " + result.error().reason);
+  out.fitted = *std::move(result);
   return out;
 }
 
 Diagnosis diagnose_case(Case& fitted) {
   auto result = diagnose(*fitted.workspace, fitted.fitted, {});
-  if (auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(failure->example + ": " + failure->reason);
-  return std::get<Diagnosis>(std::move(result));
+  if (!result) throw std::runtime_error(result.error().example + ": " + result.error().reason);
+  return *std::move(result);
 }
 
 ReferenceBlock solve_reference(const fs::path& data, const fs::path& capture,
@@ -50,9 +48,8 @@ ReferenceBlock solve_reference(const fs::path& data, const fs::path& capture,
   const Model model = form.realise(form.initial());
   const TetMesh& mesh = scene->body->mesh;
   const auto solved = solve_equilibrium(mesh, model.energy_of(0), model.examples.front().loading);
-  if (auto* failure = std::get_if<NumericalFailure>(&solved))
-    throw std::runtime_error(deck + ": " + failure->reason);
-  const VectorXd& q = std::get<Equilibrium>(solved).q;
+  if (!solved) throw std::runtime_error(deck + ": " + solved.error().reason);
+  const VectorXd& q = solved->q;
   ReferenceBlock out;
   out.nodes = mesh.nodes();
   out.distance_mm = test::distance_to_reference(data / (deck + ".csv"), mesh, q);

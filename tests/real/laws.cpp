@@ -30,10 +30,9 @@ constexpr Law kLaws[] = {
     {"additive", "{law: neo-hookean, mu: 0.2, kappa: 200}", "mu", true},
 };
 
-Fitted value(std::variant<Fitted, NumericalFailure> result) {
-  if (auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(failure->example + ": " + failure->reason);
-  return std::get<Fitted>(std::move(result));
+Fitted value(Result<Fitted> result) {
+  if (!result) throw std::runtime_error(result.error().example + ": " + result.error().reason);
+  return *std::move(result);
 }
 
 /// Root mean square of pull over measured pull minus one, in percent.

@@ -42,9 +42,9 @@ void openhole(const fs::path& data, const fs::path& out) {
   for (const auto& effect : diagnosis.effects) {
     if (effect.effect != "anisotropy" || !effect.testable) continue;
     auto refit = add_effect(*bar.workspace, bar.fitted, effect, {});
-    if (!std::holds_alternative<Fitted>(refit)) continue;
+    if (!refit.has_value()) continue;
     const double before = bar.fitted.evaluation.chi(false);
-    bar.fitted = std::get<Fitted>(std::move(refit));
+    bar.fitted = *std::move(refit);
     fmt::print("with anisotropy: chi {:.4f} -> {:.4f}\n", before, bar.fitted.evaluation.chi(false));
     print_parameters(bar);
     show("anisotropic");

@@ -29,13 +29,13 @@ TEST(Contest, PairsAreRefittedTogether) {
     for (const EffectScore& score : step.diagnosis.effects)
       if (score.effect == name)
         contest.refits.push_back(
-            {name, std::get<Fitted>(add_effect(workspace, step.fitted, score, {})), 0.0});
+            {name, add_effect(workspace, step.fitted, score, {}).value(), 0.0});
   ASSERT_EQ(contest.refits.size(), 2u);
   contest.reference = contest.refits[0].fitted;
   const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
   for (Refit& one : contest.refits) one.score = refit_score(one.fitted, yardstick);
   const auto found = refit_pairs(workspace, step, contest, {}, {});
-  const auto& pair = std::get<std::optional<Pair>>(found);
+  const auto& pair = *found;
   ASSERT_TRUE(pair);
   EXPECT_EQ(pair->first.effect, "gravity");
   EXPECT_EQ(pair->second.effect, "swelling");
@@ -50,14 +50,14 @@ TEST(Contest, PairsAreRefittedTogether) {
 /// Held-out photos speak against the best, `first`; `second` with it is what they speak for.
 std::optional<Pair> beside_refused(Workspace& workspace, const Step& step, const char* first,
                                    const char* second) {
-  const auto contest = std::get<Contest>(refit_leaders(workspace, step, {}, {}, {}));
+  const auto contest = refit_leaders(workspace, step, {}, {}, {}).value();
   if (contest.refits.empty()) return {};
   const Refit& best = contest.refits.front();
   EXPECT_EQ(best.effect, first);
   EXPECT_THAT(why_refused(step, contest.before, best).words(),
               testing::HasSubstr("held-out examples"));
   const auto found = refit_beside_best(workspace, step, contest, {}, {});
-  const auto& pair = std::get<std::optional<Pair>>(found);
+  const auto& pair = *found;
   if (pair) {
     EXPECT_EQ(pair->first.effect, first);
     EXPECT_EQ(pair->second.effect, second);
@@ -135,25 +135,22 @@ TEST(Contest, WhatAFieldTookOverIsFoundBesideIt) {
     return score.effect == "stiffness_field";
   });
   ASSERT_TRUE(field != scores.end() && field->testable);
-  const auto racers =
-      std::get<std::vector<Racer>>(race(workspace, before.fitted, before.diagnosis, {}));
+  const auto racers = race(workspace, before.fitted, before.diagnosis, {}).value();
   Step step;
-  step.fitted = std::get<Fitted>(add_effect(workspace, before.fitted, *field, {}));
-  step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+  step.fitted = add_effect(workspace, before.fitted, *field, {}).value();
+  step.diagnosis = diagnose(workspace, step.fitted).value();
 
   const auto chi_of_clamp = [](const std::vector<Racer>& ran) {
     for (const Racer& racer : ran)
       if (racer.effect == "soft_clamp") return racer.chi();
     return std::numeric_limits<double>::infinity();
   };
-  const auto behind =
-      std::get<std::vector<Racer>>(race(workspace, step.fitted, step.diagnosis, {}));
-  const auto beside =
-      std::get<std::vector<Racer>>(race_beside(workspace, before.fitted, *field, racers, {}));
+  const auto behind = race(workspace, step.fitted, step.diagnosis, {}).value();
+  const auto beside = race_beside(workspace, before.fitted, *field, racers, {}).value();
   EXPECT_LT(chi_of_clamp(beside), 0.3 * chi_of_clamp(behind));
 
   const Beaten beaten{before, "stiffness_field", racers};
-  const auto contest = std::get<Contest>(refit_leaders(workspace, step, beaten, {}, {}));
+  const auto contest = refit_leaders(workspace, step, beaten, {}, {}).value();
   ASSERT_FALSE(contest.refits.empty());
   const Refit& best = contest.refits.front();
   EXPECT_EQ(best.effect, "soft_clamp");

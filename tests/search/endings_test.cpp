@@ -25,10 +25,10 @@ TEST(Discover, AnEarlierEffectThatALaterOneMakesIdleIsDropped) {
   ASSERT_NE(swelling, step.diagnosis.effects.end());
   Step wrong;
   wrong.name = wrong.added = "swelling";
-  wrong.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *swelling, {}));
+  wrong.fitted = add_effect(workspace, step.fitted, *swelling, {}).value();
   ASSERT_LT(wrong.fitted.evaluation.chi(false), step.fitted.evaluation.chi(false));
   const auto found = discover_from(workspace, std::move(wrong), {}, {});
-  const Discovery& discovery = std::get<Discovery>(found);
+  const Discovery& discovery = *found;
   EXPECT_THAT(discovery.missing, ElementsAre("gravity")) << discovery.sentence;
   EXPECT_EQ(discovery.verdict, Verdict::explained) << discovery.sentence;
   bool dropped = false;

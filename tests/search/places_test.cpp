@@ -26,8 +26,8 @@ TEST(Places, ASecondIsFoundBesideTheFirst) {
   VectorXd start = form.initial();
   start.tail(6) << -1.0, 1.0, 0.0, 11.0, 5.0, 1.0;
   Step one;
-  one.fitted = std::get<Fitted>(fit(workspace, form, start));
-  one.diagnosis = std::get<Diagnosis>(diagnose(workspace, one.fitted));
+  one.fitted = fit(workspace, form, start).value();
+  one.diagnosis = diagnose(workspace, one.fitted).value();
   const Floor& floor = one.diagnosis.floor;
   ASSERT_FALSE(at_floor(one.fitted, floor));
 
@@ -35,7 +35,7 @@ TEST(Places, ASecondIsFoundBesideTheFirst) {
   EXPECT_EQ(first.effect, "stiffness_field");
   ASSERT_TRUE(first.best);
   EXPECT_THAT(first.best->variant(), testing::EndsWith(", place 2"));
-  const Fitted both = std::get<Fitted>(add_effect(workspace, one.fitted, first, {}));
+  const Fitted both = add_effect(workspace, one.fitted, first, {}).value();
   EXPECT_TRUE(at_floor(both, floor)) << both.evaluation.chi(false) / floor.chi;
   EXPECT_NEAR(test::value_of(both, "stiffness_field.z"), 9.0, 1.0);
   EXPECT_NEAR(test::value_of(both, "stiffness_field.place2.z"), 27.0, 1.0);

@@ -16,11 +16,11 @@ Step with_effects(Workspace& workspace, const std::vector<std::string>& effects)
   Step step;
   step.fitted = test::base_fit(workspace);
   for (const std::string& effect : effects) {
-    step.diagnosis = std::get<Diagnosis>(diagnose(workspace, step.fitted));
+    step.diagnosis = diagnose(workspace, step.fitted).value();
     const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
                                     [&](const EffectScore& one) { return one.effect == effect; });
     if (score == step.diagnosis.effects.end()) throw std::runtime_error("no score of " + effect);
-    step.fitted = std::get<Fitted>(add_effect(workspace, step.fitted, *score, {}));
+    step.fitted = add_effect(workspace, step.fitted, *score, {}).value();
   }
   return step;
 }

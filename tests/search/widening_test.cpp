@@ -45,10 +45,10 @@ TEST(Widening, AFieldBesideALaterEffectIsAskedForOnePlace) {
   Workspace workspace(small.scene);
   const size_t at = base_form(small.scene).ingredients.size();
   const ModelForm form = with_field_and(small, {{"soft_clamp", "base"}});
-  const Fitted field = std::get<Fitted>(fit(workspace, form, form.initial()));
+  const Fitted field = fit(workspace, form, form.initial()).value();
   const Floor floor = measure_floor(*small.scene, field.evaluation);
   ASSERT_FALSE(on_floor(field, floor));
-  const Fitted place = std::get<Fitted>(widened(workspace, field, at, floor, {}));
+  const Fitted place = widened(workspace, field, at, floor, {}).value();
   EXPECT_EQ(place.form.ingredients[at]->variant(), "free blob");
   EXPECT_TRUE(at_floor(place, floor));
   EXPECT_NEAR(place.p[4], 18.0, 0.2);
@@ -71,9 +71,9 @@ TEST(Widening, APlaceGetsItsEdgeBesideWhatElseIsMissing) {
   form.ingredients.push_back(find_effect("stiffness_field")->rebuild(model, "free blob"));
   VectorXd p = form.initial();
   p.tail(5) << -1.5, 2.5, -1.5, 18.0, 6.0;  // from farther off it may end on the way
-  const Fitted faded = std::get<Fitted>(fit(workspace, form, p));
+  const Fitted faded = fit(workspace, form, p).value();
   const Floor floor = measure_floor(*small.scene, faded.evaluation);
-  const Fitted edged = std::get<Fitted>(widened(workspace, faded, at, floor, {}));
+  const Fitted edged = widened(workspace, faded, at, floor, {}).value();
   EXPECT_EQ(edged.form.ingredients[at]->variant(), "free ball");
   EXPECT_NEAR(edged.p[5], 8.0, 0.5);
   EXPECT_GT(over_floor(edged, floor, false), 0.5 * over_floor(faded, floor, false));
@@ -92,9 +92,9 @@ TEST(Widening, AFieldLeavesTogetherWithTheWallsCushion) {
   const ModelForm form =
       with_field_and(small, {{"floor_contact", "cushion on side +x"}, {"swelling", "uniform"}});
   VectorXd start = form.initial();
-  const Eigen::Index wall = offset_of(form, first + 1);
+  const Eigen::Index wall = form.layout()[first + 1].first;
   start[wall] = 10.4, start[wall + 1] = 1e-3, start[wall + 2] = 0.02;
-  const Fitted with = std::get<Fitted>(fit(workspace, form, start));
+  const Fitted with = fit(workspace, form, start).value();
   const Floor floor = measure_floor(*small.scene, with.evaluation);
   ASSERT_TRUE(at_floor(with, floor));
   const auto lighter = drop_beside_smaller(workspace, with, floor, first, {});
@@ -102,7 +102,7 @@ TEST(Widening, AFieldLeavesTogetherWithTheWallsCushion) {
   EXPECT_EQ(lighter->effect, "stiffness_field");
   EXPECT_THAT(effects_in(lighter->fitted.form), ElementsAre("floor_contact", "swelling"));
   EXPECT_THAT(lighter->fitted.form.ingredients[first]->variant(), testing::StartsWith("hard"));
-  EXPECT_NEAR(lighter->fitted.p[offset_of(form, first)], 10.6, 0.01);
+  EXPECT_NEAR(lighter->fitted.p[form.layout()[first].first], 10.6, 0.01);
   EXPECT_FALSE(drop_beside_smaller(workspace, lighter->fitted, floor, first, {}));
 }
 
@@ -123,11 +123,10 @@ class WiderForm : public testing::Test {
     p.tail(start.size()) = start;
     const FitOptions options;
     const DiscoverEvents events;
-    const Fitted narrow = std::get<Fitted>(fit(workspace, form, p, options));
+    const Fitted narrow = fit(workspace, form, p, options).value();
     const Floor floor = measure_floor(*small_->scene, narrow.evaluation);
     EXPECT_FALSE(at_floor(narrow, floor));
-    auto wide = std::get<std::optional<Fitted>>(
-        WiderForms(workspace, options, events).ask(narrow, at, floor));
+    auto wide = WiderForms(workspace, options, events).ask(narrow, at, floor).value();
     EXPECT_TRUE(!wide || at_floor(*wide, floor));
     return wide;
   }

@@ -29,11 +29,11 @@ inline Equilibrium solve(const TetMesh& mesh, const EnergyModel& energy, const L
   EquilibriumOptions options;
   options.tolerance = tolerance;
   auto result = solve_equilibrium(mesh, energy, loading, options);
-  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
-    ADD_FAILURE() << failure->reason << " at " << failure->load_fraction;
+  if (!result) {
+    ADD_FAILURE() << result.error().reason << " at " << result.error().load_fraction;
     return {};
   }
-  return std::get<Equilibrium>(std::move(result));
+  return *std::move(result);
 }
 
 /// A bent, loaded block: everything at once.

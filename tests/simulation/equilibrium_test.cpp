@@ -102,16 +102,16 @@ TEST(Solver, RerunsAreBitEqualAndWarmEqualsCold) {
   const auto first = solver.solve(c.energy(), c.loading(), options);
   ASSERT_EQ(first.index(), 0u);
   const MatrixXd load = test::noise(a.q.size(), 3);
-  const MatrixXd before = sensitivities(std::get<Equilibrium>(first), c.loading(), load, {});
+  const MatrixXd before = sensitivities(*first, c.loading(), load, {});
   BentBlock other = c;
   other.law = neo_hookean(0.0525, 0.57);
   other.lift = 0.7;
   const auto warm = solver.solve(other.energy(), other.loading(), options);
   ASSERT_EQ(warm.index(), 0u);
-  EXPECT_LE((std::get<Equilibrium>(warm).q - other.solved().q).cwiseAbs().maxCoeff(), 1e-8);
-  EXPECT_EQ(std::get<Equilibrium>(warm).factorizations, 1);
+  EXPECT_LE((warm->q - other.solved().q).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_EQ(warm->factorizations, 1);
   // The first solution's factor is the caller's: the warm solve must not have written into it.
-  EXPECT_EQ(before, sensitivities(std::get<Equilibrium>(first), c.loading(), load, {}));
+  EXPECT_EQ(before, sensitivities(*first, c.loading(), load, {}));
 }
 
 TEST(Solver, NearlyIncompressibleBendsAndTwists) {
@@ -207,8 +207,8 @@ TEST(Solver, FailureSaysWhereAndWhy) {
   options.max_iterations = 30;
   options.smallest_step = 1e-2;
   auto result = solve_equilibrium(c.mesh, c.energy(), loading, options);
-  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
-  const auto& failure = std::get<NumericalFailure>(result);
+  ASSERT_FALSE(result);
+  const auto& failure = result.error();
   EXPECT_EQ(failure.example, "crush");
   EXPECT_GT(failure.load_fraction, 0.1);
   EXPECT_LT(failure.load_fraction, 0.9);
@@ -217,14 +217,13 @@ TEST(Solver, FailureSaysWhereAndWhy) {
   Loading floating;
   floating.forces = {dead_force(c.tip, Vector3d(1, 0, 0))};
   result = solve_equilibrium(c.mesh, c.energy(), floating);
-  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
-  EXPECT_THAT(std::get<NumericalFailure>(result).reason,
-              testing::HasSubstr("translation along (1, 0, 0)"));
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().reason, testing::HasSubstr("translation along (1, 0, 0)"));
 
   options.cancelled = [] { return true; };
   result = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
-  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
-  EXPECT_EQ(std::get<NumericalFailure>(result).reason, "cancelled");
+  ASSERT_FALSE(result);
+  EXPECT_TRUE(cancelled(result.error()));
 }
 
 TEST(Solver, ALimitOnItsIterationsEndsTheSearchForWhatIsNotThere) {
@@ -233,7 +232,7 @@ TEST(Solver, ALimitOnItsIterationsEndsTheSearchForWhatIsNotThere) {
   EquilibriumOptions options;
   int asked = 0;  // once an iteration, and once where one ends
   options.cancelled = [&asked] { return ++asked, false; };
-  ASSERT_TRUE(std::holds_alternative<Equilibrium>(solver.solve(c.energy(), c.loading(), options)));
+  ASSERT_TRUE(solver.solve(c.energy(), c.loading(), options).has_value());
   Loading loading;
   hold(c.mesh, c.base, loading);
   hold(c.mesh, c.tip, loading);
@@ -244,10 +243,10 @@ TEST(Solver, ALimitOnItsIterationsEndsTheSearchForWhatIsNotThere) {
   asked = 0;
   options.most_iterations = 20;  // of either way, from where the body was and from rest
   const auto result = solver.solve(c.energy(), loading, options);
-  ASSERT_TRUE(std::holds_alternative<NumericalFailure>(result));
+  ASSERT_FALSE(result);
   EXPECT_LE(asked, 50);
   // What it had found before still starts the next one.
-  EXPECT_TRUE(std::holds_alternative<Equilibrium>(solver.solve(c.energy(), c.loading(), options)));
+  EXPECT_TRUE(solver.solve(c.energy(), c.loading(), options).has_value());
 }
 
 TEST(Solver, WithoutItsFactorTheEquilibriumIsTheSame) {
@@ -256,7 +255,7 @@ TEST(Solver, WithoutItsFactorTheEquilibriumIsTheSame) {
   const auto with = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
   options.factored = false;
   const auto without = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
-  const Equilibrium &a = std::get<Equilibrium>(with), &b = std::get<Equilibrium>(without);
+  const Equilibrium &a = *with, &b = *without;
   EXPECT_EQ(a.q, b.q);
   EXPECT_EQ(a.factorizations, b.factorizations + 1);
   EXPECT_TRUE(a.factor);
@@ -270,14 +269,13 @@ TEST(Solver, StartsWhereTheSolutionIsExpected) {
     BentBlock now = c;
     EquilibriumSolver solver(std::make_shared<const TetMesh>(now.mesh));
     EquilibriumOptions options;
-    if (!std::holds_alternative<Equilibrium>(solver.solve(now.energy(), now.loading(), options)))
-      return -1;
+    if (!solver.solve(now.energy(), now.loading(), options).has_value()) return -1;
     now.gravity *= 1.3, now.lift *= 1.1;
     options.expected = expected;
     const auto result = solver.solve(now.energy(), now.loading(), options);
-    if (!std::holds_alternative<Equilibrium>(result)) return -1;
-    q = std::get<Equilibrium>(result).q;
-    return std::get<Equilibrium>(result).newton_iterations;
+    if (!result.has_value()) return -1;
+    q = result->q;
+    return result->newton_iterations;
   };
   VectorXd q, expected, odd;
   const int without = iterations(nullptr, q);
@@ -298,14 +296,14 @@ TEST(Solver, MeetsAHardWallThatStandsInsideTheBody) {
   hold(c.mesh, c.base, loading);
   EquilibriumSolver solver(std::make_shared<const TetMesh>(c.mesh));
   const auto free = solver.solve(c.energy(), loading, {});
-  ASSERT_TRUE(std::holds_alternative<Equilibrium>(free));
+  ASSERT_TRUE(free.has_value());
   const double wall = 1.9;  // a twentieth of the height is beyond it
-  ASSERT_GT(std::get<Equilibrium>(free).q.reshaped(3, c.mesh.nodes()).row(2).maxCoeff(), 2.0);
+  ASSERT_GT(free->q.reshaped(3, c.mesh.nodes()).row(2).maxCoeff(), 2.0);
   loading.forces.push_back(
       floor_contact(c.mesh, Vector3d(0, 0, wall), Vector3d(0, 0, -1), 1000.0, 1e-3));
   const auto met = solver.solve(c.energy(), loading, {});
-  ASSERT_TRUE(std::holds_alternative<Equilibrium>(met)) << std::get<NumericalFailure>(met).reason;
-  const VectorXd& q = std::get<Equilibrium>(met).q;
+  ASSERT_TRUE(met.has_value()) << met.error().reason;
+  const VectorXd& q = met->q;
   const VectorXd R = residual(c.mesh, c.energy(), loading, q);
   for (int u = 0; u < R.size(); ++u) {
     if (std::binary_search(loading.prescribed.begin(), loading.prescribed.end(), u)) continue;
@@ -320,9 +318,9 @@ TEST(Solver, KeepsThePredictorsFactorWhereItCameNear) {
   EquilibriumOptions options;
   options.factored = false;
   const auto found = solve_equilibrium(c.mesh, c.energy(), c.loading(), options);
-  ASSERT_TRUE(std::holds_alternative<Equilibrium>(found));
-  EXPECT_EQ(std::get<Equilibrium>(found).factorizations, 1);
-  EXPECT_LE((std::get<Equilibrium>(found).q - c.solved().q).cwiseAbs().maxCoeff(), 1e-7);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->factorizations, 1);
+  EXPECT_LE((found->q - c.solved().q).cwiseAbs().maxCoeff(), 1e-7);
 }
 
 TEST(Solver, UnloadedBodyStaysAtRest) {

@@ -36,11 +36,11 @@ struct Bar {
     EnergyModel energy;
     energy.parts.push_back({additive(model(wall)), {}, {}});
     auto solved = solve_equilibrium(mesh, energy, loading);
-    if (const auto* failure = std::get_if<NumericalFailure>(&solved)) {
-      ADD_FAILURE() << failure->reason << " at " << failure->load_fraction;
+    if (!solved) {
+      ADD_FAILURE() << solved.error().reason << " at " << solved.error().load_fraction;
       return {};
     }
-    return std::get<Equilibrium>(std::move(solved));
+    return *std::move(solved);
   }
   /// E11 over the elements in the middle half, away from the ends.
   VectorXd middle_strain(const Equilibrium& e, double wall) const {

@@ -23,7 +23,7 @@ TEST(FreeForm, FindsAWeightWithoutItsName) {
   Workspace workspace(small.scene);
   const Fitted fitted = base_fit(workspace);
   const auto result = free_form(workspace, fitted, nullptr);
-  const auto& fields = std::get<std::vector<FreeForm>>(result);
+  const auto& fields = *result;
   ASSERT_FALSE(fields.empty());
   const FreeForm& first = fields.front();
   EXPECT_EQ(first.name, "body_force") << first.sentence;
@@ -83,7 +83,7 @@ TEST(FreeForm, SaysNothingWhereNothingIsHidden) {
   Workspace workspace(small.scene);
   const Fitted fitted = base_fit(workspace);
   const auto result = free_form(workspace, fitted, nullptr);
-  EXPECT_TRUE(std::get<std::vector<FreeForm>>(result).empty());
+  EXPECT_TRUE(result->empty());
 }
 
 TEST(FreeForm, IsWrittenAtTheNodes) {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "estimation/diagnosis/diagnosis.h"
-#include "estimation/search/contest.h"
+#include "estimation/search/mesh_first.h"
 #include "estimation/search/verdict.h"
 
 namespace hookeye {

@@ -22,8 +22,7 @@ std::vector<double> misfits(const SmallScene& small, const std::vector<double>& 
   options.most_iterations = kStepIterations;
   std::vector<double> out;
   for (const double mu : moduli) {
-    const auto result = workspace.evaluate(form, Eigen::VectorXd::Constant(1, mu), options);
-    const auto* evaluation = std::get_if<Evaluation>(&result);
+    const auto evaluation = workspace.evaluate(form, Eigen::VectorXd::Constant(1, mu), options);
     out.push_back(evaluation ? evaluation->chi(false) : 0.0);
   }
   return out;
@@ -69,7 +68,7 @@ TEST(Evaluation, DerivativesTellWhereTheNextOneStarts) {
     const auto at = [&](double weight) {
       Eigen::VectorXd p = form.initial();
       p.tail(3) << 0.3 * weight, 0.0, weight;
-      return std::get<Evaluation>(workspace.evaluate(form, p, options));
+      return workspace.evaluate(form, p, options).value();
     };
     at(-9000.0);
     return at(-12000.0);

@@ -29,7 +29,7 @@ TEST(FieldEvaluation, DerivativesAreThoseOfFiniteDifferences) {
   const auto at = [&](const VectorXd& there, bool derivatives) {
     EvaluationOptions options;
     options.derivatives = derivatives;
-    return std::get<Evaluation>(workspace.evaluate(form, there, options));
+    return workspace.evaluate(form, there, options).value();
   };
   const Evaluation here = at(p, true), whole = at(p, false);
   const auto parameters = form.parameters();
@@ -86,8 +86,8 @@ TEST(FieldEvaluation, BesidePhotosAFieldAddsItsOwnSums) {
       told->capture.examples[static_cast<size_t>(told->example_index("pull"))].measured.front()};
   const ModelForm form = base_form(scene), plain = base_form(block_scene());
   Workspace workspace(scene), without(block_scene());
-  Evaluation both = std::get<Evaluation>(workspace.evaluate(form, form.initial(), {}));
-  const Evaluation photos = std::get<Evaluation>(without.evaluate(plain, form.initial(), {}));
+  Evaluation both = workspace.evaluate(form, form.initial(), {}).value();
+  const Evaluation photos = without.evaluate(plain, form.initial(), {}).value();
   EXPECT_EQ(both.seen(), Evaluation::Seen::photos);
   EXPECT_EQ(both.chi(false), photos.chi(false));
   EXPECT_EQ(both.measured_chi(false), photos.measured_chi(false));

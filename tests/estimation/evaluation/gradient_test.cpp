@@ -66,9 +66,8 @@ TEST(Gradient, IsThatOfTheMisfitByEverythingLeftOpen) {
     options.derivatives = derivatives;
     options.tolerance = 1e-11;
     auto result = workspace.evaluate(form, at, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&result))
-      throw std::runtime_error(failure->reason);
-    return std::get<Evaluation>(std::move(result));
+    if (!result) throw std::runtime_error(result.error().reason);
+    return *std::move(result);
   };
   const auto misfit = [&](const VectorXd& at) {
     double sum = 0.0;
@@ -116,7 +115,7 @@ TEST(Gradient, OfMeasuredValuesIsExact) {
     options.only = {twist};
     options.tolerance = 1e-10;
     options.level = 2;  // small pictures: they are not looked at
-    return std::get<Evaluation>(workspace.evaluate(form, at, options)).examples.at(0).measured;
+    return workspace.evaluate(form, at, options).value().examples.at(0).measured;
   };
   const auto now = measured(p, true);
   ASSERT_EQ(now.size(), 3u);
@@ -188,8 +187,8 @@ std::shared_ptr<const Scene> covered_scene() {
   EvaluationOptions options;
   options.derivatives = false;
   options.residuals = options.held_out = true;
-  const auto seen = std::get<Evaluation>(
-      test::workspace().evaluate(test::base(), test::base().initial(), options));
+  const auto seen =
+      test::workspace().evaluate(test::base(), test::base().initial(), options).value();
   for (const auto& example : seen.examples)
     for (const auto& photo : example.photos) {
       auto& valid = scene->photos[example.example][photo.photo].valid.own();
@@ -252,7 +251,7 @@ TEST(Gradient, OfSilhouettesKnowsNoLight) {
     if (ingredient->name() == "defocus") continue;
     const ModelForm form = test::extended(base_form(scene), ingredient);
     const VectorXd p = test::with_values(form, test::some_values(*ingredient));
-    const auto seen = std::get<Evaluation>(workspace.evaluate(form, p, {}));
+    const auto seen = workspace.evaluate(form, p, {}).value();
     const auto own = static_cast<Eigen::Index>(ingredient->parameters().size());
     double of_material = 0.0;
     for (const auto& example : seen.examples)
@@ -280,7 +279,7 @@ TEST(Gradient, OfShadingAlone) {
     options.residuals = true;
     options.only = {bend};
     options.tolerance = 1e-10;
-    return std::get<Evaluation>(workspace.evaluate(form, at, options));
+    return workspace.evaluate(form, at, options).value();
   };
   Workspace bare(scene);
   const Evaluation whole = look(bare, p, false);
@@ -326,7 +325,7 @@ TEST(Gradient, OfLightAndSensorIsExact) {
       const auto look = [&](const VectorXd& at, bool derivatives) {
         EvaluationOptions options = how;
         options.derivatives = derivatives;
-        return std::get<Evaluation>(workspace.evaluate(form, at, options));
+        return workspace.evaluate(form, at, options).value();
       };
       const auto misfit = [&](const VectorXd& at) { return normal_equations(look(at, false)).r2; };
       const NormalEquations sums = normal_equations(look(p, true));

@@ -113,9 +113,8 @@ Fitted seen(std::shared_ptr<const Scene> scene) {
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
   auto result = assess(workspace, form, form.initial());
-  if (auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(failure->reason);
-  return std::get<Fitted>(std::move(result));
+  if (!result) throw std::runtime_error(result.error().reason);
+  return *std::move(result);
 }
 
 /// Moved by fractions of a pixel, the model's picture of a moved body is the moved photo: nothing
@@ -215,7 +214,7 @@ TEST(RestTexture, SumsAreThoseOfTheResiduals) {
     options.derivatives = derivatives;
     options.residuals = true;
     auto result = workspace.evaluate(form, at, options);
-    return std::get<Evaluation>(std::move(result)).examples.at(1).photos.at(0);
+    return result->examples.at(1).photos.at(0);
   };
   const PhotoEvaluation base = look(p, true);
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(base.residual.values.size(), 6);
@@ -248,9 +247,8 @@ TEST(RestTexture, PlacementMovesTheReferencePhotoToo) {
     EvaluationOptions options;
     options.derivatives = derivatives;
     auto result = workspace.evaluate(form, at, options);
-    if (auto* failure = std::get_if<NumericalFailure>(&result))
-      throw std::runtime_error(failure->reason);
-    return std::get<Evaluation>(std::move(result));
+    if (!result) throw std::runtime_error(result.error().reason);
+    return *std::move(result);
   };
   const auto sums = normal_equations(look(p, true));
   for (const VectorXd& direction :
@@ -283,7 +281,7 @@ int check_slopes(const std::string& name, double step, bool follows = true) {
     auto look = [&](const VectorXd& at, bool derivatives) {
       EvaluationOptions options;
       options.derivatives = derivatives;
-      return std::get<Evaluation>(workspace.evaluate(form, at, options));
+      return workspace.evaluate(form, at, options).value();
     };
     const auto misfit = [&](Eigen::Index i, double h) {
       return look(p + h * VectorXd::Unit(p.size(), i), false).examples.at(1).photos.at(0).r2;

@@ -49,7 +49,7 @@ TEST(Sensor, DerivativesAreThoseOfFiniteDifferences) {
   p.tail(form.size() - 4).setConstant(0.01);
   Workspace workspace(scene);
   const auto at = [&](const VectorXd& there) {
-    return std::get<Evaluation>(workspace.evaluate(form, there, {}));
+    return workspace.evaluate(form, there, {}).value();
   };
   const Evaluation here = at(p);
   const auto parameters = form.parameters();

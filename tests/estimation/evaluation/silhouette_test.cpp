@@ -166,8 +166,8 @@ TEST(Silhouette, JawsAreFoundFromFarInFittedAndHeldOutPhotos) {
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
   auto result = fit(workspace, form, form.initial());
-  ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << std::get<NumericalFailure>(result).reason;
-  const Fitted& fitted = std::get<Fitted>(result);
+  ASSERT_TRUE(result.has_value()) << result.error().reason;
+  const Fitted& fitted = *result;
   expect_jaw(fitted, "fitted", near);
   expect_jaw(fitted, "held", held);
   // Along the line of sight nothing is seen; across it everything is.
@@ -190,7 +190,7 @@ TEST(Silhouette, TheFloorIsNoMoreThanTheMisfit) {
   auto scene = load_scene(read_capture(folder.path()));
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
-  const auto fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  const auto fitted = assess(workspace, form, form.initial()).value();
   const Floor floor = measure_floor(*scene, fitted.evaluation);
   EXPECT_EQ(floor.source, "rest photos");
   EXPECT_LE(floor.chi, fitted.evaluation.chi(false));

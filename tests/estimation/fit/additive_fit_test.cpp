@@ -74,9 +74,8 @@ TEST(ConvexFit, StaysConvexAfterEveryAcceptedStep) {
   FitOptions options;
   options.max_iterations = 6;
   const auto result = fit_convex(workspace, form, p, options);
-  ASSERT_TRUE(std::holds_alternative<ConvexFit>(result))
-      << std::get<NumericalFailure>(result).reason;
-  const ConvexFit& fit = std::get<ConvexFit>(result);
+  ASSERT_TRUE(result.has_value()) << result.error().reason;
+  const ConvexFit& fit = *result;
   ASSERT_GE(fit.eigenvalues.size(), 3u);
   for (double eigenvalue : fit.eigenvalues) EXPECT_GE(eigenvalue, 0.0);
   const double mu = 0.1;
@@ -85,8 +84,8 @@ TEST(ConvexFit, StaysConvexAfterEveryAcceptedStep) {
   // The fitted examples alone: nothing says that the other motion has an equilibrium.
   const auto misfit = [&](const VectorXd& at) {
     const auto seen = workspace.evaluate(form, at, EvaluationOptions{});
-    EXPECT_TRUE(std::holds_alternative<Evaluation>(seen));
-    return normal_equations(std::get<Evaluation>(seen)).r2;
+    EXPECT_TRUE(seen.has_value());
+    return normal_equations(*seen).r2;
   };
   EXPECT_LT(misfit(fit.p), 0.2 * misfit(p));
 }
@@ -97,14 +96,14 @@ TEST(ProgressiveFit, RefinesWhereTheDataAskAndStopsByHeldOutError) {
   Workspace workspace(scene);
   const ModelForm base = base_form(scene);
   const auto textbook = fit(workspace, base, base.initial());
-  ASSERT_TRUE(std::holds_alternative<Fitted>(textbook));
-  const auto [form, p] = to_additive(base, std::get<Fitted>(textbook).p);
+  ASSERT_TRUE(textbook.has_value());
+  const auto [form, p] = to_additive(base, textbook->p);
   ProgressiveOptions options;
   options.most_refinements = 3;
   options.fit.max_iterations = 6;
   const auto result = fit_progressive(workspace, {{form, p}}, options);
-  ASSERT_TRUE(std::holds_alternative<Fitted>(result)) << std::get<NumericalFailure>(result).reason;
-  const Fitted& fitted = std::get<Fitted>(result);
+  ASSERT_TRUE(result.has_value()) << result.error().reason;
+  const Fitted& fitted = *result;
   ASSERT_GE(fitted.refinements.size(), 2u);
   // What is returned agrees best with the held-out examples of all that was fitted.
   double held = *fitted.refinements[0].misfit_held_out;
@@ -158,14 +157,13 @@ TEST(ProgressiveFit, ASheetIsFiveTimesNearerThanWithStVenantKirchhoff) {
   Workspace workspace(scene);
   const ModelForm base = base_form(scene);
   const auto stvk = fit(workspace, base, base.initial());
-  ASSERT_TRUE(std::holds_alternative<Fitted>(stvk));
+  ASSERT_TRUE(stvk.has_value());
   ProgressiveOptions options;
   options.most_refinements = 6;
-  const auto additive =
-      fit_progressive(workspace, {to_additive(base, std::get<Fitted>(stvk).p)}, options);
-  ASSERT_TRUE(std::holds_alternative<Fitted>(additive));
-  const auto errors = [&](const std::variant<Fitted, NumericalFailure>& fitted) {
-    return marker_errors(*both, std::get<Fitted>(shown_on(both, std::get<Fitted>(fitted))));
+  const auto additive = fit_progressive(workspace, {to_additive(base, stvk->p)}, options);
+  ASSERT_TRUE(additive.has_value());
+  const auto errors = [&](const Result<Fitted>& fitted) {
+    return marker_errors(*both, shown_on(both, *fitted).value());
   };
   const MarkerErrors textbook = errors(stvk), sums = errors(additive);
   EXPECT_GT(textbook.corner, 5.0 * sums.corner);
@@ -181,11 +179,11 @@ TEST(ProgressiveFit, ACouplingIsRefinedAlongBothAxes) {
   EvaluationOptions all;
   all.pictures = true;
   auto seen = workspace.evaluate(form, p, all);
-  ASSERT_TRUE(std::holds_alternative<Evaluation>(seen));
+  ASSERT_TRUE(seen.has_value());
   Fitted fitted;
   fitted.form = form;
   fitted.p = p;
-  fitted.evaluation = std::get<Evaluation>(std::move(seen));
+  fitted.evaluation = *std::move(seen);
   const AdditiveModel before = additive_parts(form, p).at(0).model;
   Matrix3d F;
   F << 1.2, 0.1, 0.0, 0.05, 1.1, 0.02, 0.0, 0.03, 0.9;
@@ -233,11 +231,11 @@ Interval moduli_from(std::set<std::string> kinds, std::optional<Vector3d> dead_f
   const ModelForm base = base_form(scene);
   const auto [form, p] = to_additive(base, base.initial());
   const auto result = fit(workspace, form, p);
-  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
-    ADD_FAILURE() << failure->reason;
+  if (!result) {
+    ADD_FAILURE() << result.error().reason;
     return {VectorXd::Zero(2), VectorXd::Zero(2), VectorXd::Zero(2)};
   }
-  const Fitted& fitted = std::get<Fitted>(result);
+  const Fitted& fitted = *result;
   return {fitted.p.head(2), fitted.low.head(2), fitted.high.head(2)};
 }
 
@@ -293,11 +291,11 @@ Interval values_from(std::set<std::string> kinds, std::optional<Vector3d> dead_f
   const auto [form, p] = with_structures(neo, moduli, {start});
   const Eigen::Index n = truth.size();
   const auto result = fit(workspace, form, p);
-  if (const auto* failure = std::get_if<NumericalFailure>(&result)) {
-    ADD_FAILURE() << failure->reason;
+  if (!result) {
+    ADD_FAILURE() << result.error().reason;
     return {VectorXd::Zero(n), VectorXd::Zero(n), VectorXd::Zero(n)};
   }
-  const Fitted& fitted = std::get<Fitted>(result);
+  const Fitted& fitted = *result;
   return {fitted.p.head(n), fitted.low.head(n), fitted.high.head(n)};
 }
 

@@ -130,7 +130,7 @@ TEST_F(AdditiveBlock, BandsAreTheFittedValuesIntervals) {
   const auto scene = block_of(material(), {"I1bar.2"});
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
-  Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  Fitted fitted = assess(workspace, form, form.initial()).value();
   const auto all =
       parameter_covariance(fitted.evaluation, fitted.form.parameters(), fitted.p).all();
   Eigen::Index own = 0;

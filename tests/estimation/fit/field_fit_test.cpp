@@ -15,9 +15,8 @@ Fitted fitted_to(std::shared_ptr<const Scene> scene) {
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
   auto result = fit(workspace, form, form.initial());
-  if (const auto* failure = std::get_if<NumericalFailure>(&result))
-    throw std::runtime_error(failure->reason);
-  return std::get<Fitted>(std::move(result));
+  if (!result) throw std::runtime_error(result.error().reason);
+  return *std::move(result);
 }
 
 /// Twelve draws of the noise: the intervals hold the truth, and are no wider than they must be.
@@ -86,9 +85,8 @@ TEST(FieldFit, DiscoverNamesAWeightFromFieldsAlone) {
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
   const auto result = discover(workspace, form, form.initial(), {});
-  ASSERT_TRUE(std::holds_alternative<Discovery>(result))
-      << std::get<NumericalFailure>(result).reason;
-  const Discovery& found = std::get<Discovery>(result);
+  ASSERT_TRUE(result.has_value()) << result.error().reason;
+  const Discovery& found = *result;
   ASSERT_EQ(found.steps.size(), 2u) << found.sentence;
   EXPECT_GT(found.steps[0].fitted.evaluation.chi(false), 3.0);
   EXPECT_EQ(found.steps[1].added, "gravity") << found.sentence;
@@ -108,8 +106,8 @@ TEST(FieldFit, DiscoverNamesNothingWhereNothingIsMissing) {
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
   const auto result = discover(workspace, form, form.initial(), {});
-  ASSERT_TRUE(std::holds_alternative<Discovery>(result));
-  const Discovery& found = std::get<Discovery>(result);
+  ASSERT_TRUE(result.has_value());
+  const Discovery& found = *result;
   EXPECT_EQ(found.steps.size(), 1u) << found.sentence;
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
 }

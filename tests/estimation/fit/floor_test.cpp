@@ -17,7 +17,7 @@ TEST(Floor, LoadedPhotosTellWhatNoModelCouldTake) {
   const SmallScene small({.same_renderer = true});
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
-  Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  Fitted fitted = assess(workspace, form, form.initial()).value();
   const Floor rest = measure_floor(*small.scene, fitted.evaluation);
   EXPECT_EQ(rest.source, "rest photos");
   EXPECT_EQ(rest.copies, 0.0);
@@ -46,7 +46,7 @@ TEST(Floor, LoadedPhotosTellWhatNoModelCouldTake) {
 TEST(Floor, RestPhotosTellWhatMovesABodyThatNothingMoves) {
   const auto told = [](const SmallScene& small, const ModelForm& form, const VectorXd& p) {
     Workspace workspace(small.scene);
-    const Fitted fitted = std::get<Fitted>(assess(workspace, form, p));
+    const Fitted fitted = assess(workspace, form, p).value();
     return measure_floor(*small.scene, fitted.evaluation);
   };
   const auto cameras = [](const Floor& floor) {

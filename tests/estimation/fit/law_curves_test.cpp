@@ -14,7 +14,7 @@ Fitted as_told() {
   const auto scene = block_scene();
   const ModelForm form = base_form(scene);
   Workspace workspace(scene);
-  return std::get<Fitted>(assess(workspace, form, form.initial()));
+  return assess(workspace, form, form.initial()).value();
 }
 
 TEST(LawCurves, NeoHookesPullIsTheFormulaAndItsBandTheModulus) {
@@ -59,7 +59,7 @@ TEST(LawCurves, FibresPullOtherwiseAlongThem) {
   VectorXd p(fitted.p.size() + fibres.front()->parameters().size());
   p << fitted.p, VectorXd::Constant(p.size() - fitted.p.size(), 0.02);
   Workspace workspace(fitted.form.scene);
-  const Fitted with = std::get<Fitted>(assess(workspace, fitted.form, p));
+  const Fitted with = assess(workspace, fitted.form, p).value();
   const auto curves = law_curves(*fitted.form.scene, with, EnergyNeighbourhood(with));
   ASSERT_EQ(curves.size(), 4u);
   EXPECT_EQ(curves[2]["name"], "pull along z");

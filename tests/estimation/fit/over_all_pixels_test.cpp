@@ -42,11 +42,11 @@ Evaluation taken(Workspace& workspace, const Fitted& at, int tile_px, double hub
   options.pictures = options.held_out = options.all_pixels = true;
   options.tile_px = tile_px;
   options.huber = huber;
-  return std::get<Evaluation>(workspace.evaluate(at.form, at.p, options));
+  return workspace.evaluate(at.form, at.p, options).value();
 }
 
 Fitted over_all(Workspace& workspace, const Fitted& fitted) {
-  auto all = std::get<std::optional<Fitted>>(over_all_pixels(workspace, fitted));
+  auto all = over_all_pixels(workspace, fitted).value();
   EXPECT_TRUE(all.has_value());
   return all.value_or(fitted);
 }
@@ -54,7 +54,7 @@ Fitted over_all(Workspace& workspace, const Fitted& fitted) {
 TEST(OverAllPixels, NothingIsLeftWhereTheFitHasSeenThem) {
   Workspace workspace(large_photos().scene);
   const Fitted fitted = base_fit(workspace);
-  EXPECT_FALSE(std::get<std::optional<Fitted>>(over_all_pixels(workspace, fitted)).has_value());
+  EXPECT_FALSE(over_all_pixels(workspace, fitted).value().has_value());
 }
 
 TEST(OverAllPixels, TheyTellWhatAFitToThemWouldHaveFound) {
@@ -87,7 +87,7 @@ TEST(OverAllPixels, SumsAndPicturesAreThoseOfWholePhotosWhateverTheTiles) {
   EvaluationOptions options;
   options.held_out = true;
   const ModelForm form = base_form(large_photos().scene);
-  const Evaluation all = std::get<Evaluation>(whole.evaluate(form, fitted.p, options));
+  const Evaluation all = whole.evaluate(form, fitted.p, options).value();
   for (size_t e = 0; e < all.examples.size(); ++e)
     for (size_t k = 0; k < all.examples[e].photos.size(); ++k) {
       const PhotoEvaluation& seen = all.examples[e].photos[k];
@@ -140,7 +140,7 @@ void expect_same_sums(const Retold& scenes) {
     EvaluationOptions options;
     options.all_pixels = options.pictures = all_pixels;
     const ModelForm form = base_form(scene);
-    return std::get<Evaluation>(workspace.evaluate(form, form.initial(), options));
+    return workspace.evaluate(form, form.initial(), options).value();
   };
   const Evaluation all = sums_of(scenes.whole, false), taken = sums_of(scenes.part, true);
   int compared = 0;

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 Fitted as_told(const std::shared_ptr<const Scene>& scene = block_scene()) {
   const ModelForm form = base_form(scene);
   Workspace workspace(scene);
-  return std::get<Fitted>(assess(workspace, form, form.initial()));
+  return assess(workspace, form, form.initial()).value();
 }
 
 /// block_scene() with another `material` and `fit`.
@@ -133,7 +133,7 @@ TEST(MaterialCard, AFibreMakesOneModulusAnAxisAndStandsBesideTheLaw) {
   VectorXd p(fitted.p.size() + fibres.front()->parameters().size());
   p << fitted.p, VectorXd::Constant(p.size() - fitted.p.size(), 0.02);
   Workspace workspace(fitted.form.scene);
-  const json material = card_of(std::get<Fitted>(assess(workspace, fitted.form, p)));
+  const json material = card_of(assess(workspace, fitted.form, p).value());
   EXPECT_THAT(material.at("beside"), ElementsAre("anisotropy"));
   const json& card = material.at("cards").at(0);
   EXPECT_EQ(card.at("curves").size(), 3U);

@@ -47,11 +47,11 @@ TEST(Confused, TheSentenceGoesWithTheTable) {
   Diagnosis diagnosis;
   diagnosis.effects = {score("gravity", 1.0), score("swelling", 0.5)};
   diagnosis.effects[0].confused_with = {{"swelling", 0.99}};
-  const auto none = std::get<Plan>(plan(Fitted(), diagnosis));
+  const auto none = plan(Fitted(), diagnosis).value();
   EXPECT_THAT(none.sentence, ::testing::StartsWith("no effect stands out"));
   EXPECT_THAT(none.sentence, ::testing::HasSubstr("`confused with`"));
   diagnosis.effects[0] = score("gravity", 40.0);
-  const auto one = std::get<Plan>(plan(Fitted(), diagnosis));
+  const auto one = plan(Fitted(), diagnosis).value();
   EXPECT_THAT(one.sentence, ::testing::StartsWith("gravity leads"));
 }
 
@@ -74,9 +74,7 @@ std::shared_ptr<const Scene> sagging_scene() {
     RenderOptions options = render_options(*out);
     options.derivatives = false;
     Photo photo = block_scene()->photos[0][0];
-    photo.planes[0] = PhotoComparer(out, 0)
-                          .render(truth, std::get<Equilibrium>(solved).q, nullptr, 0, 0, options)
-                          .I;
+    photo.planes[0] = PhotoComparer(out, 0).render(truth, solved->q, nullptr, 0, 0, options).I;
     std::mt19937 engine(5);
     std::normal_distribution<double> normal;
     Image& plane = photo.planes[0].own();
@@ -103,8 +101,8 @@ const Diagnosed& diagnosed() {
     Workspace workspace(sagging_scene());
     const ModelForm form = base_form(sagging_scene());
     Diagnosed out;
-    out.fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
-    out.diagnosis = std::get<Diagnosis>(diagnose(workspace, out.fitted));
+    out.fitted = assess(workspace, form, form.initial()).value();
+    out.diagnosis = diagnose(workspace, out.fitted).value();
     return out;
   }();
   return one;
@@ -190,7 +188,7 @@ TEST(Plan, ATwinOfACameraDoublesWhatIsKnown) {
   PlanOptions options;
   options.between = {"gravity", "pressure"};
   const auto predicted = predict(now.fitted, now.diagnosis, options.between, {}, options);
-  const Prediction& prediction = std::get<Prediction>(predicted);
+  const Prediction& prediction = *predicted;
   double per_pixel = 0.0;
   for (const auto& photos : prediction.photos) {
     double pixels = 0.0;
@@ -206,7 +204,7 @@ TEST(Plan, ATiltedBaseSplitsGravityFromPressure) {
   const Diagnosed& now = diagnosed();
   PlanOptions options;
   options.between = {"gravity", "pressure"};
-  const Plan found = std::get<Plan>(plan(now.fitted, now.diagnosis, options));
+  const Plan found = plan(now.fitted, now.diagnosis, options).value();
   ASSERT_GE(found.ratings.size(), 5u);  // the base tilted to four sides, and a view
   const PlanRating& best = found.ratings.front();
   EXPECT_EQ(best.candidate.name.rfind("tilt_", 0), 0u) << best.sentence;
@@ -233,8 +231,8 @@ TEST(Plan, PixelsAreThoseOfTheModelSolvedAgain) {
   const auto gravity = std::find_if(now.diagnosis.effects.begin(), now.diagnosis.effects.end(),
                                     [](const auto& one) { return one.effect == "gravity"; });
   ASSERT_NE(gravity, now.diagnosis.effects.end());
-  const Prediction prediction = std::get<Prediction>(
-      predict(now.fitted, now.diagnosis, {"gravity", "swelling"}, {}, PlanOptions{}));
+  const Prediction prediction =
+      predict(now.fitted, now.diagnosis, {"gravity", "swelling"}, {}, PlanOptions{}).value();
   const auto tilt = std::find_if(prediction.photos.begin(), prediction.photos.end(),
                                  [](const auto& one) { return one.candidate.name == "tilt_1"; });
   ASSERT_NE(tilt, prediction.photos.end());
@@ -256,7 +254,7 @@ TEST(Plan, PixelsAreThoseOfTheModelSolvedAgain) {
   Matrix3Xd x[2];
   for (const Model* model : {&without, &with}) {
     const auto solved = solve_equilibrium(mesh, model->energy_of(1), model->examples[1].loading);
-    x[model == &with] = scene->body->surface.deformed(mesh, std::get<Equilibrium>(solved).q);
+    x[model == &with] = scene->body->surface.deformed(mesh, solved->q);
   }
   const Camera& camera = scene->capture.cameras[0];
   double sum = 0.0, seen = 0.0;
@@ -275,7 +273,7 @@ TEST(Plan, NothingConfusedNothingPlanned) {
   const Diagnosed& now = diagnosed();
   Diagnosis nothing = now.diagnosis;
   nothing.effects.clear();
-  const Plan found = std::get<Plan>(plan(now.fitted, nothing));
+  const Plan found = plan(now.fitted, nothing).value();
   EXPECT_TRUE(found.ratings.empty());
   EXPECT_THAT(found.sentence, ::testing::HasSubstr("no effect stands out"));
 }

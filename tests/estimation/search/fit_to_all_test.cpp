@@ -34,11 +34,11 @@ Fitted fitted_with(Workspace& workspace, const std::string& effect, const std::s
   with.ingredients.push_back(find_effect(effect)->candidate(realised(base), variant));
   VectorXd start(base.p.size() + 1);
   start << base.p, 0.05;
-  return std::get<Fitted>(fit(workspace, with, start));
+  return fit(workspace, with, start).value();
 }
 
 double held_out_r2(Workspace& workspace, const Fitted& fitted, const VectorXd& p) {
-  const auto there = std::get<Fitted>(assess(workspace, fitted.form, p));
+  const auto there = assess(workspace, fitted.form, p).value();
   return std::pow(there.evaluation.chi(true), 2);
 }
 
@@ -73,10 +73,10 @@ TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
   const Eigen::Index d = fitted.p.size() - 1;
   const double away = fitted.p[d] > 0.12 ? 1.0 : -1.0;
   const VectorXd off = away * 2.0 * V.col(d) / std::sqrt(V(d, d));
-  fitted = std::get<Fitted>(assess(workspace, fitted.form, fitted.p + off));
+  fitted = assess(workspace, fitted.form, fitted.p + off).value();
   ASSERT_TRUE(spoils_held_out(fitted, floor));
   const auto result = fit_to_all(workspace, fitted, diagnosis, {});
-  const auto& all = std::get<std::optional<FitToAll>>(result);
+  const auto& all = *result;
   ASSERT_TRUE(all);
   EXPECT_NEAR(all->fitted.p[d], 0.12, 0.002);
   EXPECT_LT(all->chi_fit, Limits{}.floor.at * floor.chi);
@@ -91,7 +91,7 @@ TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
     for (auto& photo : example.photos)
       if (!example.held_out) photo.r2 *= 0.5;
   const auto again = fit_to_all(workspace, fitted, diagnosis, {});
-  EXPECT_FALSE(std::get<std::optional<FitToAll>>(again));
+  EXPECT_FALSE(*again);
 }
 
 /// The photos of a free load know the softening: what held-out ones are missed by then is another
@@ -107,7 +107,7 @@ TEST(FitToAll, ValuesThatAreWellKnownExcuseNothing) {
   ASSERT_GT(wrong.evaluation.chi(true), Limits{}.floor.at * floor.chi);
   EXPECT_GT(over_floor(wrong, floor, true), spread_of_photos(wrong, true));
   const auto result = fit_to_all(workspace, wrong, diagnosis, {});
-  EXPECT_FALSE(std::get<std::optional<FitToAll>>(result));
+  EXPECT_FALSE(*result);
 }
 
 /// The held-out load pulls 0.7 degrees aside, of which nobody was told: the softening, hardly
@@ -126,7 +126,7 @@ TEST(FitToAll, WhatNoValueExplainsIsNotLetOff) {
   ASSERT_TRUE(spoils_held_out(fitted, floor));
   EXPECT_LT(over_floor(fitted, floor, true), spread_of_photos(fitted, true));
   const auto result = fit_to_all(workspace, fitted, diagnosis, {});
-  EXPECT_FALSE(std::get<std::optional<FitToAll>>(result));
+  EXPECT_FALSE(*result);
 }
 
 /// Creep that levels off, two loads of it.
@@ -153,7 +153,7 @@ TEST_F(CreepOfTwoLoads, IsNoSoftening) {
   ASSERT_TRUE(spoils_held_out(wrong, floor));
   EXPECT_GT(over_floor(wrong, floor, true), spread_of_photos(wrong, true));
   const auto result = fit_to_all(workspace_, wrong, diagnosis, {});
-  EXPECT_FALSE(std::get<std::optional<FitToAll>>(result));
+  EXPECT_FALSE(*result);
 }
 
 /// Where all are fitted creep does better than the softening that had won; who stands there is not
@@ -195,12 +195,12 @@ TEST(FitToAll, WhereNothingIsHeldOutNothingIsAsked) {
   scene->capture.examples.back().validate = false;
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
-  const Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  const Fitted fitted = assess(workspace, form, form.initial()).value();
   EXPECT_EQ(spread_of_photos(fitted, true), 0.0);
   Diagnosis diagnosis;
   diagnosis.floor = measure_floor(*scene, fitted.evaluation);
   const auto result = fit_to_all(workspace, fitted, diagnosis, {});
-  EXPECT_FALSE(std::get<std::optional<FitToAll>>(result));
+  EXPECT_FALSE(*result);
 }
 
 }  // namespace

@@ -217,7 +217,7 @@ TEST(Verdict, SaysWherePhotosCannotTell) {
 std::pair<Fitted, Diagnosis> at_its_floor(const SmallScene& small) {
   Workspace workspace(small.scene);
   const ModelForm form = base_form(small.scene);
-  Fitted fitted = std::get<Fitted>(assess(workspace, form, form.initial()));
+  Fitted fitted = assess(workspace, form, form.initial()).value();
   Diagnosis diagnosis;
   diagnosis.floor = measure_floor(*small.scene, fitted.evaluation);
   return {std::move(fitted), std::move(diagnosis)};

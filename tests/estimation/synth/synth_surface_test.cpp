@@ -72,7 +72,7 @@ class SynthSurface : public testing::Test {
     return read_recipe(folder_ / "recipe.yaml");
   }
   Synthesis make(const std::string& text) {
-    return std::get<Synthesis>(synthesize(recipe(text), folder_ / "capture"));
+    return synthesize(recipe(text), folder_ / "capture").value();
   }
   std::string fault(const std::string& text) {
     try {

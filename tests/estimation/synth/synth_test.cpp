@@ -50,7 +50,7 @@ const char* const kGravity = "hidden:\n  - {effect: gravity, values: {gravity.z:
 class SynthTest : public testing::Test {
  protected:
   Synthesis make(const std::string& text, const std::string& name) {
-    return std::get<Synthesis>(synthesize(parse_recipe(text, "recipe.yaml"), folder_ / name));
+    return synthesize(parse_recipe(text, "recipe.yaml"), folder_ / name).value();
   }
   test::TemporaryFolder folder_;
 };
@@ -216,7 +216,7 @@ TEST(SynthShape, IsAClosedSurfaceThatKeepsTheFileOrder) {
     Recipe quick = recipe;
     quick.truth = {1.0, 1, 1, 0};
     quick.examples.resize(2);
-    std::get<Synthesis>(synthesize(quick, folder));
+    synthesize(quick, folder).value();
     const SurfaceMesh surface = read_surface(folder / "surface.obj");
     EXPECT_TRUE(inspect(surface).clean()) << shape << ": " << inspect(surface).describe(surface);
     EXPECT_EQ(surface.X.row(2).minCoeff(), 0.0);
@@ -344,7 +344,7 @@ TEST_F(SynthTest, PhotosOfTheTruthAgreeWithinNoise) {
   options.derivatives = false;
   options.held_out = true;
   const auto result = workspace.evaluate(form, form.initial(), options);
-  const auto& evaluation = std::get<Evaluation>(result);
+  const auto& evaluation = *result;
   for (const auto& example : evaluation.examples) {
     for (const auto& photo : example.photos) {
       EXPECT_GT(photo.count, 1500.0);

@@ -20,7 +20,7 @@ TEST(Discover, NamesTheHiddenWeightBesideAnAdditiveMaterial) {
   Workspace workspace(small.scene);
   const ModelForm base = base_form(small.scene);
   const auto [form, p] = to_additive(base, base.initial());
-  const Discovery found = std::get<Discovery>(hookeye::discover(workspace, form, p, {}));
+  const Discovery found = hookeye::discover(workspace, form, p, {}).value();
   EXPECT_THAT(found.missing, testing::ElementsAre("gravity")) << found.sentence;
   EXPECT_EQ(found.verdict, Verdict::explained) << found.sentence;
   EXPECT_NEAR(test::value_of(found.steps.back().fitted, "gravity.z"), -9000.0, 300.0);

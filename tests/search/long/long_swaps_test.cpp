@@ -127,15 +127,14 @@ hidden:
   for (EffectScore& score : coarse.diagnosis.effects)
     if (score.effect == "mesh_resolution") score.fall = score.measured_fall = 0.0;
   const LastAnswer answer = settled_mesh(workspace, coarse, {}, {});
-  const auto& settled = std::get<std::optional<Step>>(answer);
+  const auto& settled = *answer;
   ASSERT_TRUE(settled.has_value());
   EXPECT_EQ(settled->added, "mesh_resolution");
   EXPECT_TRUE(at_floor(settled->fitted, coarse.diagnosis.floor));
   // What is at the floor is not asked, nor what no likelihood speaks for.
-  EXPECT_FALSE(
-      std::get<std::optional<Step>>(settled_mesh(workspace, discovery.steps.back(), {}, {})));
+  EXPECT_FALSE(settled_mesh(workspace, discovery.steps.back(), {}, {}).value());
   for (EffectScore& score : coarse.diagnosis.effects) score.evidence = 0.0;
-  EXPECT_FALSE(std::get<std::optional<Step>>(settled_mesh(workspace, coarse, {}, {})));
+  EXPECT_FALSE(settled_mesh(workspace, coarse, {}, {}).value());
 }
 
 }  // namespace
