@@ -87,6 +87,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
          fmt::format(
              "  would remove: share of the excess misfit; log BF: log Bayes factor against no "
              "effect (5: 150 to 1)\n"
+             "  confused with: changes these photos nearly alike, whether it is there or not\n"
              "  named only above {:.1f}, the 95 % critical value over all effects (chance alone)\n",
              std::max(diagnosis.gate, diagnosis.limits().nameable)) +
          (diagnosis.held_out_missed && diagnosis.gate < diagnosis.limits().nameable
