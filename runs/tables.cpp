@@ -53,7 +53,8 @@ std::string parameter_table(const Fitted& fitted) {
       const Eigen::Index own = i++;
       if (ingredient->name() == "material") continue;
       const auto [low, high] = interval_within(parameter, fitted.low[own], fitted.high[own]);
-      rows.push_back({parameter.name, fmt::format("{:.5g}", fitted.p[own]),
+      const bool unknown = centre_is_unknown(parameter, low, high);
+      rows.push_back({parameter.name, unknown ? "somewhere" : fmt::format("{:.5g}", fitted.p[own]),
                       fmt::format("{:.5g} .. {:.5g}", low, high), parameter.unit,
                       parameter.long_name});
     }

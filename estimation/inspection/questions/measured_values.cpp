@@ -278,7 +278,7 @@ void ask_for_their_signs(Sight& sight, const Readings& series, Warnings& warning
             told(centred.empty() ? measured.value : one.value),
             centred.empty() ? "" : " less the mean of all", told(one.in_equilibrium),
             unit_of(measured, sight.scene().capture.units),
-            signs.all() ? fmt::format(", as in all {} examples that have one", signs.asked) : "",
+            signs.all() ? fmt::format(", as in all {} examples where it is sure", signs.asked) : "",
             seen_in_photos(sight, one.example)),
         fmt::format("{}: change the sign{}", meaning, signs.all() ? " in all of them" : ""));
     if (signs.all()) return;
