@@ -319,6 +319,7 @@ RepairedSurface repair(const SurfaceMesh& surface, const RepairOptions& options,
   RepairedSurface out{repair.surface(), repair.said};
   out.volume_before = volume_of(surface);
   out.volume = detail::six_volume(out.surface) / 6.0;
+  out.area_before = detail::area(surface), out.area = detail::area(out.surface);
   out.moved = detail::apart(surface, out.surface);
   return out;
 }

@@ -20,6 +20,7 @@ struct RepairedSurface {
   std::vector<std::string> said;  ///< what was done, in order
   /// [length^3]; NaN before where it had holes or triangles that disagree, and enclosed nothing.
   double volume_before = 0.0, volume = 0.0;
+  double area_before = 0.0, area = 0.0;  ///< [length^2]
   double moved = 0.0;  ///< how far the old and the new surface leave each other [length]
 };
 

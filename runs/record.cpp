@@ -105,7 +105,7 @@ void record_all_pixels(Run& run, Bench& bench, Step& step, const FitOptions& opt
     if (name != "removed") run.add_file(folder, name, write, true);
   const json entry = timeline_entry(whole);
   run.update([&](json& timeline) {
-    for (const char* key : {"parameters", "all_pixels", "undetermined"})
+    for (const char* key : {"parameters", "says", "all_pixels", "undetermined"})
       timeline["steps"].back()[key] = entry.at(key);
   });
 }
@@ -126,6 +126,7 @@ void record_diagnosis(Run& run, const Step& step) {
     const auto entry = timeline_entry(step);
     timeline["steps"].back()["diagnosis"] = entry["diagnosis"];
     timeline["steps"].back()["parameters"] = entry["parameters"];
+    timeline["steps"].back()["says"] = entry["says"];  // with their ranges
     if (entry.contains("gate")) timeline["steps"].back()["gate"] = entry["gate"];
     tell_floor(timeline, step.diagnosis.floor);
   });

@@ -53,7 +53,8 @@ std::string parameter_table(const Fitted& fitted) {
       const Eigen::Index own = i++;
       if (ingredient->name() == "material") continue;
       const auto [low, high] = interval_within(parameter, fitted.low[own], fitted.high[own]);
-      rows.push_back({parameter.name, fmt::format("{:.5g}", fitted.p[own]),
+      const bool unknown = centre_is_unknown(parameter, low, high);
+      rows.push_back({parameter.name, unknown ? "somewhere" : fmt::format("{:.5g}", fitted.p[own]),
                       fmt::format("{:.5g} .. {:.5g}", low, high), parameter.unit,
                       parameter.long_name});
     }
@@ -87,6 +88,7 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
          fmt::format(
              "  would remove: share of the excess misfit; log BF: log Bayes factor against no "
              "effect (5: 150 to 1)\n"
+             "  confused with: changes these photos nearly alike, whether it is there or not\n"
              "  named only above {:.1f}, the 95 % critical value over all effects (chance alone)\n",
              std::max(diagnosis.gate, diagnosis.limits().nameable)) +
          (diagnosis.held_out_missed && diagnosis.gate < diagnosis.limits().nameable

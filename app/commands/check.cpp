@@ -11,6 +11,7 @@
 #include "app/commands/run_support.h"
 #include "app/progress.h"
 #include "core/scope.h"
+#include "estimation/inspection/si.h"
 #include "estimation/model/model.h"
 
 namespace hookeye {
@@ -214,7 +215,8 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
   session.say("{}{}\n", capture.file.string(), capture.title.empty() ? "" : ": " + capture.title);
   session.say("\nunits: length {}, force {}, stress {}\n", capture.units.length,
               capture.units.force, capture.units.stress());
-  session.say("\nbody\n{}", mesh_lines(scene.body->mesh));
+  session.say("\nbody\n  {}\n{}", d["body"]["size"].get<std::string>(),
+              mesh_lines(scene.body->mesh));
   session.say("{}", flat_tetrahedra_lines(
                         scene.body->mesh,
                         capture.body.volume.empty() ? MeshedFrom::surface : MeshedFrom::volume,
@@ -351,6 +353,7 @@ void run_check(const CheckOptions& options, Session& session) {
   const Model model = form.realise(form.initial());
   warn_of_doubts(*scene, session);
   d["body"] = describe_mesh(scene->body->mesh);
+  d["body"]["size"] = inspection::size_in_words(scene->body->mesh, capture.units);
   d["texture"] = texture_text(capture.body);
   d["light"] = light_text(capture);
   d["body"]["surface_triangles"] = scene->body->surface.mesh.triangles.size();

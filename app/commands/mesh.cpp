@@ -1,4 +1,6 @@
 // hookeye mesh: a closed surface filled with tetrahedra.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 
@@ -29,17 +31,25 @@ void refuse_unless_writable(const MeshOptions& options) {
                    "-o " + std::filesystem::path(out).replace_extension(".vtu").string());
 }
 
-/// What a repair cuts off or fills in shows in the volume.
-void tell_volume(const RepairedSurface& repaired, Session& session) {
-  const double before = repaired.volume_before, now = repaired.volume;
-  session.document["volume"] = now;
-  session.document["volume_before"] =
-      std::isnan(before) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(before);
-  if (std::isnan(before))
-    session.say("  volume {:.6g} now; before, it enclosed none\n", now);
-  else
-    session.say("  volume {:.6g} -> {:.6g} ({:+.2g} %)\n", before, now,
-                before > 0.0 ? 100.0 * (now / before - 1.0) + 0.0 : 0.0);
+/// "volume 990 -> 1000 (+1 %)".
+std::string change_text(const char* what, double before, double now) {
+  return fmt::format("{} {:.6g} -> {:.6g} ({:+.2g} %)", what, before, now,
+                     before > 0.0 ? 100.0 * (now / before - 1.0) + 0.0 : 0.0);
+}
+
+/// What a repair cuts off or fills in shows in volume and area; the area of an open surface, too.
+void tell_size(const RepairedSurface& repaired, Session& session) {
+  auto& document = session.document;
+  const bool open = std::isnan(repaired.volume_before);
+  document["volume"] = repaired.volume;
+  document["volume_before"] =
+      open ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(repaired.volume_before);
+  document["area"] = repaired.area;
+  document["area_before"] = repaired.area_before;
+  session.say("  {}\n",
+              open ? fmt::format("volume {:.6g} now; before, it enclosed none", repaired.volume)
+                   : change_text("volume", repaired.volume_before, repaired.volume));
+  session.say("  {}\n", change_text("area", repaired.area_before, repaired.area));
 }
 
 /// The surface, mended by as little as it takes or repaired; what was done is told.
@@ -63,7 +73,7 @@ SurfaceMesh body_surface(const MeshOptions& options, Session& session) {
   if (repaired.said.empty()) session.say("  nothing was wrong with the surface\n");
   session.say("  {} triangles now, at most {:.2g} from where they were\n",
               repaired.surface.triangles.size(), repaired.moved);
-  tell_volume(repaired, session);
+  tell_size(repaired, session);
   return repaired.surface;
 }
 

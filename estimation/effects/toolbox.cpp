@@ -274,7 +274,13 @@ std::string vector_text(const Vector3d& v, int digits) {
 std::string place_text(const Vector3d& X, double size) {
   const int whole = size > 0.0 ? static_cast<int>(std::floor(std::log10(size))) : 2;
   const double step = std::pow(10.0, whole - 2);
-  return vector_text(Vector3d((X / step).array().round() * step), std::max(0, 2 - whole));
+  std::string out;
+  for (int i = 0; i < 3; ++i)
+    out += (i == 0 ? "" : ", ") +
+           (std::isnan(X[i]) ? fmt::format("somewhere along {}", "xyz"[i])
+                             : fmt::format("{:.{}f}", std::round(X[i] / step) * step + 0.0,
+                                           std::max(0, 2 - whole)));
+  return "(" + out + ")";
 }
 
 std::string figure(double value) { return fmt::format("{:.3g}", value); }

@@ -113,7 +113,8 @@ class ElementForces {
 std::vector<double> numbers_in(const std::string& text);
 /// "(0.5, -0.2, -0.8)".
 std::string vector_text(const Vector3d& v, int digits = 2);
-/// "(4.9, -0.2, 38.7)": a place, to 3 digits of the body's size, in whatever unit and frame.
+/// "(4.9, -0.2, 38.7)": a place, to 3 digits of the body's size, in whatever unit and frame; of
+/// a NaN "somewhere along x".
 std::string place_text(const Vector3d& X, double size);
 /// 3 significant digits.
 std::string figure(double value);

@@ -93,6 +93,41 @@ double largest_strain(const TetMesh& mesh, const Eigen::Ref<const VectorXd>& u) 
   return largest;
 }
 
+/// Load cases in an order that is theirs and not the file's: from the one that moves least, each is
+/// followed by the nearest of those that are left. Nearness is that of the first-order motions of
+/// some nodes, spread over the mesh; names decide where two are alike.
+std::vector<size_t> by_nearness(const std::vector<FirstGuess>& guesses,
+                                const std::vector<ExampleSpec>& examples) {
+  constexpr Eigen::Index kNodes = 64;
+  std::vector<size_t> left;
+  for (size_t e = 0; e < guesses.size(); ++e)
+    if (guesses[e].u.size() > 0) left.push_back(e);
+  std::sort(left.begin(), left.end(),
+            [&](size_t a, size_t b) { return examples[a].name < examples[b].name; });
+  std::vector<VectorXd> sketch(guesses.size());
+  for (const size_t e : left) {
+    const Eigen::Index nodes = guesses[e].u.size() / 3, some = std::min(kNodes, nodes);
+    sketch[e].resize(3 * some);
+    for (Eigen::Index i = 0; i < some; ++i)
+      sketch[e].segment<3>(3 * i) = guesses[e].u.segment<3>(3 * (i * nodes / some));
+  }
+  std::vector<size_t> order;
+  while (!left.empty()) {
+    const auto far = [&](size_t e) {
+      return order.empty() ? sketch[e].squaredNorm()
+                           : (sketch[e] - sketch[order.back()]).squaredNorm();
+    };
+    // The first of several that are as near: they lie in the order of their names.
+    auto next = left.begin();
+    double least = far(*next);
+    for (auto one = next + 1; one != left.end(); ++one)
+      if (const double distance = far(*one); distance < least) least = distance, next = one;
+    order.push_back(*next);
+    left.erase(next);
+  }
+  return order;
+}
+
 /// Something acts on the body.
 bool moves(const Loading& loading) {
   return !loading.forces.empty() || !loading.displacement.isZero(0.0);
@@ -209,15 +244,15 @@ bool CoarseModel::needs_equilibrium(FirstGuess* guess) const {
   return true;
 }
 
-/// Of examples [first, last), one after the other: each begins where the one before ended, as load
-/// cases of a series lie near one another, unless rest is as near.
-void CoarseModel::find_equilibria(size_t first, size_t last,
+/// Of these examples, one after the other: each begins where the one before ended, as load cases of
+/// a series lie near one another, unless rest is as near.
+void CoarseModel::find_equilibria(std::span<const size_t> examples,
                                   std::vector<FirstGuess>* guesses) const {
   constexpr double kNear = 0.5;  // of the way from rest
   const TetMesh& mesh = scene_->body->mesh;
   EquilibriumSolver solver(scene_->mesh());
   const FirstGuess* before = nullptr;
-  for (size_t e = first; e < last; ++e) {
+  for (const size_t e : examples) {
     FirstGuess& guess = (*guesses)[e];
     if (!needs_equilibrium(&guess)) continue;
     const Loading& loading = model_.examples[e].loading;
@@ -258,9 +293,11 @@ std::vector<FirstGuess> CoarseModel::solve(bool in_equilibrium) const {
     all[e] = to_first_order(static_cast<int>(e), model_.examples[e].loading);
   });
   if (!in_equilibrium) return all;
+  const std::vector<size_t> order = by_nearness(all, scene_->capture.examples);
   const size_t length = std::clamp(count / kPieces, size_t{1}, kLongest);
-  tbb::parallel_for(size_t{0}, (count + length - 1) / length, [&](size_t piece) {
-    find_equilibria(piece * length, std::min(count, (piece + 1) * length), &all);
+  tbb::parallel_for(size_t{0}, (order.size() + length - 1) / length, [&](size_t piece) {
+    const size_t first = piece * length;
+    find_equilibria(std::span(order).subspan(first, std::min(length, order.size() - first)), &all);
   });
   return all;
 }

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,7 +65,7 @@ class CoarseModel {
   void keep_at_rest() const;
   FirstGuess to_first_order(int e, const Loading& loading) const;
   bool needs_equilibrium(FirstGuess* guess) const;
-  void find_equilibria(size_t first, size_t last, std::vector<FirstGuess>* guesses) const;
+  void find_equilibria(std::span<const size_t> examples, std::vector<FirstGuess>* guesses) const;
 
   InspectionOptions options_;
   std::string refused_;

@@ -78,8 +78,9 @@ struct InspectionOptions {
   // Measured values.
   double sure_sigmas = 5.0;  ///< their length, from which the direction is that of the load
   double heaviest_soft =
-      2500.0;  ///< [kg/m^3]: filled silicones have 2000. No less force than such
-               ///< a weight has a sure sign: the capture may leave the weight out
+      2500.0;                 ///< [kg/m^3]: filled silicones have 2000. No less force than such
+                              ///< a weight has a sure sign: the capture may leave the weight out
+  double weight_moved = 0.3;  ///< of it changes between load cases: soft bodies strain by as much
 
   // How far it moves, against the first guess to first order.
   double most_times_by_force = 30.0;  ///< a modulus that is told ten times wrong is found by a fit;

@@ -156,13 +156,15 @@ std::string summary(const Plan& plan) {
     return known + "; best: " + best.sentence;
   }
   // The diagnosis lists what is alike of all effects, be they there or not.
+  const std::string alike =
+      plan.alike
+          ? " (what `confused with` lists would look alike if it were there: `--between A,B` "
+            "plans for two of those)"
+          : "";
   const std::string known =
       plan.leader.empty()
-          ? fmt::format("no effect stands out, so there is none to tell from another{}",
-                        plan.alike ? " (what `confused with` lists would look alike if it were "
-                                     "there: `--between A,B` plans for two of those)"
-                                   : "")
-          : fmt::format("{} leads, and these photos tell it from all else", plan.leader);
+          ? fmt::format("no effect stands out, so there is none to tell from another{}", alike)
+          : fmt::format("{} leads, and these photos tell it from all else{}", plan.leader, alike);
   if (plan.untestable.empty()) return known + ": no further load or view is needed";
   const bool helps = !plan.ratings.empty() && !plan.ratings.front().makes_testable.empty();
   return fmt::format("{}; {} cannot be tested with these photos{}", known,

@@ -12,6 +12,7 @@
 #include "estimation/model/effect.h"
 #include "estimation/search/contest.h"
 #include "estimation/search/measured_explained.h"
+#include "estimation/search/said_intervals.h"
 
 namespace hookeye {
 
@@ -207,7 +208,8 @@ std::string moved_at_rest(const Fitted& fitted, const Diagnosis& diagnosis) {
 namespace {
 
 /// "; ... ended at ...": of numbers that went to the end of what is tried. What a bound gave is no
-/// measurement. Not where the null lies there: a spring may be rigid.
+/// measurement. Not where the null lies there: a spring may be rigid. Nor of a NaN, which is said
+/// to be unknown anyway.
 std::string at_their_bounds(const Ingredient& ingredient, const VectorXd& values) {
   std::string out;
   const auto parameters = ingredient.parameters();
@@ -217,7 +219,9 @@ std::string at_their_bounds(const Ingredient& ingredient, const VectorXd& values
     for (const bool high : {false, true}) {
       const double bound = high ? one.high : one.low;
       const double near = 1e-6 * one.typical + 1e-9 * std::abs(bound);
-      if (!std::isfinite(bound) || std::abs(value - bound) > near || bound == one.value) continue;
+      if (std::isnan(value) || !std::isfinite(bound) || std::abs(value - bound) > near ||
+          bound == one.value)
+        continue;
       out += fmt::format(
           "; the {} ended at the {} that is tried, {:g}{}{}: how {} it is, is not known",
           one.long_name, high ? "largest" : "smallest", bound, one.unit.empty() ? "" : " ",
@@ -231,17 +235,23 @@ std::string at_their_bounds(const Ingredient& ingredient, const VectorXd& values
 
 std::vector<std::string> effects_in_words(const Fitted& fitted) {
   std::vector<std::string> out;
+  const KnownValues all = known_values(fitted);
   ModelForm before = fitted.form;
   before.ingredients.clear();
   const ParameterLayout at = fitted.form.layout();
   for (size_t i = 0; i < fitted.form.ingredients.size(); ++i) {
     const auto& ingredient = fitted.form.ingredients[i];
-    const VectorXd values = at.of(fitted.p, i);
-    if (const Effect* effect = find_effect(ingredient->name()))
-      out.push_back(
-          fmt::format("{}: {}{}", effect->name(),
-                      effect->sentence(before.realise(at.before(fitted.p, i)), *ingredient, values),
-                      at_their_bounds(*ingredient, values)));
+    if (const Effect* effect = find_effect(ingredient->name())) {
+      const Model model = before.realise(at.before(fitted.p, i));
+      const auto say = [&](const VectorXd& values) {
+        return effect->sentence(model, *ingredient, values);
+      };
+      KnownValues known = part_of(all, at[i].first, at[i].size);
+      forget_unknown_centres(ingredient->parameters(), known);
+      if (known.value.size() == 0) known.value = at.of(fitted.p, i);
+      out.push_back(fmt::format("{}: {}{}", effect->name(), said_with_intervals(say, known),
+                                at_their_bounds(*ingredient, known.value)));
+    }
     before.ingredients.push_back(ingredient);
   }
   return out;

@@ -101,12 +101,11 @@ Left left_of(const json& step, const json& metrics, double floor, const Limits& 
   return out;
 }
 
-/// "gravity (self-weight, 9.8 m/s2 towards (0.15, 0.09, -0.98))", as the step says it.
+/// "gravity (self-weight, 9.8 (9.7 to 9.9) m/s2 towards (0.15, 0.09, -0.98))", as the step says it.
 std::string with_words(const std::string& effect, const json& step) {
   for (const std::string& said : strings_in(step, "says"))
     if (said.starts_with(effect + ": "))
-      return fmt::format("{} ({}{})", effect, said.substr(effect.size() + 2),
-                         factor_interval(effect_values(step), effect));
+      return fmt::format("{} ({})", effect, said.substr(effect.size() + 2));
   return effect;
 }
 

@@ -1,7 +1,5 @@
 #include "runs/report/effect_values.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 namespace hookeye {
@@ -50,23 +48,6 @@ json effect_values(const json& step) {
     if (!one["values"].empty()) out.push_back(std::move(one));
   }
   return out;
-}
-
-std::string factor_interval(const json& effects, const std::string& effect) {
-  const json* only = nullptr;
-  for (const json& one : effects) {
-    if (text_in(one, "effect") != effect) continue;
-    for (const json& value : one["values"]) {
-      if (!value.value("factor", false)) continue;
-      if (only) return "";
-      only = &value;
-    }
-  }
-  if (!only || !only->contains("low") || !only->contains("high") || !(*only)["low"].is_number() ||
-      !(*only)["high"].is_number())
-    return "";
-  return fmt::format("; 95 % interval of the factor {:.3g} to {:.3g}", (*only)["low"].get<double>(),
-                     (*only)["high"].get<double>());
 }
 
 }  // namespace hookeye

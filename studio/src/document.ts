@@ -30,6 +30,8 @@ export interface ParameterValue {
   value: number;
   low?: number;
   high?: number;
+  /** `open`: a place that may be anywhere along this axis. */
+  known?: 'fitted' | 'given' | 'open';
 }
 export interface EffectScore {
   effect: string;

@@ -1,5 +1,9 @@
 // The form of an added effect: chosen by its name, told, and refused with those that there are.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "app/fitted_run.h"
 #include "estimation/model/declaration.h"
@@ -47,6 +51,19 @@ TEST_F(FittedRun, AnEffectIsAddedInTheFormThatIsNamed) {
   const Result again = hookeye("add run swelling --as uniform");
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("form:      uniform"));
+
+  // The sentence has the interval of what it says: that of the table, in percent.
+  const json step = timeline().at("steps").back();
+  const std::string says = step.at("says").at(0);
+  const json& parameters = step.at("parameters");
+  const auto stretch = std::find_if(parameters.begin(), parameters.end(),
+                                    [](const json& one) { return one.at("name") == "swelling.s"; });
+  ASSERT_NE(stretch, parameters.end());
+  for (const char* end : {"low", "high"})
+    EXPECT_THAT(says,
+                HasSubstr(fmt::format("{:.3g}", 100.0 * std::abs(stretch->at(end).get<double>()))));
+  EXPECT_THAT(says, HasSubstr("95 %"));
+  EXPECT_THAT(on_one_line(again.out), HasSubstr(says));
 }
 
 TEST_F(Cli, EffectsNamesTheForms) {

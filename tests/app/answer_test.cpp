@@ -67,10 +67,11 @@ TEST(Answer, SaysInPlainWordsWhatIsMissing) {
   EXPECT_EQ(sentence(timeline("unexplained", json::array(), 1.05, 1.0)), "As the search said it");
 }
 
-/// What was added has its intervals, and the sentence that of the factor that it names.
+/// What was added has its intervals, and the sentence is the step's own.
 TEST(Answer, WhatWasAddedHasIntervals) {
   json run = timeline("explained", {"stiffness_field"}, 1.0, 1.0);
-  run["steps"][0]["says"] = {"stiffness_field: a ball 2 times as stiff as the rest"};
+  run["steps"][0]["says"] = {
+      "stiffness_field: a ball 2 (1.5 to 3) times as stiff as the rest; ranges: 95 %"};
   run["steps"][0]["parameters"] = {
       {{"name", "mu"}, {"value", 0.05}, {"low", 0.04}, {"high", 0.06}, {"unit", "MPa"}},
       {{"name", "stiffness_field.a"},
@@ -85,9 +86,8 @@ TEST(Answer, WhatWasAddedHasIntervals) {
        {"value", 4.0},
        {"low", 3.9},
        {"high", 4.1}}};
-  EXPECT_THAT(
-      sentence(run),
-      HasSubstr("(a ball 2 times as stiff as the rest; 95 % interval of the factor 1.5 to 3)"));
+  EXPECT_THAT(sentence(run),
+              HasSubstr("(a ball 2 (1.5 to 3) times as stiff as the rest; ranges: 95 %)"));
   const json effects = answer_of(run, {}, {}).at("effects");
   ASSERT_EQ(effects.size(), 1U);
   const json& values = effects[0].at("values");

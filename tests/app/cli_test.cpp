@@ -212,11 +212,15 @@ TEST_F(Cli, MeshRepairsSaysWhatItDidAndWritesSurfaceOrBody) {
   EXPECT_LT(turned, filled) << said;
   EXPECT_LT(filled, remeshed) << said;
   EXPECT_LT(remeshed, said.find("written to made/mended.obj")) << said;
+  EXPECT_THAT(said, HasSubstr("volume 1000 now; before, it enclosed none"));
+  EXPECT_THAT(said, HasSubstr("area 550 -> 600 (+9.1 %)"));
   EXPECT_EQ(hookeye("mesh made/mended.obj -o body.vtu").status, 0);
   const Result body = hookeye("mesh broken.obj --repair -o again.vtu --json");
   ASSERT_EQ(body.status, 0) << body.err;
   EXPECT_NEAR(json::parse(body.out).at("quality").at("volume").get<double>(), 1000.0, 1e-6);
   EXPECT_EQ(json::parse(body.out).at("said").size(), 2U);
+  EXPECT_NEAR(json::parse(body.out).at("area_before").get<double>(), 550.0, 1e-6);
+  EXPECT_NEAR(json::parse(body.out).at("area").get<double>(), 600.0, 1e-6);
 
   EXPECT_THAT(hookeye("mesh broken.obj -o mended.obj").err, HasSubstr("a body is written as .vtu"));
   EXPECT_EQ(hookeye("mesh broken.obj --tolerance 1 -o a.vtu").status, 2) << "without --repair";

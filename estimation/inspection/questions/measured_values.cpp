@@ -23,6 +23,7 @@ struct Reading {
   int example = 0;
   const MeasuredSpec* measured = nullptr;
   VectorXd value, first_order, in_equilibrium;
+  bool less_shared = false;  ///< what all readings have, as a weight or a zero, is taken off
 };
 using Readings = std::vector<Reading>;
 
@@ -54,9 +55,12 @@ Reading read(Sight& sight, int e, const MeasuredSpec& measured) {
   const FirstGuess& guess = *sight.guess(e);
   const VectorXd X = coarse.scene().body->mesh.X.reshaped();
   const VectorXd rest = sensed(coarse, e, measured, X, VectorXd::Zero(X.size()));
-  return {e, &measured, measured.value - rest,
+  return {e,
+          &measured,
+          measured.value - rest,
           sensed(coarse, e, measured, X + guess.u, guess.reaction) - rest,
-          sensed(coarse, e, measured, guess.q, guess.R) - rest};
+          sensed(coarse, e, measured, guess.q, guess.R) - rest,
+          false};
 }
 
 /// Where an angle is counted from is told by the value alone then.
@@ -85,6 +89,7 @@ std::vector<Readings> all_series(Sight& sight) {
       for (Reading& one : series) {
         one.value -= off.value;
         one.first_order -= off.first_order, one.in_equilibrium -= off.in_equilibrium;
+        one.less_shared = true;
       }
     } else if (!is_reaction(*series.front().measured)) {
       continue;  // a weight that the capture leaves out may have moved it
@@ -99,15 +104,22 @@ double cosine(const VectorXd& a, const VectorXd& b) {
   return size > 0.0 ? a.dot(b) / size : 0.0;
 }
 
-/// The least force or moment that a weight, which the capture leaves out, cannot be.
-double beyond_weight(const Sight& sight, const MeasuredSpec& measured) {
-  if (!is_reaction(measured)) return 0.0;
+/// The least force or moment that a weight, which the capture leaves out, cannot be: of the body's
+/// told density, else of the heaviest soft body. Where what readings share is off, there is left
+/// what a weight changes as the body deforms.
+double beyond_weight(const Sight& sight, const Reading& one) {
+  const MeasuredSpec& measured = *one.measured;
   const Capture& capture = sight.scene().capture;
+  const bool weighs = capture.gravity && capture.body.density > 0.0;
+  if (!is_reaction(measured) || weighs) return 0.0;
   const TetMesh& mesh = sight.scene().body->mesh;
   const double metre = capture.units.metre();
   const double kg = sight.options().heaviest_soft * quality(mesh).volume / (metre * metre * metre);
-  const double weight = 9.81 * kg / newtons(capture.units);
-  return measured.kind == MeasuredSpec::Kind::moment_on ? weight * extent(mesh.X) : weight;
+  const double own = capture.body.density * quality(mesh).volume * 9.81 * metre;
+  const double weight = own > 0.0 ? own : 9.81 * kg / newtons(capture.units);
+  const double share = one.less_shared ? sight.options().weight_moved : 1.0;
+  return share *
+         (measured.kind == MeasuredSpec::Kind::moment_on ? weight * extent(mesh.X) : weight);
 }
 
 /// Far enough from nothing, and expected alike to first order and in equilibrium: what second order
@@ -120,7 +132,7 @@ bool sure(const Sight& sight, const Reading& one) {
   const double times = one.value.norm() / expected;
   return std::abs(std::log(times)) <= std::log(options.most_times_by_force) &&
          one.measured->whitened(one.value).norm() >= options.sure_sigmas &&
-         one.value.norm() > beyond_weight(sight, *one.measured);
+         one.value.norm() > beyond_weight(sight, one);
 }
 
 std::string told(const VectorXd& value) {
@@ -205,32 +217,71 @@ std::string seen_in_photos(Sight& sight, int e) {
                      sums.cosine());
 }
 
-void ask_for_their_signs(Sight& sight, const Readings& series, Warnings& warnings) {
-  const InspectionOptions& options = sight.options();
-  Readings against;
-  size_t asked = 0;
-  for (const Reading& one : series) {
-    if (!sure(sight, one)) continue;
-    ++asked;
-    if (cosine(one.value, one.in_equilibrium) <= -options.sure_cosine) against.push_back(one);
+/// Readings of forces less the mean of all: a weight that the capture leaves out, and a zero that
+/// drifted, are off then.
+Readings less_their_mean(const Readings& series) {
+  if (series.size() < 2 || series.front().less_shared || !is_reaction(*series.front().measured))
+    return {};
+  Reading mean = series.front();
+  for (size_t i = 1; i < series.size(); ++i) {
+    mean.value += series[i].value;
+    mean.first_order += series[i].first_order, mean.in_equilibrium += series[i].in_equilibrium;
   }
-  const bool all = against.size() == asked && asked > 1;
-  for (const Reading& one : against) {
+  const double share = 1.0 / static_cast<double>(series.size());
+  Readings out = series;
+  for (Reading& one : out) {
+    one.value -= share * mean.value;
+    one.first_order -= share * mean.first_order;
+    one.in_equilibrium -= share * mean.in_equilibrium;
+    one.less_shared = true;
+  }
+  return out;
+}
+
+/// Which of the sure ones have the other sign.
+struct SignsFound {
+  std::vector<size_t> against;
+  size_t asked = 0;
+  bool all() const { return asked > 1 && against.size() == asked; }
+};
+
+SignsFound signs_of(const Sight& sight, const Readings& series) {
+  SignsFound out;
+  for (size_t i = 0; i < series.size(); ++i) {
+    if (!sure(sight, series[i])) continue;
+    ++out.asked;
+    if (cosine(series[i].value, series[i].in_equilibrium) <= -sight.options().sure_cosine)
+      out.against.push_back(i);
+  }
+  return out;
+}
+
+void ask_for_their_signs(Sight& sight, const Readings& series, Warnings& warnings) {
+  SignsFound signs = signs_of(sight, series);
+  const Readings centred = signs.asked == 0 ? less_their_mean(series) : Readings{};
+  if (!centred.empty()) {
+    signs = signs_of(sight, centred);
+    if (!signs.all()) return;  // of one alone the others may be what is wrong
+  }
+  for (const size_t i : signs.against) {
+    const Reading& one = centred.empty() ? series[i] : centred[i];
     const MeasuredSpec& measured = *one.measured;
     const char* meaning = is_reaction(measured)
                               ? "`value` is what the support exerts on the body, not the body on it"
                               : "`value` is told in the world's axes";
     warnings.say(
         measured.place,
-        fmt::format("{} of example `{}` is {}, where its loads and supports give {} {} by the "
-                    "first guess: the other sign{}{}",
-                    sensor_in_words(sight, measured), sight.example(one.example).name,
-                    told(measured.value), told(one.in_equilibrium),
-                    unit_of(measured, sight.scene().capture.units),
-                    all ? fmt::format(", as in all {} examples that have one", asked) : "",
-                    seen_in_photos(sight, one.example)),
-        fmt::format("{}: change the sign{}", meaning, all ? " in all of them" : ""));
-    if (all) return;
+        fmt::format(
+            "{} of example `{}` is {}{}, where its loads and supports give {} {} by the "
+            "first guess: the other sign{}{}",
+            sensor_in_words(sight, measured), sight.example(one.example).name,
+            told(centred.empty() ? measured.value : one.value),
+            centred.empty() ? "" : " less the mean of all", told(one.in_equilibrium),
+            unit_of(measured, sight.scene().capture.units),
+            signs.all() ? fmt::format(", as in all {} examples where it is sure", signs.asked) : "",
+            seen_in_photos(sight, one.example)),
+        fmt::format("{}: change the sign{}", meaning, signs.all() ? " in all of them" : ""));
+    if (signs.all()) return;
   }
 }
 

@@ -86,12 +86,50 @@ std::optional<Units> better_units(const Sizes& told, Units units,
   return std::nullopt;
 }
 
+/// The first usual unit of length in which the body is usual, whatever the other numbers are.
+std::optional<Units> units_of_body(const Sizes& told, Units units,
+                                   const InspectionOptions& options) {
+  for (const char* length : {"mm", "cm", "m", "um"}) {
+    units.length = length;
+    if (body_out(in_si(told, units), options) == 0.0) return units;
+  }
+  return std::nullopt;
+}
+
 std::string in_words(const Sizes& si) {
   std::string out = fmt::format("the body is {} long", length_in_words(si.body));
   if (si.modulus > 0.0) out += fmt::format(", its shear modulus {}", stress_in_words(si.modulus));
   if (si.camera > 0.0)
     out += fmt::format(", camera `{}` {} away", si.camera_name, length_in_words(si.camera));
   return out;
+}
+
+/// Why a size is beyond what is photographed: where the limits of options.h are from.
+std::string why_out(const Sizes& si, const InspectionOptions& options) {
+  const std::string smallest = length_in_words(options.smallest_body),
+                    largest = length_in_words(options.largest_body),
+                    softest = stress_in_words(options.softest_guess),
+                    stiffest = stress_in_words(options.stiffest_guess);
+  std::string out;
+  if (si.body < options.smallest_body)
+    out += fmt::format("; a light microscope shows no body below {}", smallest);
+  if (si.body > options.largest_body)
+    out += fmt::format("; beyond {} there are not even balloons or airbags", largest);
+  if (modulus_out(si, options) > 0.0)
+    out += si.modulus < options.softest_guess
+               ? fmt::format("; the softest gels have ten times {}", softest)
+               : fmt::format("; hard plastics have a tenth of {}", stiffest);
+  return out;
+}
+
+/// Lengths alone are in another unit, as where moduli were converted: how they are told there.
+std::string with_moduli(const Sizes& si, const Sizes& told, const Units& units) {
+  const double pascals = newtons(units) * std::pow(units.metre(), 2);
+  return fmt::format(
+      "`units: {{length: {}, force: {}}}`, in which the body is {} long, and moduli in {}: {} is "
+      "{:.3g} there",
+      units.length, units.force, length_in_words(in_si(told, units).body), units.stress(),
+      stress_in_words(si.modulus), si.modulus / pascals);
 }
 
 }  // namespace
@@ -103,23 +141,31 @@ void ask_sizes(Sight& sight, Warnings& warnings) {
   const Sizes si = in_si(told, units);
   const double body = body_out(si, options), modulus = modulus_out(si, options);
   if (body == 0.0 && modulus == 0.0) return;
-  const std::string seen = fmt::format("in {} and {} {}", units.length, units.force, in_words(si));
+  const std::string seen = fmt::format("in {} and {} {}{}", units.length, units.force, in_words(si),
+                                       why_out(si, options));
+  const auto of_body = units_of_body(told, units, options);
+  if (body > 0.0 && modulus == 0.0 && si.modulus > 0.0 && of_body &&
+      modulus_out(in_si(told, *of_body), options) > 0.0) {
+    warnings.say(warnings.place({"units"}), seen, with_moduli(si, told, *of_body));
+    return;
+  }
   if (const auto better = better_units(told, units, options)) {
     warnings.say(warnings.place({"units"}), seen,
                  fmt::format("`units: {{length: {}, force: {}}}`, in which {}", better->length,
                              better->force, in_words(in_si(told, *better))));
     return;
   }
-  const std::string soft = fmt::format("a shear modulus from {} to {}; stresses are in {}",
-                                       stress_in_words(options.softest_guess),
-                                       stress_in_words(options.stiffest_guess), units.stress());
-  warnings.say(
-      body > 0.0 ? warnings.place({"units"}) : sight.scene().capture.materials.front().place, seen,
-      body > 0.0 ? fmt::format("a body from {} to {} that one camera sees: lengths of body, "
-                               "cameras and regions in {}",
-                               length_in_words(options.smallest_body),
-                               length_in_words(options.largest_body), units.length)
-                 : soft);
+  if (body > 0.0)
+    warnings.say(warnings.place({"units"}), seen,
+                 fmt::format("a body from {} to {} that one camera sees: lengths of body, cameras "
+                             "and regions in {}",
+                             length_in_words(options.smallest_body),
+                             length_in_words(options.largest_body), units.length));
+  else
+    warnings.say(sight.scene().capture.materials.front().place, seen,
+                 fmt::format("a shear modulus from {} to {}; stresses are in {}",
+                             stress_in_words(options.softest_guess),
+                             stress_in_words(options.stiffest_guess), units.stress()));
 }
 
 }  // namespace hookeye::inspection

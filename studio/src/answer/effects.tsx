@@ -21,7 +21,7 @@ function Values(props: {found: FoundEffect}) {
               return (
                 <tr key={v.name}>
                   <td>{v.factor ? v.long_name : <>{v.name} <small>{v.long_name}</small></>}</td>
-                  <td><b>{told.value}</b></td><td>{told.interval}</td><td>{v.unit || (v.factor ? 'times' : '')}</td>
+                  <td><b>{v.known === 'open' ? 'somewhere' : told.value}</b></td><td>{told.interval}</td><td>{v.unit || (v.factor ? 'times' : '')}</td>
                 </tr>);
             })}
           </tbody>

@@ -36,7 +36,7 @@ function Value(props: {p: ParameterValue | undefined; drawn: boolean}) {
   const {p} = props;
   if (!p) return <><td>–</td><td /></>;
   const {value, interval} = around(p.value, p.low, p.high);
-  return <><td>{value}</td><td>{props.drawn && <Interval p={p} />} {interval}</td></>;
+  return <><td>{p.known === 'open' ? 'somewhere' : value}</td><td>{props.drawn && <Interval p={p} />} {interval}</td></>;
 }
 
 /** The interval on a scale of +-20 % about the value; an arrow where it goes on. */

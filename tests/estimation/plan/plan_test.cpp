@@ -53,6 +53,11 @@ TEST(Confused, TheSentenceGoesWithTheTable) {
   diagnosis.effects[0] = score("gravity", 40.0);
   const auto one = plan(Fitted(), diagnosis).value();
   EXPECT_THAT(one.sentence, ::testing::StartsWith("gravity leads"));
+  EXPECT_THAT(one.sentence, ::testing::Not(::testing::HasSubstr("`confused with`")));
+  diagnosis.effects[1].confused_with = {{"creep", 0.95}};
+  const auto others = std::get<Plan>(plan(Fitted(), diagnosis));
+  EXPECT_THAT(others.sentence, ::testing::StartsWith("gravity leads"));
+  EXPECT_THAT(others.sentence, ::testing::HasSubstr("`confused with`"));
 }
 
 /// The block at rest in one photo, which is the model's own with gravity in it, and noise.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <utility>
 
 #include "estimation/effects/catalogue.h"
@@ -65,6 +66,26 @@ TEST(Verdict, AValueAtTheEndOfWhatIsTriedIsToldAsThat) {
   EXPECT_THAT(said(4.0),
               testing::HasSubstr("; the log of the stiffness factor ended at the largest "
                                  "that is tried, 4: how large it is, is not known"));
+}
+
+/// The ranges of a place, and what its photos do not know of it.
+TEST(Verdict, APlaceIsToldWithItsRanges) {
+  const auto ball = find_effect("stiffness_field")->candidate(test::base_model(), "free ball");
+  ASSERT_NE(ball, nullptr);
+  Fitted fitted;
+  fitted.form = test::extended(test::base(), ball);
+  VectorXd values = test::some_values(*ball);
+  values[0] = std::log(2.0);
+  fitted.p = test::with_values(fitted.form, values);
+  EXPECT_THAT(effects_in_words(fitted).at(0), testing::Not(testing::HasSubstr("ranges")));
+  fitted.low = fitted.high = fitted.p;
+  const Eigen::Index a = fitted.p.size() - values.size();
+  fitted.low[a] = std::log(1.5), fitted.high[a] = std::log(3.0);
+  EXPECT_THAT(effects_in_words(fitted).at(0),
+              testing::AllOf(testing::HasSubstr("a ball 2 (1.5 to 3) times as stiff"),
+                             testing::Not(testing::HasSubstr("somewhere"))));
+  fitted.low[a + 1] = -1e3, fitted.high[a + 1] = 1e3;
+  EXPECT_THAT(effects_in_words(fitted).at(0), testing::HasSubstr("around (somewhere along x, "));
 }
 
 /// A small effect near the floor: what stays and has no name must not be more than what it took.
