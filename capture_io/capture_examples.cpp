@@ -228,6 +228,7 @@ MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
   if (node.find("field")) return read_field(node, of_, capture_, folder_);
   std::vector<std::string> kinds, keys = {"value", "sigma", "covariance"};
   for (const MeasuredKind& kind : measured_kinds()) {
+    if (kind.on == std::string("cameras")) continue;  // the capture's `camera_covariance`
     kinds.push_back(kind.name);
     if (kind.key != std::string("none")) keys.push_back(kind.key);
   }
@@ -237,8 +238,8 @@ MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
   const YamlNode& subject = *section.find(name);
   MeasuredSpec measured;
   measured.place = node.place;
-  measured.kind =
-      static_cast<MeasuredSpec::Kind>(std::find(kinds.begin(), kinds.end(), name) - kinds.begin());
+  for (size_t k = 0; k < measured_kinds().size(); ++k)
+    if (name == measured_kinds()[k].name) measured.kind = static_cast<MeasuredSpec::Kind>(k);
   const MeasuredKind& kind = kind_of(measured);
   if (kind.on == std::string("point"))
     measured.point = read_vector3(subject, name);

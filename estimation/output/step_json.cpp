@@ -128,7 +128,7 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
     for (const auto& one : example.measured) {
       const auto& spec = scene.capture.examples[example.example];
       const auto& told = spec.measured[one.index];
-      if (told.field) continue;
+      if (told.field || !is_on_body(told)) continue;
       const auto list = [](const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
       const bool one_sigma = (told.sigma.array() == told.sigma[0]).all();
       all.push_back({{"example", spec.name},
