@@ -197,10 +197,10 @@ struct MeasuredSpec {
 /// What a kind of measurement is.
 struct MeasuredKind {
   const char* name;   ///< key of the capture: "force_on"
-  const char* on;     ///< "region", "point", "file", "cameras"
+  const char* on;     ///< "region", "point", "points" (two), "file", "cameras"
   const char* key;    ///< further key; "none"
   int size;           ///< numbers; 0: as many as the file has
-  const char* unit;   ///< "force", "moment", "length", "angle", "deviations"
+  const char* unit;   ///< "force", "moment", "length", "angle", "strain", "deviations"
   const char* words;  ///< "force on"
 };
 const MeasuredKind& kind_of(const MeasuredSpec& measured);
@@ -208,7 +208,7 @@ const MeasuredKind& kind_of(const MeasuredSpec& measured);
 bool is_reaction(const MeasuredSpec& measured);
 /// It tells something of the body, not of what looks at it.
 bool is_on_body(const MeasuredSpec& measured);
-/// "N", "N mm", "mm", "degrees", "sigma" (deviations).
+/// "N", "N mm", "mm", "degrees", "" (strains), "sigma" (deviations).
 std::string unit_of(const MeasuredSpec& measured, const Units& units);
 
 struct ExampleSpec {

@@ -71,6 +71,9 @@ std::string measured_text(const MeasuredSpec& measured) {
   if (measured.field)
     return fmt::format("field of {} points{}", measured.field->X.cols(),
                        measured.field->components == 2 ? " (in plane)" : "");
+  if (measured.kind == MeasuredSpec::Kind::strain_of)
+    return fmt::format("strain from {} to {}", vector_text(measured.point),
+                       vector_text(measured.direction));
   return fmt::format("{} {}", kind_of(measured).words,
                      measured.region.empty() ? vector_text(measured.point) : measured.region);
 }

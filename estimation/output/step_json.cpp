@@ -122,6 +122,14 @@ void add_by_region(const PhotoEvaluation& photo,
   }
 }
 
+/// The region; of a strain gauge its two ends.
+std::string where(const MeasuredSpec& told) {
+  if (told.kind != MeasuredSpec::Kind::strain_of) return told.region;
+  const Vector3d &p = told.point, &q = told.direction;
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z(),
+                     q.x(), q.y(), q.z());
+}
+
 json measured_json(const Scene& scene, const Fitted& fitted) {
   json all = json::array();
   for (const auto& example : fitted.evaluation.examples)
@@ -134,7 +142,7 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
       all.push_back({{"example", spec.name},
                      {"kind", kind_of(told).name},
                      {"words", kind_of(told).words},
-                     {"region", told.region},
+                     {"region", where(told)},
                      {"measured", list(told.value)},
                      {"predicted", list(one.predicted)},
                      {"unit", unit_of(told, scene.capture.units)},

@@ -13,6 +13,7 @@ namespace {
 std::string measured_in_words(const MeasuredSpec& told) {
   if (told.kind == MeasuredSpec::Kind::calibration)
     return "what the calibration has of the cameras";
+  if (told.kind == MeasuredSpec::Kind::strain_of) return "a measured strain";
   if (told.region.empty()) return "a measured position";
   const std::string words = kind_of(told).words;
   const size_t at = words.rfind(' ');

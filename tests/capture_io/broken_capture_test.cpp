@@ -229,11 +229,24 @@ const BrokenCase broken_cases[] = {
           "{travel_of: grip, along: [0, 0, 1], value: [0, 0, 2.5]"),
      "capture.yaml:59:52: `value` has 3 numbers\n"
      "  1 of them"},
+    {"GaugeOfOnePoint",
+     swap("{force_on: grip, value: [0, 0, 2.5]", "{strain_of: [1, 2, 3], value: 0.01"),
+     "capture.yaml:59:21: `strain_of` has 3 entries\n"
+     "  two points of the body at rest: `strain_of: [[0, 0, 10], [0, 0, 30]]`"},
+    {"GaugeWithoutLength",
+     swap("{force_on: grip, value: [0, 0, 2.5]", "{strain_of: [[1, 2, 3], [1, 2, 3]], value: 0.01"),
+     "capture.yaml:59:21: the two points of `strain_of` are one: nothing lies between them\n"
+     "  two points of the body at rest: `strain_of: [[0, 0, 10], [0, 0, 30]]`"},
+    {"GaugeWithADirection",
+     swap("{force_on: grip, value: [0, 0, 2.5]",
+          "{strain_of: [[1, 2, 3], [1, 2, 4]], along: [0, 0, 1], value: 0.01"),
+     "capture.yaml:59:45: `along` has no meaning for `strain_of`\n"
+     "  only travel_of has `along`: remove it"},
     {"CalibrationAsAMeasurement",
      swap("{force_on: grip, value: [0, 0, 2.5]", "{calibration: front, value: 0"),
      "capture.yaml:59:10: a measurement of example `pull` has no key `calibration`\n"
      "  known here: value, sigma, covariance, about, along, axis, force_on, moment_on, "
-     "position_of, travel_of, rotation_of, field"},
+     "position_of, travel_of, rotation_of, strain_of, field"},
     {"CovarianceThatIsNone", swap("sigma: 0.02", "covariance: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]"),
      "capture.yaml:59:58: `covariance` is none\n"
      "  3 lists of 3 numbers, symmetric and positive definite"},

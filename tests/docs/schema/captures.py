@@ -86,6 +86,7 @@ def full_capture():
                      "covariance": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.4]]},
                     {"travel_of": "grip", "along": [0, 0, 1], "value": 2.5, "sigma": 0.1},
                     {"rotation_of": "grip", "axis": [0, 0, 1], "value": 20, "sigma": 0.5},
+                    {"strain_of": [[20, 10, 10], [20, 10, 30]], "value": 0.01, "sigma": 2e-5},
                     {"field": "u.csv", "sigma": 0.01, "correlation": 2, "scale": 1, "tolerance": 100,
                      "frame": {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 1, 0]},
                      "columns": {"X": "A", "Y": "B", "Z": "C", "U": "D", "V": "E", "W": "F"}}]}},
