@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "capture_io/camera_covariance.h"
 #include "capture_io/camera_text.h"
 #include "capture_io/capture_reader.h"
 
@@ -98,6 +99,15 @@ std::string calibrated_cameras_yaml(const Calibration& calibration, const std::s
                      "picture");
   }
   return text;
+}
+
+std::string calibrated_covariance_yaml(const Calibration& calibration, const std::string& unit,
+                                       const std::string& head) {
+  CameraCovariance out;
+  for (const auto& p : calibration.errors.parameters)
+    out.numbers.push_back({calibration.bundle.cameras[p.camera].name, p.name});
+  out.values = calibration.errors.covariance;
+  return camera_covariance_text(out, unit, head);
 }
 
 Json calibration_json(const Calibration& calibration, const std::string& unit) {

@@ -12,6 +12,10 @@ namespace hookeye {
 /// take them: a lens that leaves a pixel without a ray.
 std::string calibrated_cameras_yaml(const Calibration& calibration, const std::string& head);
 
+/// The text of camera_covariance.yaml: `head`, then how well the cameras' numbers are known.
+std::string calibrated_covariance_yaml(const Calibration& calibration, const std::string& unit,
+                                       const std::string& head);
+
 /// The content of calibration.json (docs/calibrate.md).
 nlohmann::ordered_json calibration_json(const Calibration& calibration, const std::string& unit);
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "capture_io/camera_covariance.h"
 #include "capture_io/capture_reader.h"
 #include "capture_io/placement.h"
 #include "capture_io/yaml_file.h"
@@ -95,8 +96,9 @@ void check_together(const Capture& capture) {
 std::string read_title(const YamlNode& node) { return one_line(read_string(node, "title")); }
 
 const std::vector<std::string>& capture_keys() {
-  static const std::vector<std::string> keys{"hookeye", "title", "units",  "body",    "model",
-                                             "cameras", "light", "photos", "regions", "examples"};
+  static const std::vector<std::string> keys{
+      "hookeye",           "title", "units",  "body",    "model",   "cameras",
+      "camera_covariance", "light", "photos", "regions", "examples"};
   return keys;
 }
 
@@ -155,6 +157,8 @@ Capture read_capture(const fs::path& path) {
   if (const YamlNode* cameras = top.find("cameras"))
     capture.cameras = read_cameras(section_in_place(*cameras, "cameras", folder), folder);
   take_to_body(placement_of_capture(root), capture.cameras);
+  if (const YamlNode* covariance = top.find("camera_covariance"))
+    read_camera_covariance(*covariance, folder, capture);
   if (const YamlNode* light = top.find("light")) capture.light = read_light(*light);
   PhotoDefaults defaults;
   if (const YamlNode* photos = top.find("photos")) defaults = read_photo_defaults(*photos, folder);
@@ -165,6 +169,7 @@ Capture read_capture(const fs::path& path) {
   capture.examples =
       read_examples(section_in_place(examples, "examples", folder), capture, defaults, folder);
   check_together(capture);
+  measure_calibration(capture);
   return capture;
 }
 

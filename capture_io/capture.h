@@ -22,6 +22,8 @@ namespace hookeye {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+struct CameraCovariance;  // camera_covariance.h
+
 /// Names only; numbers in the capture are never converted.
 struct Units {
   std::string length, force;   ///< "mm" | "m" | "cm" ..., "N" | "mN" | "kN"
@@ -177,10 +179,10 @@ struct MeasuredSpec {
 #include "capture_io/measured_kinds.def"
 #undef MEASURED
   } kind;
-  std::string region;                 ///< where it is measured on a region
-  Vector3d point = Vector3d::Zero();  ///< where it is measured at one: rest position
-  Vector3d direction =
-      Vector3d::Zero();   ///< moment: about this point; travel, rotation: unit vector
+  std::string region;                     ///< where it is measured on a region
+  Vector3d point = Vector3d::Zero();      ///< where it is measured at one: rest position
+  Vector3d direction = Vector3d::Zero();  ///< moment: about this point; travel, rotation: unit
+                                          ///< vector; strain: the other point's rest position
   Eigen::VectorXd value;  ///< told numbers; angles in degrees; of a field point by point
   Eigen::VectorXd sigma;  ///< their standard deviations; of a field times the root of `alike`
   std::shared_ptr<const FieldSpec> field;  ///< of Kind::field
@@ -195,16 +197,18 @@ struct MeasuredSpec {
 /// What a kind of measurement is.
 struct MeasuredKind {
   const char* name;   ///< key of the capture: "force_on"
-  const char* on;     ///< "region", "point", "file"
+  const char* on;     ///< "region", "point", "points" (two), "file", "cameras"
   const char* key;    ///< further key; "none"
   int size;           ///< numbers; 0: as many as the file has
-  const char* unit;   ///< "force", "moment", "length", "angle"
+  const char* unit;   ///< "force", "moment", "length", "angle", "strain", "deviations"
   const char* words;  ///< "force on"
 };
 const MeasuredKind& kind_of(const MeasuredSpec& measured);
 /// It tells a force or a moment of a support.
 bool is_reaction(const MeasuredSpec& measured);
-/// "N", "N mm", "mm", "degrees".
+/// It tells something of the body, not of what looks at it.
+bool is_on_body(const MeasuredSpec& measured);
+/// "N", "N mm", "mm", "degrees", "" (strains), "sigma" (deviations).
 std::string unit_of(const MeasuredSpec& measured, const Units& units);
 
 struct ExampleSpec {
@@ -229,6 +233,8 @@ struct Capture {
   std::vector<Place> fit_places;
   std::optional<Vector3d> gravity;  ///< [length/s^2]
   std::vector<Camera> cameras;
+  /// How well their numbers are known; null: as told. Then a fitted example measures it.
+  std::shared_ptr<const CameraCovariance> camera_covariance;
   LightSpec light;
   std::vector<RegionSpec> regions;
   std::vector<ExampleSpec> examples;

@@ -170,6 +170,19 @@ Vector3d read_argument(const YamlSection& section, const MeasuredKind& kind) {
   return point ? read_vector3(node, kind.key) : read_direction(node, kind.key);
 }
 
+/// The two ends of a strain gauge.
+void read_gauge(const YamlNode& node, MeasuredSpec& measured) {
+  const std::string right = "two points of the body at rest: `strain_of: [[0, 0, 10], [0, 0, 30]]`";
+  const auto& ends = read_list(node, "strain_of", right);
+  if (ends.size() != 2)
+    throw InputError(node.place, fmt::format("`strain_of` has {} entries", ends.size()), right);
+  measured.point = read_vector3(ends[0], "the first point of `strain_of`");
+  measured.direction = read_vector3(ends[1], "the second point of `strain_of`");
+  if (measured.point == measured.direction)
+    throw InputError(node.place, "the two points of `strain_of` are one: nothing lies between them",
+                     right);
+}
+
 Eigen::VectorXd read_as_many(const YamlNode& node, const std::string& what, int size) {
   if (size == 3) return read_vector3(node, what);
   if (node.kind == YamlNode::Kind::scalar)
@@ -228,6 +241,7 @@ MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
   if (node.find("field")) return read_field(node, of_, capture_, folder_);
   std::vector<std::string> kinds, keys = {"value", "sigma", "covariance"};
   for (const MeasuredKind& kind : measured_kinds()) {
+    if (kind.on == std::string("cameras")) continue;  // the capture's `camera_covariance`
     kinds.push_back(kind.name);
     if (kind.key != std::string("none")) keys.push_back(kind.key);
   }
@@ -237,11 +251,13 @@ MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
   const YamlNode& subject = *section.find(name);
   MeasuredSpec measured;
   measured.place = node.place;
-  measured.kind =
-      static_cast<MeasuredSpec::Kind>(std::find(kinds.begin(), kinds.end(), name) - kinds.begin());
+  for (size_t k = 0; k < measured_kinds().size(); ++k)
+    if (name == measured_kinds()[k].name) measured.kind = static_cast<MeasuredSpec::Kind>(k);
   const MeasuredKind& kind = kind_of(measured);
   if (kind.on == std::string("point"))
     measured.point = read_vector3(subject, name);
+  else if (kind.on == std::string("points"))
+    read_gauge(subject, measured);
   else
     measured.region = region(subject, section.what());
   for (const MeasuredKind& other : measured_kinds()) {

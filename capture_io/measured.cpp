@@ -29,12 +29,18 @@ bool is_reaction(const MeasuredSpec& measured) {
   return unit == "force" || unit == "moment";
 }
 
+bool is_on_body(const MeasuredSpec& measured) {
+  return measured.kind != MeasuredSpec::Kind::calibration;
+}
+
 std::string unit_of(const MeasuredSpec& measured, const Units& units) {
   const std::string unit = kind_of(measured).unit;
-  return unit == "force"    ? units.force
-         : unit == "moment" ? units.force + " " + units.length
-         : unit == "angle"  ? "degrees"
-                            : units.length;
+  return unit == "force"        ? units.force
+         : unit == "moment"     ? units.force + " " + units.length
+         : unit == "angle"      ? "degrees"
+         : unit == "strain"     ? ""
+         : unit == "deviations" ? "sigma"
+                                : units.length;
 }
 
 double FieldSpec::inflation(const VectorXd& r) const {

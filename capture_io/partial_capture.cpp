@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "capture_io/camera_covariance.h"
 #include "capture_io/capture_reader.h"
 #include "capture_io/placement.h"
 #include "capture_io/yaml_file.h"
@@ -32,6 +33,8 @@ class PartialReader {
             [&](const YamlNode& node) { read_model(node, capture); });
     section("cameras", "", [&](const YamlNode& node) { cameras(node); });
     tried([&] { take_to_body(placement_of_capture(out_.root), capture.cameras); });
+    section("camera_covariance", "",
+            [&](const YamlNode& node) { read_camera_covariance(node, folder_, capture); });
     section("light", "", [&](const YamlNode& node) { capture.light = read_light(node); });
     section("photos", "",
             [&](const YamlNode& node) { defaults_ = read_photo_defaults(node, folder_); });

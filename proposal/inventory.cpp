@@ -107,9 +107,10 @@ void add_file(const fs::path& file, Inventory& out) {
   } else if (ends_with(file, {".yml", ".yaml", ".xml", ".json", ".caldat", ".bin"})) {
     const std::string head = beginning(file);
     if (has_key(head, "hookeye") || has_key(head, "hookeye_recipe")) return;
-    if (has_key(head, "cameras") && head.find("# hookeye import") != std::string::npos)
+    const bool ours = head.starts_with("# hookeye ");
+    if (ours && has_key(head, "cameras"))
       out.calibrations.push_back({nullptr, {file}});
-    else
+    else if (!ours)  // else how well those cameras are known
       add_calibration(file, out);
   } else if (ends_with(file, {".csv", ".txt", ".tsv", ".dat", ".asc", ".tra"})) {
     auto table = read_text_table(file);

@@ -20,7 +20,7 @@ struct PhotoSeries {
 
 /// Files that an importer takes together.
 struct CalibrationFile {
-  const Importer* importer = nullptr;  ///< null: a cameras.yaml of `hookeye import`
+  const Importer* importer = nullptr;  ///< null: a cameras.yaml of `hookeye import` or `calibrate`
   Importer::Sources sources;
   /// "intrinsics.yml,extrinsics.yml", as seen from a folder.
   std::string name(const std::filesystem::path& folder) const;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "capture_io/camera_text.h"
+#include "capture_io/yaml_file.h"
 #include "proposal/loading.h"
 #include "proposal/looks.h"
 #include "proposal/proposal.h"
@@ -189,6 +190,21 @@ std::string comment(std::string text) {
   return "# " + text + "\n";
 }
 
+/// How well the cameras are known, where `hookeye calibrate` told. Lengths of its file are taken by
+/// its unit, unless the cameras were scaled otherwise.
+std::string covariance_text(const Parts& parts, const fs::path& folder) {
+  const fs::path& file = parts.cameras.covariance;
+  if (file.empty()) return "";
+  const YamlNode root = load_yaml(file, file.string());
+  const YamlNode* unit = root.find("unit");
+  const auto mm = unit ? unit_in(unit->text, Quantity::length) : std::nullopt;
+  const double by_unit = mm.value_or(1.0) / parts.mm;
+  const std::string name = path_in(file, folder);
+  if (std::abs(by_unit - parts.cameras.scale) < 1e-9 * by_unit)
+    return "camera_covariance: " + name + "\n";
+  return fmt::format("camera_covariance: {{from: {}, scale: {}}}\n", name, parts.cameras.scale);
+}
+
 std::string capture_text(const Parts& parts, const Inventory& inventory, const fs::path& file) {
   const fs::path folder = file.parent_path();
   const std::string table = relative_name(parts.record.file, folder);
@@ -208,7 +224,7 @@ std::string capture_text(const Parts& parts, const Inventory& inventory, const f
     if (camera.name != series->camera) out += "  " + comment("took the photos " + series->scheme);
     out += camera_text(camera);
   }
-  out += parts.looks.light + parts.looks.photos;
+  out += covariance_text(parts, folder) + parts.looks.light + parts.looks.photos;
   out +=
       fmt::format("regions:\n  held: {}\n  pulled: {}\n", parts.loading.held, parts.loading.pulled);
   return out + examples_text(parts, folder);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "capture_io/camera_covariance.h"
 #include "capture_io/capture_reader.h"
 #include "capture_io/image.h"
 #include "capture_io/yaml_file.h"
@@ -191,6 +192,7 @@ void set_scale(std::vector<Camera>& cameras, const BodyFacts& body, const std::s
   if (scale != 1) question.why = "with 1 the body is not in the pictures, with this it is";
   const double told = questions.ask_number(question, true);
   for (Camera& camera : cameras) camera.t *= told;
+  out.scale = told;
   if (worst_share(cameras, body, 1) < 0.5)
     out.said.push_back(fmt::format(
         "not all cameras see the body where the mesh has it: the calibration's world is {}; bring "
@@ -217,7 +219,7 @@ ProposedCameras propose_cameras(const Inventory& inventory, const BodyFacts& bod
                                 Questions& questions) {
   const CalibrationFile& calibration = chosen_calibration(inventory, questions);
   ProposedCameras out;
-  out.source = (calibration.importer ? calibration.importer->name() : "hookeye import") + ": " +
+  out.source = (calibration.importer ? calibration.importer->name() : "hookeye") + ": " +
                calibration.name(inventory.folder);
   Imported imported = read_calibration(calibration, inventory.series.front());
   out.said = imported.said;
@@ -231,6 +233,8 @@ ProposedCameras propose_cameras(const Inventory& inventory, const BodyFacts& bod
   for (size_t i = 0; i < cameras.size(); ++i)
     out.cameras.emplace_back(cameras[i], &inventory.series[i]);
   check_photo_sizes(out);
+  const fs::path covariance = calibration.sources.front().parent_path() / kCovarianceFile;
+  if (!calibration.importer && fs::is_regular_file(covariance)) out.covariance = covariance;
   return out;
 }
 

@@ -1,6 +1,7 @@
 // The cameras of the proposal: a calibration, its units, and which photos are whose.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,9 @@ struct ProposedCameras {
   std::string source;  ///< "opencv: intrinsics.yml, extrinsics.yml"
   /// Each with the photos that it took; in the units of the body.
   std::vector<std::pair<Camera, const PhotoSeries*>> cameras;
+  /// Of a calibration of `hookeye calibrate`; empty: not known.
+  std::filesystem::path covariance;
+  double scale = 1.0;  ///< lengths of the body in one of the calibration
   std::vector<std::string> said;
 };
 

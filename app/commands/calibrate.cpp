@@ -18,6 +18,7 @@
 #include "app/validators.h"
 #include "calibration/detection.h"
 #include "calibration/output.h"
+#include "capture_io/camera_covariance.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
 
@@ -235,13 +236,14 @@ void run_calibrate(const CalibrateCommand& told, Session& session) {
                 "libopencv-contrib-dev, then configure and build again)");
   const Board board = board_of(told);
   const std::vector<CameraPhotos> cameras = cameras_of(told);
-  const fs::path folder = told.folder, file = folder / "cameras.yaml";
-  refuse_to_overwrite_cameras(file);
+  const fs::path folder = told.folder, file = folder / "cameras.yaml",
+                 errors = folder / kCovarianceFile;
+  for (const fs::path& one : {file, errors}) refuse_to_overwrite_cameras(one);
   const Calibration calibration = calibrated(told, board, cameras, session);
+  const std::string head = one_line(kCamerasMark + ("calibrate " + board.title())) +
+                           one_line("# the world is " + calibration.world);
   const std::string yaml =
-      calibrated_cameras_yaml(calibration, one_line(kCamerasMark + ("calibrate " + board.title())) +
-                                               one_line("# the world is " + calibration.world) +
-                                               one_line("# lengths are in " + told.unit));
+      calibrated_cameras_yaml(calibration, head + one_line("# lengths are in " + told.unit));
   const nlohmann::ordered_json content = calibration_json(calibration, told.unit);
   std::error_code error;
   fs::create_directories(folder, error);
@@ -249,6 +251,7 @@ void run_calibrate(const CalibrateCommand& told, Session& session) {
   session.document = content;
   session.document["command"] = "calibrate";
   session.document["file"] = file.string();
+  session.document["covariance_file"] = errors.string();
   session.document["corner_maps"] = nlohmann::ordered_json::array();
   for (size_t c = 0; c < cameras.size(); ++c) {
     const fs::path map = folder / ("corners_" + cameras[c].name + ".svg");
@@ -256,10 +259,13 @@ void run_calibrate(const CalibrateCommand& told, Session& session) {
     session.document["corner_maps"].push_back(map.string());
   }
   write_text(folder / "calibration.json", content.dump(1) + "\n");
+  write_text(errors, calibrated_covariance_yaml(calibration, told.unit, head));
   write_text(file, yaml);
   tell(calibration, told, session);
-  session.say("written to {}; a capture takes it by `cameras: {{from: cameras.yaml}}`\n",
-              file.string());
+  session.say(
+      "written to {}; a capture takes it by `cameras: {{from: cameras.yaml}}`, and how well "
+      "it is known by `camera_covariance: {}`\n",
+      file.string(), kCovarianceFile);
 }
 
 void add_board_options(CLI::App& command, CalibrateCommand& told) {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/commands/check_covariance.h"
 #include "app/commands/check_fields.h"
 #include "app/commands/check_look.h"
 #include "app/commands/commands.h"
@@ -71,6 +72,9 @@ std::string measured_text(const MeasuredSpec& measured) {
   if (measured.field)
     return fmt::format("field of {} points{}", measured.field->X.cols(),
                        measured.field->components == 2 ? " (in plane)" : "");
+  if (measured.kind == MeasuredSpec::Kind::strain_of)
+    return fmt::format("strain from {} to {}", vector_text(measured.point),
+                       vector_text(measured.direction));
   return fmt::format("{} {}", kind_of(measured).words,
                      measured.region.empty() ? vector_text(measured.point) : measured.region);
 }
@@ -169,7 +173,8 @@ Json describe_example(const Scene& scene, const Model& model, size_t e) {
     one["loads"].push_back(load_text(load, scene.capture.units));
   for (size_t k = 0; k < example.photos.size(); ++k)
     one["photos"].push_back(describe_photo(scene.photos[e][k], example.photos[k]));
-  for (const auto& measured : example.measured) one["measured"].push_back(measured_text(measured));
+  for (const auto& measured : example.measured)
+    if (is_on_body(measured)) one["measured"].push_back(measured_text(measured));
   one["free_rigid_motions"] = free_rigid_motions(scene.body->mesh, model.examples[e].loading);
   return one;
 }
@@ -248,6 +253,7 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
                     camera.model->name(), fmt::format("{:.5g}", camera.fx),
                     vector_text(camera.centre())});
   if (!capture.cameras.empty()) session.say("\ncameras\n{}", table(rows));
+  say_covariance(d["camera_covariance"], capture.units, session);
   rows = {{"region", "area [" + capture.units.length + "^2]", "nodes", "centroid", "normal"}};
   const double size = scene.body->mesh.X.cwiseAbs().maxCoeff();
   for (const auto& [name, region] : scene.body->regions.all())
@@ -360,6 +366,7 @@ void run_check(const CheckOptions& options, Session& session) {
   for (const char* key : {"parameters", "cameras", "regions", "examples"}) d[key] = Json::array();
   for (const auto& p : form.parameters()) d["parameters"].push_back(describe_parameter(p));
   for (const auto& camera : capture.cameras) d["cameras"].push_back(describe_camera(camera));
+  d["camera_covariance"] = describe_covariance(capture);
   for (const auto& [name, region] : scene->body->regions.all())
     d["regions"].push_back(describe_region(region));
   for (size_t e = 0; e < capture.examples.size(); ++e)

@@ -96,7 +96,7 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   const bool hidden =
       score.fall < least_fall(context.diagnosis, score.effect) || context.diagnosis.held_out_missed;
   score.why = sensors_alone(*candidate.ingredient)
-                  ? sentence + "; seen in the measured forces, not in photos"
+                  ? sentence + "; seen in what was measured, not in photos"
                   : fmt::format("{} would remove {:.0f} % of the misfit{}{}", sentence,
                                 100.0 * score.explains,
                                 hidden && held_out_say_so(score, context.diagnosis)

@@ -62,7 +62,7 @@ std::string where_seen(const Scene& scene, const Evaluation& evaluation, const V
 std::string seen_by_sensors(double before, double after, double count) {
   const auto off = [&](double r2) { return std::sqrt(r2 / std::max(count, 1.0)); };
   return fmt::format(
-      "; forces and positions would be off by {:.1f} instead of {:.1f} times their told noise",
+      "; what was measured would be off by {:.1f} instead of {:.1f} times their told noise",
       off(after), off(before));
 }
 

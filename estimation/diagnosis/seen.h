@@ -14,7 +14,7 @@ double change(const Eigen::MatrixXd& H, const VectorXd& s, const VectorXd& step)
 /// nowhere.
 std::string where_seen(const Scene& scene, const Evaluation& evaluation, const VectorXd& step);
 
-/// "; forces and positions would be off by 1.1 instead of 3.9 times their told noise", of sums of
+/// "; what was measured would be off by 1.1 instead of 3.9 times their told noise", of sums of
 /// squares over `count` values.
 std::string seen_by_sensors(double before, double after, double count);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "estimation/effects/toolbox.h"
+#include "estimation/model/camera_calibration.h"
 
 namespace hookeye {
 
@@ -52,14 +53,25 @@ class CameraPose final : public Effect {
            0.0, turn ? -1.0 : -10.0 * size, turn ? 1.0 : 10.0 * size, turn ? 0.002 : 0.01 * size,
            false});
     }
-    spec.touches = {.photos = true, .cameras = true};
+    // A calibration tells nothing of a knock after the first photo.
+    const OffCalibration off = first.text == "from the start"
+                                   ? off_calibration(*model.scene, camera.name)
+                                   : OffCalibration{};
+    spec.touches = {.photos = off.moves(0, 6),
+                    .measured = off.deviations.size() > 0,
+                    .cameras = off.moves(0, 6)};
     const std::string camera_name = camera.name;
     const int k = first.index;
-    spec.apply = [camera_name, k](const VectorXd& values, Model& m) {
+    spec.apply = [camera_name, k, off](const VectorXd& values, Model& m) {
+      VectorXd numbers = VectorXd::Zero(7);
+      numbers.head<6>() = values;
+      numbers = off.seen(numbers, m);
+      if (numbers.isZero(0.0)) return;
       for (size_t e = k; e < m.examples.size(); ++e)
         for (auto& photo : m.examples[e].photos)
           if (photo.camera.name == camera_name)
-            photo.camera = photo.camera.moved(values.head<3>(), values.tail<3>());
+            photo.camera =
+                photo.camera.moved(numbers.head<3>(), numbers.segment<3>(3)).zoomed(numbers[6]);
     };
     return make_ingredient(std::move(spec));
   }

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "estimation/effects/toolbox.h"
+#include "estimation/model/camera_calibration.h"
 
 namespace hookeye {
 
@@ -30,8 +32,8 @@ class FocalLength final : public Effect {
       if (!first_examples(scene, [&](int e) {
              return has_photo_of(scene, e, camera.name);
            }).empty())
-        all.push_back(zoom(camera.name));
-    if (all.size() > 1) all.push_back(zoom(""));
+        all.push_back(zoom(scene, camera.name));
+    if (all.size() > 1) all.push_back(zoom(scene, ""));
     if (all.empty() && why_not) *why_not = "no photo is fitted";
     return all;
   }
@@ -60,18 +62,30 @@ class FocalLength final : public Effect {
   }
 
   /// "": all cameras.
-  std::shared_ptr<const Ingredient> zoom(const std::string& camera) const {
+  std::shared_ptr<const Ingredient> zoom(const Scene& scene, const std::string& camera) const {
     IngredientSpec spec;
     spec.name = name();
     spec.variant = camera.empty() ? "all cameras" : camera;
     spec.parameters = {{"focal_length." + (camera.empty() ? std::string("all") : camera), "",
                         "log of the factor on the focal length", 0.0, -2.0, 2.0, 0.01, false}};
-    spec.touches = {.photos = true, .cameras = true};
-    spec.apply = [camera](const VectorXd& values, Model& m) {
-      for (auto& example : m.examples)
-        for (auto& photo : example.photos)
-          if (camera.empty() || photo.camera.name == camera)
-            photo.camera = photo.camera.zoomed(values[0]);
+    std::map<std::string, OffCalibration> all;
+    for (const Camera& one : scene.capture.cameras) {
+      if (!camera.empty() && one.name != camera) continue;
+      const OffCalibration& off =
+          all.emplace(one.name, off_calibration(scene, one.name)).first->second;
+      spec.touches.photos |= off.moves(6, 1), spec.touches.cameras |= off.moves(6, 1);
+      spec.touches.measured |= off.deviations.size() > 0;
+    }
+    spec.apply = [all](const VectorXd& values, Model& m) {
+      for (const auto& [name, off] : all) {
+        const VectorXd numbers = off.seen(values[0] * VectorXd::Unit(7, 6), m);
+        if (numbers.isZero(0.0)) continue;
+        for (auto& example : m.examples)
+          for (auto& photo : example.photos)
+            if (photo.camera.name == name)
+              photo.camera =
+                  photo.camera.moved(numbers.head<3>(), numbers.segment<3>(3)).zoomed(numbers[6]);
+      }
     };
     return make_ingredient(std::move(spec));
   }

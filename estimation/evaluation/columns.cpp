@@ -115,6 +115,7 @@ ExampleColumns ColumnSet::of_example(const Model& model, int example,
   out.dphoto.assign(present.photos.size(), Eigen::MatrixXd::Zero(kPhotoColumns, m));
   out.d_offset.setZero(3, m);
   out.d_placement.setZero(12, m);
+  out.d_calibration.setZero(model.calibration.size(), m);
   for (int j = 0; j < m; ++j) {
     const Column& column = columns_[j];
     MechanicsDerivative own;
@@ -136,6 +137,7 @@ ExampleColumns ColumnSet::of_example(const Model& model, int example,
       if (column.touches.measured) {
         out.d_offset.col(j) += weight * shifted.force_offset;
         out.d_placement.col(j) += weight * placement_numbers(neighbour);
+        out.d_calibration.col(j) += weight * neighbour.calibration;
       }
     }
   }

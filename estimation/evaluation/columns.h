@@ -16,6 +16,7 @@ struct ExampleColumns {
   /// d(placement x) at fixed x for position measurements: 12 x m (linear column by column, then
   /// translation).
   Eigen::MatrixXd d_placement;
+  Eigen::MatrixXd d_calibration;  ///< Model::calibration x m
 };
 
 /// Weights of the realised neighbours of a central or one-sided difference (at most 3).

@@ -5,6 +5,7 @@
 
 #include "estimation/model/additive_material.h"
 #include "estimation/model/base_ingredients.h"
+#include "estimation/model/camera_calibration.h"
 #include "estimation/model/model.h"
 #include "estimation/model/travels.h"
 
@@ -118,6 +119,7 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
            !capture.body.uniform_albedo)
     form.ingredients.push_back(albedo_ingredient());
   if (auto levels = background_ingredient(*scene)) form.ingredients.push_back(levels);
+  if (auto cameras = calibration_ingredient(*scene)) form.ingredients.push_back(cameras);
   if (capture.body.fit_placement) form.ingredients.push_back(placement_ingredient(*scene));
   // Gravity last: it is told in the world, and the placement turns the body against it.
   if (capture.gravity) form.ingredients.push_back(self_weight_ingredient(*capture.gravity));

@@ -60,6 +60,9 @@ struct Model {
   /// Acceleration of the self-weight already among the forces, in the world [length/s^2]: what
   /// turns the set-up afterwards (place) turns the body against it.
   Vector3d gravity = Vector3d::Zero();
+  /// By how much cameras are off their calibration, in its standard deviations, one independent of
+  /// the other (camera_calibration.h). Empty: they are as told.
+  VectorXd calibration;
   /// What has been written into it, in order: enough to make the same model of another scene.
   std::vector<std::pair<std::shared_ptr<const Ingredient>, VectorXd>> applied;
   /// Its equilibria by example, without tangents; null: not known. Realising solves nothing and

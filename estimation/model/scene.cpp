@@ -11,6 +11,7 @@
 #include "core/memory_left.h"
 #include "core/work_clock.h"
 #include "estimation/model/field_points.h"
+#include "estimation/model/gauges.h"
 #include "estimation/model/model.h"
 #include "estimation/model/photo_pyramid.h"
 
@@ -258,7 +259,8 @@ std::shared_ptr<Scene> bare_scene(const Capture& capture, const Limits& limits) 
   scene->photos.resize(capture.examples.size());
   if (capture.body.texture == BodySpec::Texture::image)
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
-  for (const ExampleSpec& example : capture.examples) check_fields(*scene, example);
+  for (const ExampleSpec& example : capture.examples)
+    check_fields(*scene, example), check_gauges(*scene, example);
   return scene;
 }
 
@@ -310,6 +312,7 @@ std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole
   for (const ExampleSpec& example : tests.examples) {
     out->capture.examples.push_back(example);
     check_fields(*out, example);
+    check_gauges(*out, example);
   }
   for (auto& photos : photos_of(tests, {scene.readings, true, {}}))
     out->photos.push_back(std::move(photos));

@@ -122,19 +122,27 @@ void add_by_region(const PhotoEvaluation& photo,
   }
 }
 
+/// The region; of a strain gauge its two ends.
+std::string where(const MeasuredSpec& told) {
+  if (told.kind != MeasuredSpec::Kind::strain_of) return told.region;
+  const Vector3d &p = told.point, &q = told.direction;
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", p.x(), p.y(), p.z(),
+                     q.x(), q.y(), q.z());
+}
+
 json measured_json(const Scene& scene, const Fitted& fitted) {
   json all = json::array();
   for (const auto& example : fitted.evaluation.examples)
     for (const auto& one : example.measured) {
       const auto& spec = scene.capture.examples[example.example];
       const auto& told = spec.measured[one.index];
-      if (told.field) continue;
+      if (told.field || !is_on_body(told)) continue;
       const auto list = [](const VectorXd& v) { return std::vector<double>(v.begin(), v.end()); };
       const bool one_sigma = (told.sigma.array() == told.sigma[0]).all();
       all.push_back({{"example", spec.name},
                      {"kind", kind_of(told).name},
                      {"words", kind_of(told).words},
-                     {"region", told.region},
+                     {"region", where(told)},
                      {"measured", list(told.value)},
                      {"predicted", list(one.predicted)},
                      {"unit", unit_of(told, scene.capture.units)},

@@ -94,7 +94,7 @@ json example_facts(const ExampleSpec& example, const Units& units) {
               {"loads", json::array()},
               {"acts", json::array()},
               {"photos", example.photos.size()},
-              {"measured", example.measured.size()}};
+              {"measured", std::ranges::count_if(example.measured, is_on_body)}};
   for (const auto& support : example.supports)
     out["supports"].push_back(support_text(support, units));
   for (const auto& load : example.loads) out["loads"].push_back(load_fact(load, units));

@@ -14,6 +14,8 @@
 #include "calibration/drawn_board.h"
 #include "calibration/output.h"
 #include "calibration/turns.h"
+#include "capture_io/camera_covariance.h"
+#include "core/text_file.h"
 #include "support/temporary_folder.h"
 
 namespace hookeye::test {
@@ -236,6 +238,45 @@ TEST(Bundle, ErrorsAreAsLargeAsTheySay) {
   }
   // 12 times 24 numbers: the mean has a standard deviation of 0.083.
   EXPECT_NEAR(sum / kSeeds, 1.0, 0.3);
+}
+
+/// What is written beside cameras.yaml, a capture of these cameras takes: all but the pose that is
+/// the world, to the last bit.
+TEST(Bundle, ACaptureTakesItsCovariance) {
+  const Board board = chessboard(8, 6).board;
+  const std::vector<Camera> truth{true_camera("left"), second_camera("right", 3)};
+  std::mt19937 random(3);
+  const auto poses = spread_poses(truth[0], board, 10, 340, 35, random);
+  Calibration calibration;
+  calibration.bundle = seen_bundle(board, truth, poses, 0.1, 0, random);
+  ASSERT_TRUE(settle(calibration.bundle));
+  calibration.errors = covariance(calibration.bundle).value();
+  const TemporaryFolder folder;
+  write_text(folder / kCovarianceFile, calibrated_covariance_yaml(calibration, "cm", "# one\n"));
+  Capture capture;
+  capture.units = {"mm", "N"};
+  capture.cameras = calibration.bundle.cameras;
+  YamlNode name;
+  name.kind = YamlNode::Kind::scalar;
+  name.text = kCovarianceFile;
+  read_camera_covariance(name, {folder.path(), std::filesystem::canonical(folder.path())}, capture);
+  ASSERT_TRUE(capture.camera_covariance);
+  const CameraCovariance& known = *capture.camera_covariance;
+  ASSERT_EQ(known.numbers.size(), calibration.errors.parameters.size() - 6);
+  std::vector<Eigen::Index> own;
+  std::vector<double> factor;
+  for (size_t i = 0; i < calibration.errors.parameters.size(); ++i) {
+    const auto& one = calibration.errors.parameters[i];
+    if (calibration.errors.error(i) == 0.0) continue;
+    EXPECT_EQ(known.numbers[own.size()].name, one.name);
+    EXPECT_EQ(known.numbers[own.size()].camera, one.camera == 0 ? "left" : "right");
+    own.push_back(static_cast<Eigen::Index>(i));
+    factor.push_back(one.name.starts_with("shift_") ? 10.0 : 1.0);
+  }
+  const Eigen::Map<const Eigen::VectorXd> to_mm(factor.data(), known.values.rows());
+  const Eigen::MatrixXd told =
+      to_mm.asDiagonal() * calibration.errors.covariance(own, own) * to_mm.asDiagonal();
+  EXPECT_TRUE(known.values.isApprox(told, 1e-12));
 }
 
 TEST(Bundle, WrongCornersAreDroppedAndNoOthers) {

@@ -35,8 +35,8 @@ const BrokenCase broken_cases[] = {
      "  the file as it was written, in UTF-8"},
     {"NotAMap", [](CaptureFixture& c) { c.yaml = "- 1\n- 2\n"; },
      "capture.yaml:1:1: the capture is a list of 2\n"
-     "  write a map with the keys hookeye, title, units, body, model, cameras, light, photos, "
-     "regions, examples"},
+     "  write a map with the keys hookeye, title, units, body, model, cameras, camera_covariance, "
+     "light, photos, regions, examples"},
     {"TwoDocuments", [](CaptureFixture& c) { c.yaml += "---\nhookeye: 1\n"; },
      "capture.yaml:67:1: a second yaml document begins here\n"
      "  one file holds one capture: remove the line `---` and what follows"},
@@ -66,7 +66,8 @@ const BrokenCase broken_cases[] = {
      "  did you mean `projection`?"},
     {"UnknownFarKey", swap("title:", "author:"),
      "capture.yaml:2:1: the capture has no key `author`\n"
-     "  known here: hookeye, title, units, body, model, cameras, light, photos, regions, examples"},
+     "  known here: hookeye, title, units, body, model, cameras, camera_covariance, light, photos, "
+     "regions, examples"},
     {"WrongLengthUnit", swap("length: mm", "length: millimetre"),
      "capture.yaml:3:17: the unit of length is `millimetre`\n"
      "  one of mm, cm, m, um is expected"},
@@ -228,6 +229,24 @@ const BrokenCase broken_cases[] = {
           "{travel_of: grip, along: [0, 0, 1], value: [0, 0, 2.5]"),
      "capture.yaml:59:52: `value` has 3 numbers\n"
      "  1 of them"},
+    {"GaugeOfOnePoint",
+     swap("{force_on: grip, value: [0, 0, 2.5]", "{strain_of: [1, 2, 3], value: 0.01"),
+     "capture.yaml:59:21: `strain_of` has 3 entries\n"
+     "  two points of the body at rest: `strain_of: [[0, 0, 10], [0, 0, 30]]`"},
+    {"GaugeWithoutLength",
+     swap("{force_on: grip, value: [0, 0, 2.5]", "{strain_of: [[1, 2, 3], [1, 2, 3]], value: 0.01"),
+     "capture.yaml:59:21: the two points of `strain_of` are one: nothing lies between them\n"
+     "  two points of the body at rest: `strain_of: [[0, 0, 10], [0, 0, 30]]`"},
+    {"GaugeWithADirection",
+     swap("{force_on: grip, value: [0, 0, 2.5]",
+          "{strain_of: [[1, 2, 3], [1, 2, 4]], along: [0, 0, 1], value: 0.01"),
+     "capture.yaml:59:45: `along` has no meaning for `strain_of`\n"
+     "  only travel_of has `along`: remove it"},
+    {"CalibrationAsAMeasurement",
+     swap("{force_on: grip, value: [0, 0, 2.5]", "{calibration: front, value: 0"),
+     "capture.yaml:59:10: a measurement of example `pull` has no key `calibration`\n"
+     "  known here: value, sigma, covariance, about, along, axis, force_on, moment_on, "
+     "position_of, travel_of, rotation_of, strain_of, field"},
     {"CovarianceThatIsNone", swap("sigma: 0.02", "covariance: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]"),
      "capture.yaml:59:58: `covariance` is none\n"
      "  3 lists of 3 numbers, symmetric and positive definite"},

@@ -1,7 +1,10 @@
 #include "tests/estimation/small_capture.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
+#include "capture_io/camera_covariance.h"
 #include "estimation/synth/synth.h"
 
 namespace hookeye::test {
@@ -37,6 +40,24 @@ examples:
                                 : ", rays_per_axis: 4, visibility_rays: 256}\n");
 }
 
+/// How well with_known_cameras() knows a number, and what camera_pose calls it.
+struct Known {
+  const char* name;
+  double deviation;
+  const char* pose;
+  double sign;
+};
+constexpr Known kKnown[] = {
+    {"rotation_x", 0.0005, "rx", 1.0},
+    {"rotation_y", 0.0005, "ry", -1.0},
+    {"rotation_z", 0.0005, "rz", 1.0},
+    {"shift_x", 0.1, "tx", 1.0},
+    {"shift_y", 0.1, "ty", -1.0},
+    {"shift_z", 0.4, "tz", 1.0},
+    {"fx", 0.95, "", 0.0},
+    {"fy", 0.95, "", 0.0},
+};
+
 }  // namespace
 
 SmallScene::SmallScene(const SmallCapture& capture) {
@@ -44,6 +65,33 @@ SmallScene::SmallScene(const SmallCapture& capture) {
       parse_recipe(capture.recipe.empty() ? recipe(capture) : capture.recipe, "recipe.yaml"),
       folder_ / "capture");
   scene = load_scene(read_capture(made->capture));
+}
+
+std::string knocked(double deviations) {
+  std::string values;
+  for (const Known& one : kKnown)
+    if (*one.pose)
+      values += fmt::format("{}camera_pose.cam1.{}: {:g}", values.empty() ? "" : ", ", one.pose,
+                            one.sign * deviations * one.deviation);
+  return "hidden: [{effect: camera_pose, variant: \"cam1 from the start\", values: {" + values +
+         "}}]\n";
+}
+
+std::shared_ptr<const Scene> with_known_cameras(const Scene& scene) {
+  auto out = std::make_shared<Scene>(scene);
+  auto known = std::make_shared<CameraCovariance>();
+  std::vector<double> variances;
+  for (const Camera& camera : scene.capture.cameras)
+    for (const Known& one : kKnown) {
+      known->numbers.push_back({camera.name, one.name});
+      variances.push_back(one.deviation * one.deviation);
+    }
+  known->values =
+      Eigen::Map<VectorXd>(variances.data(), static_cast<Eigen::Index>(variances.size()))
+          .asDiagonal();
+  out->capture.camera_covariance = known;
+  measure_calibration(out->capture);
+  return out;
 }
 
 Fitted base_fit(Workspace& workspace) {

@@ -31,6 +31,13 @@ class SmallScene {
   TemporaryFolder folder_;
 };
 
+/// Lines of `hidden:`: the second camera is off from the start by so many of the deviations that
+/// with_known_cameras() tells, in each number of its pose.
+std::string knocked(double deviations);
+/// The same capture, its cameras known to half a milliradian, a tenth of a millimetre across, 0.4
+/// mm in distance and a thousandth of the focal length.
+std::shared_ptr<const Scene> with_known_cameras(const Scene& scene);
+
 /// The capture's own model, fitted; as a step, diagnosed too.
 Fitted base_fit(Workspace& workspace);
 Step base_step(Workspace& workspace);

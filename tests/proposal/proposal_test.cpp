@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "capture_io/camera_covariance.h"
+#include "capture_io/camera_text.h"
 #include "capture_io/capture.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
@@ -53,6 +55,31 @@ TEST(Proposal, WritesACaptureThatIsRead) {
   EXPECT_EQ(force.value[0], 0);
   EXPECT_NEAR(force.sigma[2], 0.022, 0.004);
   EXPECT_GT(force.sigma[0], 4);
+}
+
+/// Cameras of `hookeye calibrate` come with how well they are known, in their own lengths.
+TEST(Proposal, KeepsTheCovarianceOfACalibration) {
+  const LabFolder lab;
+  fill(lab);
+  std::string cameras = "# hookeye calibrate a board\ncameras:\n";
+  for (const Camera& camera : lab.stored(lab.proposal()).cameras) cameras += camera_text(camera);
+  lab.write("calib/cameras.yaml", cameras);
+  lab.write("calib/camera_covariance.yaml",
+            "# hookeye calibrate a board\nunit: mm\nframe: camera\nnumbers: {cam1: [fx, shift_x]}\n"
+            "covariance: [[0.04, 0.001], [0.001, 0.01]]\n");
+  for (const char* file : {"cam0.yml", "cam1.yml", "capture.yaml"})
+    std::filesystem::remove(lab.path() / file);
+  const Proposal plain = lab.proposal();
+  EXPECT_THAT(plain.yaml, HasSubstr("camera_covariance: calib/camera_covariance.yaml\n"));
+  const Capture capture = lab.stored(plain);
+  ASSERT_TRUE(capture.camera_covariance);
+  EXPECT_EQ(capture.camera_covariance->deviation(1), 0.1);
+  std::filesystem::remove(lab.path() / "capture.yaml");
+  // The body is larger than the board's print says: so are the camera's shifts.
+  const Proposal scaled = lab.proposal({{"camera_scale", "2"}});
+  EXPECT_THAT(scaled.yaml,
+              HasSubstr("camera_covariance: {from: calib/camera_covariance.yaml, scale: 2}\n"));
+  EXPECT_NEAR(lab.stored(scaled).camera_covariance->deviation(1), 0.2, 1e-12);
 }
 
 TEST(Proposal, LoadsAreSpreadEvenly) {

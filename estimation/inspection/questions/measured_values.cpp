@@ -75,7 +75,7 @@ std::vector<Readings> all_series(Sight& sight) {
     const int e = static_cast<int>(i);
     if (!can_be_read(sight, e)) continue;
     for (const MeasuredSpec& measured : sight.example(e).measured)
-      if (!measured.field && !is_past_half_a_turn(measured))
+      if (!measured.field && is_on_body(measured) && !is_past_half_a_turn(measured))
         by_sensor[sensor_of(measured)].push_back(read(sight, e, measured));
   }
   std::vector<Readings> out;

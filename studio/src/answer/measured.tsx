@@ -83,6 +83,7 @@ function Pairs(props: {title: string; unit: string; pairs: Pair[]}) {
 const titles: Record<string, string> = {
   force_on: 'Measured and predicted forces', moment_on: 'Measured and predicted moments', position_of: 'Measured and predicted positions',
   travel_of: 'Measured and predicted travels', rotation_of: 'Measured and predicted rotations',
+  strain_of: 'Measured and predicted strains',
 };
 
 export function MeasuredForces() {

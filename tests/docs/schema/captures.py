@@ -14,6 +14,7 @@ camera_matrix: !!opencv-matrix {rows: 3, cols: 3, dt: d, data: [20., 0., 19., 0.
 R: !!opencv-matrix {rows: 3, cols: 3, dt: d, data: [1., 0., 0., 0., 0., -1., 0., 1., 0.]}
 T: !!opencv-matrix {rows: 3, cols: 1, dt: d, data: [1., 2., 300.]}
 """
+KNOWN = "unit: mm\nframe: camera\nnumbers: {front: [fx, shift_z]}\ncovariance: [[0.01, 0.005], [0.005, 0.04]]\n"
 CUBE = "".join(f"v {x} {y} {z}\n" for z in (0, 40) for y in (0, 20) for x in (0, 20)) + "".join(
     f"vt {i % 4 / 3:.3f} {i // 4 / 3:.3f}\n" for i in range(8)) + "".join(
     f"f {a}/{a} {b}/{b} {c}/{c}\n" for a, b, c in (
@@ -33,6 +34,7 @@ def write_files(folder):
     (folder / "rest.obj").write_text(CUBE)
     (folder / "grip.txt").write_text("2 3\n")
     (folder / "left.yml").write_text(CALIBRATION)
+    (folder / "known.yaml").write_text(KNOWN)
     (folder / "photo.png").write_bytes(png(*SIZE, 3))
     (folder / "u.csv").write_text("A,B,C,D,E,F\n1,0,5,0,0,0.1\n2,0,5,0,0,0.1\n1,0,6,0,0,0.1\n")
 
@@ -58,6 +60,7 @@ def full_capture():
             "left": {"calibration": "left.yml"},
             "top": {"size": list(SIZE), "projection": "orthographic", "pose": pose,
                     "intrinsics": {"scale": 2, "cx": 19.5, "cy": 15.5}}},
+        "camera_covariance": {"from": "known.yaml", "scale": 1},
         "light": {"ambient": 0.4, "sun": {"toward": [-0.3, -0.5, 0.8], "strength": 0.6}},
         "photos": {"kind": "image", "encoding": "srgb", "noise": {"full_well": 20000, "read": 0.0011},
                    "channels": "luminance", "background": {"photo": "photo.png"}},
@@ -83,6 +86,7 @@ def full_capture():
                      "covariance": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.4]]},
                     {"travel_of": "grip", "along": [0, 0, 1], "value": 2.5, "sigma": 0.1},
                     {"rotation_of": "grip", "axis": [0, 0, 1], "value": 20, "sigma": 0.5},
+                    {"strain_of": [[20, 10, 10], [20, 10, 30]], "value": 0.01, "sigma": 2e-5},
                     {"field": "u.csv", "sigma": 0.01, "correlation": 2, "scale": 1, "tolerance": 100,
                      "frame": {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 1, 0]},
                      "columns": {"X": "A", "Y": "B", "Z": "C", "U": "D", "V": "E", "W": "F"}}]}},

@@ -7,6 +7,7 @@
 
 #include "estimation/effects/catalogue.h"
 #include "estimation/effects_scene.h"
+#include "estimation/model/gauges.h"
 
 namespace hookeye::test {
 namespace {
@@ -30,10 +31,12 @@ std::shared_ptr<const Scene> sensed_block() {
   for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
     scene->photos[e].clear();
     scene->capture.examples[e].photos.clear();
-    scene->capture.examples[e].measured = {
-        told(Kind::force_on, Vector3d::Zero()), told(Kind::moment_on, {1.0, 2.0, 30.0}),
-        told(Kind::position_of, Vector3d::Zero()), told(Kind::travel_of, Vector3d(1, 2, 2) / 3.0),
-        told(Kind::rotation_of, Vector3d(2, 1, 2) / 3.0)};
+    scene->capture.examples[e].measured = {told(Kind::force_on, Vector3d::Zero()),
+                                           told(Kind::moment_on, {1.0, 2.0, 30.0}),
+                                           told(Kind::position_of, Vector3d::Zero()),
+                                           told(Kind::travel_of, Vector3d(1, 2, 2) / 3.0),
+                                           told(Kind::rotation_of, Vector3d(2, 1, 2) / 3.0),
+                                           told(Kind::strain_of, {3.0, -2.0, 12.5})};
   }
   return scene;
 }
@@ -95,6 +98,44 @@ TEST(Sensor, ARigidJawTellsItsTravelAndItsTurn) {
   const Eigen::MatrixXd none;
   EXPECT_NEAR(predicted(told(Kind::travel_of, axis), {*scene, model, 0, state, none}).value[0],
               axis.dot(move), 1e-12);
+}
+
+/// Wherever in the body its ends lie: of a body that is stretched alike everywhere, and turned.
+TEST(Sensor, AGaugeTellsTheStrainAlongIt) {
+  const auto scene = sensed_block();
+  const Matrix3Xd& X = scene->body->mesh.X;
+  const Model model = base_form(scene).realise(base_form(scene).initial());
+  const Eigen::AngleAxisd turn(0.8, Vector3d(1, 2, 2) / 3.0);
+  const Vector3d stretch(0.95, 0.9, 1.25);
+  Equilibrium state;
+  const Matrix3Xd stretched = turn.toRotationMatrix() * stretch.asDiagonal() * X;
+  state.q = stretched.reshaped();
+  const Eigen::MatrixXd none;
+  const Sensed seen{*scene, model, 0, state, none};
+  MeasuredSpec gauge = told(Kind::strain_of, {0.0, 0.0, 10.0});  // from z = 40
+  EXPECT_NEAR(predicted(gauge, seen).value[0], 0.25, 1e-9);
+  gauge.point = {-6.0, 1.0, 17.0}, gauge.direction = {7.0, 1.0, 17.0};
+  EXPECT_NEAR(predicted(gauge, seen).value[0], -0.05, 1e-9);
+  gauge.direction = {-1.0, 3.0, 28.0};
+  const Vector3d along = gauge.direction - gauge.point;
+  EXPECT_NEAR(predicted(gauge, seen).value[0],
+              (stretch.asDiagonal() * along).norm() / along.norm() - 1.0, 1e-9);
+  EXPECT_EQ(unit_of(gauge, scene->capture.units), "");
+}
+
+TEST(Sensor, AGaugeOutsideOfTheBodyIsRefused) {
+  const auto scene = sensed_block();
+  ExampleSpec example = scene->capture.examples.at(0);
+  check_gauges(*scene, example);
+  example.measured.back().place = {"capture.yaml", 7, 3};
+  example.measured.back().direction = {0.0, 0.0, 55.0};
+  try {
+    check_gauges(*scene, example);
+    ADD_FAILURE() << "it was taken";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("capture.yaml:7:3: `strain_of` of example"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("the point (0, 0, 55) lies 15 mm outside"));
+  }
 }
 
 }  // namespace

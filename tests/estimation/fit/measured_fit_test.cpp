@@ -88,6 +88,12 @@ TEST(MeasuredFit, ARotationAlone) {
   expect_found("pull", turn);
 }
 
+TEST(MeasuredFit, AStrainAlone) {
+  MeasuredSpec gauge = measured(Kind::strain_of, 1e-4);
+  gauge.point = {9.9, 1.0, 12.0}, gauge.direction = {9.9, 1.0, 28.0};
+  expect_found("pull", gauge);
+}
+
 /// The block drawn by 2 mm, known within 0.05; a force and a position tell how far it went.
 std::shared_ptr<const Scene> drawn_block(double travel, double mu, bool known_within) {
   auto scene = std::make_shared<Scene>(*block_scene());
