@@ -12,7 +12,7 @@ Discovery searched(double deviations) {
   const auto scene = with_known_cameras(*small.scene);
   Workspace workspace(scene);
   const ModelForm form = base_form(scene);
-  return std::get<Discovery>(discover(workspace, form, form.initial(), {}));
+  return discover(workspace, form, form.initial(), {}).value();
 }
 
 /// What a calibration may be off by is no effect that a model lacks.

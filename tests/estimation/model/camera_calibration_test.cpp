@@ -137,7 +137,7 @@ TEST(CameraCalibration, ItIsAMeasurementOfTheDeviations) {
   VectorXd p = form.initial();
   p.tail(14).setLinSpaced(-2.0, 3.0);
   Workspace workspace(scene);
-  const Evaluation seen = std::get<Evaluation>(workspace.evaluate(form, p, {}));
+  const Evaluation seen = workspace.evaluate(form, p, {}).value();
   const MeasuredEvaluation& one = seen.examples.at(0).measured.back();
   EXPECT_LT((one.r - p.tail(14)).norm(), 1e-12);
   EXPECT_LT((one.J.rightCols(14) - Eigen::MatrixXd::Identity(14, 14)).norm(), 1e-8);

@@ -55,7 +55,7 @@ TEST(Confused, TheSentenceGoesWithTheTable) {
   EXPECT_THAT(one.sentence, ::testing::StartsWith("gravity leads"));
   EXPECT_THAT(one.sentence, ::testing::Not(::testing::HasSubstr("`confused with`")));
   diagnosis.effects[1].confused_with = {{"creep", 0.95}};
-  const auto others = std::get<Plan>(plan(Fitted(), diagnosis));
+  const auto others = plan(Fitted(), diagnosis).value();
   EXPECT_THAT(others.sentence, ::testing::StartsWith("gravity leads"));
   EXPECT_THAT(others.sentence, ::testing::HasSubstr("`confused with`"));
 }
