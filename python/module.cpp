@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "python/calibration.h"
 #include "python/capture.h"
 #include "python/effect.h"
 #include "python/equilibrium.h"
@@ -39,6 +40,7 @@ PYBIND11_MODULE(_hookeye, m) {
   bind_equilibrium(m);
   bind_runs(m);
   bind_files(m);
+  bind_calibration(m);
   bind_effects(m);
   m.def("set_threads", &set_threads, pybind11::arg("count"));
   m.attr("__version__") = HOOKEYE_VERSION;

@@ -8,6 +8,7 @@ import logging as _logging
 from . import importers
 from ._hookeye import Camera, __version__
 from ._registered import register, unregister
+from .calibration import Calibration, calibrate
 from .capture import Capture
 from .catalogue import effects, options
 from .contract import check_effect
@@ -25,9 +26,9 @@ from .threads import set_threads
 _logging.getLogger("hookeye").addHandler(_logging.NullHandler())
 
 __all__ = [
-    "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
+    "Calibration", "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
     "Evaluation", "Field", "InputError", "Model", "NumericalError", "Parameter", "Picture",
     "Progress", "ProgressBar", "Run", "Setup", "Step", "Table", "__version__", "batch",
-    "check_effect", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
+    "calibrate", "check_effect", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
     "options", "register", "set_threads", "unregister",
 ]
