@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "python/batch.h"
 #include "python/calibration.h"
 #include "python/capture.h"
 #include "python/effect.h"
@@ -41,6 +42,7 @@ PYBIND11_MODULE(_hookeye, m) {
   bind_runs(m);
   bind_files(m);
   bind_calibration(m);
+  bind_batch(m);
   bind_effects(m);
   m.def("set_threads", &set_threads, pybind11::arg("count"));
   m.attr("__version__") = HOOKEYE_VERSION;

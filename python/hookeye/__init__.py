@@ -8,6 +8,7 @@ import logging as _logging
 from . import importers
 from ._hookeye import Camera, __version__
 from ._registered import register, unregister
+from .batch import Batch, batch
 from .calibration import Calibration, calibrate
 from .capture import Capture
 from .catalogue import effects, options
@@ -18,7 +19,7 @@ from .errors import Cancelled, EffectError, InputError, NumericalError
 from .kinematics import cofactor, determinant, invariants
 from .model import Evaluation, Model, Parameter, Picture
 from .progress import Progress, ProgressBar
-from .run import Diagnosis, Field, Run, Step, batch, discover, fit
+from .run import Diagnosis, Field, Run, Step, discover, fit
 from .tables import Table
 from .threads import set_threads
 
@@ -26,7 +27,7 @@ from .threads import set_threads
 _logging.getLogger("hookeye").addHandler(_logging.NullHandler())
 
 __all__ = [
-    "Calibration", "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
+    "Batch", "Calibration", "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
     "Evaluation", "Field", "InputError", "Model", "NumericalError", "Parameter", "Picture",
     "Progress", "ProgressBar", "Run", "Setup", "Step", "Table", "__version__", "batch",
     "calibrate", "check_effect", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
