@@ -34,6 +34,7 @@ std::string unit_of(const MeasuredSpec& measured, const Units& units) {
   return unit == "force"    ? units.force
          : unit == "moment" ? units.force + " " + units.length
          : unit == "angle"  ? "degrees"
+         : unit == "own"    ? ""
                             : units.length;
 }
 

@@ -15,6 +15,7 @@
 #include "python/log.h"
 #include "python/model.h"
 #include "python/runs.h"
+#include "python/sensor.h"
 
 namespace hookeye {
 namespace {
@@ -44,6 +45,7 @@ PYBIND11_MODULE(_hookeye, m) {
   bind_calibration(m);
   bind_batch(m);
   bind_effects(m);
+  bind_sensors(m);
   m.def("set_threads", &set_threads, pybind11::arg("count"));
   m.attr("__version__") = HOOKEYE_VERSION;
 }

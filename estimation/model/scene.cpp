@@ -13,6 +13,7 @@
 #include "estimation/model/field_points.h"
 #include "estimation/model/model.h"
 #include "estimation/model/photo_pyramid.h"
+#include "estimation/model/session_sensors.h"
 
 namespace hookeye {
 
@@ -258,7 +259,10 @@ std::shared_ptr<Scene> bare_scene(const Capture& capture, const Limits& limits) 
   scene->photos.resize(capture.examples.size());
   if (capture.body.texture == BodySpec::Texture::image)
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
-  for (const ExampleSpec& example : capture.examples) check_fields(*scene, example);
+  for (const ExampleSpec& example : capture.examples) {
+    check_fields(*scene, example);
+    check_sensors(capture, example);
+  }
   return scene;
 }
 
@@ -310,6 +314,7 @@ std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole
   for (const ExampleSpec& example : tests.examples) {
     out->capture.examples.push_back(example);
     check_fields(*out, example);
+    check_sensors(tests, example);
   }
   for (auto& photos : photos_of(tests, {scene.readings, true, {}}))
     out->photos.push_back(std::move(photos));

@@ -8,7 +8,7 @@ import pathlib
 from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _hookeye
-from ._registered import known
+from ._registered import known, known_sensors
 from .capture import Capture
 from .errors import InputError
 from .progress import OnStep, listener
@@ -142,9 +142,10 @@ def batch(captures: Union[Given, Iterable[Given], Mapping[str, Given]], verb: st
     for what, number in (("jobs", jobs), ("threads", threads), ("timeout", timeout)):
         if not 0 <= number < float("inf"):
             raise InputError(f"{what}: {number}", wrong=f"{what}: {number}", right="from 1, or 0")
-    if known:
+    own = [*known, *known_sensors]
+    if own:
         _log.warning("%s", f"written in Python, so that the processes of a batch do not know it: "
-                           f"{', '.join(known)}")
+                           f"{', '.join(own)}")
     how = {"program": os.fspath(program), "jobs": jobs, "threads": threads, "memory": memory,
            "timeout": float(timeout), "retry": retry, "reports": reports}
     return Batch(*_hookeye.batch(_listed(captures), verb, out, _options(options or {}, "options"),
