@@ -25,6 +25,11 @@ std::string digits_of(const std::string& fingerprint) {
 
 }  // namespace
 
+const std::vector<std::string>& batch_verbs() {
+  static const std::vector<std::string> verbs{"discover", "fit", "check", "simulate", "render"};
+  return verbs;
+}
+
 bool makes_run(const std::string& verb) { return verb == "fit" || verb == "discover"; }
 
 std::string BatchTask::file_name() const {

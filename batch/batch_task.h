@@ -19,6 +19,8 @@ struct BatchOrder {
   bool operator==(const BatchOrder&) const = default;
 };
 
+/// What a batch may give captures to.
+const std::vector<std::string>& batch_verbs();
 /// Whether the verb's result is a run folder, with a verdict and parameters.
 bool makes_run(const std::string& verb);
 

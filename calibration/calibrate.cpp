@@ -1,12 +1,16 @@
 #include "calibration/calibrate.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/board_options.h"
 #include "calibration/detection.h"
+#include "calibration/dictionary.h"
 #include "calibration/start.h"
+#include "core/interrupted.h"
 
 namespace hookeye {
 namespace {
@@ -15,6 +19,7 @@ std::vector<Detection> find_boards(const Board& board, const PhotoList& list,
                                    const CalibrateOptions& options) {
   std::vector<Detection> found;
   for (const BoardPhoto& photo : list.photos) {
+    if (options.stopped()) throw Interrupted{};
     found.push_back(detect(read_image(photo.file), board, photo.file.string()));
     if (options.progress) options.progress(found.size(), list.photos.size());
   }
@@ -123,10 +128,17 @@ InputError undetermined(const std::string& what) {
 
 }  // namespace
 
-Calibration calibrate(const Board& board, const std::vector<CameraPhotos>& cameras,
+Calibration calibrate(const Board& told, const std::vector<CameraPhotos>& cameras,
                       const CalibrateOptions& options) {
+  if (std::ranges::count(lens_numbers(), options.lens) == 0)
+    throw bad_calibration(
+        fmt::format("--lens {} is no count of numbers that a lens has", options.lens),
+        fmt::format("one of {}", fmt::join(lens_numbers(), ", ")));
   Calibration result;
   result.list = list_photos(cameras);
+  Board board = told;
+  if (board.kind == Board::Kind::charuco && board.dictionary.empty())
+    result.list.said.push_back(find_dictionary(board, result.list, options));
   const std::vector<Detection> found = find_boards(board, result.list, options);
   refuse_without_boards(board, cameras, result.list, found);
   result.world = "the axes of " + cameras.front().name;
@@ -139,6 +151,7 @@ Calibration calibrate(const Board& board, const std::vector<CameraPhotos>& camer
     result.world = "the board in " + std::filesystem::path(options.frame).filename().string() +
                    ": x along its rows, y down its columns, z into it";
   }
+  if (options.stopped()) throw Interrupted{};
   if (!settle(bundle)) throw undetermined("the least squares over all corners fail");
   for (size_t c = 0; c < cameras.size(); ++c)
     if (std::ranges::none_of(bundle.views, [&](const BoardView& v) {

@@ -1,6 +1,7 @@
 // Cameras from photos of a board: the whole of `hookeye calibrate`.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <string>
@@ -16,6 +17,8 @@ struct CalibrateOptions {
   std::string frame;  ///< a photo whose board is the world's frame; "": the first camera is
   /// Told after each photo: how many are done, of how many, the photo and what was found.
   std::function<void(size_t done, size_t of)> progress;
+  const std::atomic<bool>* cancel = nullptr;  ///< looked at before each photo
+  bool stopped() const { return cancel && cancel->load(); }
 };
 
 /// What came of one photo.
@@ -39,8 +42,9 @@ struct Calibration {
   std::vector<std::string> warnings;  ///< what makes the result doubtful
 };
 
-/// Throws InputError: photos, board or options that do not go together; photos that leave the
-/// cameras open.
+/// The dictionary of a ChArUco board that has none is found first (find_dictionary()). Throws
+/// InputError: photos, board or options that do not go together; photos that leave the cameras
+/// open. Interrupted where `cancel` is set.
 Calibration calibrate(const Board& board, const std::vector<CameraPhotos>& cameras,
                       const CalibrateOptions& options);
 

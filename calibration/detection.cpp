@@ -10,8 +10,6 @@
 namespace hookeye {
 namespace {
 
-constexpr size_t kFewestCorners = 6;
-
 /// Grey of 8 bits as eyes see it: detectors stand on contrasts of such pictures. The brightest
 /// thousandth may be cut, so that a glint does not darken the rest.
 std::string grey_of(const Image& photo) {
@@ -91,6 +89,25 @@ Detection detect(const Image& photo, const Board& board, const std::string& file
 
 std::string seen_instead(const Image& photo, const Board& board, const std::string& file) {
   Packer what = request_of("instead", photo, board);
+  return ask(what, file, [](Unpacker& from) { return from.take<std::string>(); });
+}
+
+std::vector<DictionaryFit> try_dictionaries(const Image& photo, const Board& board,
+                                            const std::string& file) {
+  Packer what = request_of("dictionaries", photo, board);
+  return ask(what, file, [](Unpacker& from) {
+    const auto names = from.take<std::vector<std::string>>();
+    const auto markers = from.take<std::vector<uint64_t>>();
+    const auto corners = from.take<std::vector<uint64_t>>();
+    if (markers.size() != names.size() || corners.size() != names.size()) throw WireFault();
+    std::vector<DictionaryFit> fits;
+    for (size_t i = 0; i < names.size(); ++i) fits.push_back({names[i], markers[i], corners[i]});
+    return fits;
+  });
+}
+
+std::string markers_seen(const Image& photo, const Board& board, const std::string& file) {
+  Packer what = request_of("markers", photo, board);
   return ask(what, file, [](Unpacker& from) { return from.take<std::string>(); });
 }
 

@@ -29,6 +29,23 @@ Detection detect(const Image& photo, const Board& board, const std::string& file
 /// counts. "" where not.
 std::string seen_instead(const Image& photo, const Board& board, const std::string& file);
 
+/// What markers of one dictionary say of a photo.
+struct DictionaryFit {
+  std::string dictionary;
+  size_t markers = 0;  ///< in their places on the board
+  size_t corners = 0;  ///< of the board, found by them
+};
+/// Of a ChArUco board whose dictionary is not known: all that have its markers. Of those whose
+/// first markers are the same ones (4X4_50 and 4X4_100), the smallest that is large enough stands
+/// for all.
+std::vector<DictionaryFit> try_dictionaries(const Image& photo, const Board& board,
+                                            const std::string& file);
+/// "17 markers of 5X5_100 are": of the dictionary of which most are seen, wherever they lie. "": a
+/// few at most, as any texture shows.
+std::string markers_seen(const Image& photo, const Board& board, const std::string& file);
+/// So many corners make a view of the board.
+inline constexpr size_t kFewestCorners = 6;
+
 struct ViewPose {
   Eigen::Vector3d rotation;     ///< board to camera, as a rotation vector [rad]
   Eigen::Vector3d translation;  ///< [length]

@@ -223,18 +223,20 @@ void read_covariance(const YamlNode& node, int size, MeasuredSpec& measured) {
 }
 
 void read_told(const YamlSection& section, const MeasuredKind& kind, MeasuredSpec& measured) {
-  measured.value = read_as_many(
-      section.need("value", kind.size == 1 ? "write `value: 2.5`" : "write `value: [0, 0, 2.5]`"),
-      "value", kind.size);
+  const YamlNode& value =
+      section.need("value", kind.size == 3 ? "write `value: [0, 0, 2.5]`" : "write `value: 2.5`");
+  const int size =
+      kind.size > 0 ? kind.size : std::max<int>(1, static_cast<int>(value.items.size()));
+  measured.value = read_as_many(value, "value", size);
   const YamlNode* covariance = section.find("covariance");
   if (covariance && section.find("sigma"))
     throw InputError(covariance->place, "`sigma` and `covariance` tell the same",
                      "leave one of them out");
   if (covariance)
-    read_covariance(*covariance, kind.size, measured);
+    read_covariance(*covariance, size, measured);
   else
     read_sigma(section.need("sigma", "give the measurement's standard deviation: `sigma: 0.02`"),
-               kind.size, measured);
+               size, measured);
 }
 
 MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
@@ -258,6 +260,8 @@ MeasuredSpec ExampleReader::measured(const YamlNode& node) const {
     measured.point = read_vector3(subject, name);
   else if (kind.on == std::string("points"))
     read_gauge(subject, measured);
+  else if (kind.on == std::string("name"))
+    measured.region = read_string(subject, name);
   else
     measured.region = region(subject, section.what());
   for (const MeasuredKind& other : measured_kinds()) {

@@ -35,12 +35,12 @@ bool is_on_body(const MeasuredSpec& measured) {
 
 std::string unit_of(const MeasuredSpec& measured, const Units& units) {
   const std::string unit = kind_of(measured).unit;
-  return unit == "force"        ? units.force
-         : unit == "moment"     ? units.force + " " + units.length
-         : unit == "angle"      ? "degrees"
-         : unit == "strain"     ? ""
-         : unit == "deviations" ? "sigma"
-                                : units.length;
+  return unit == "force"                     ? units.force
+         : unit == "moment"                  ? units.force + " " + units.length
+         : unit == "angle"                   ? "degrees"
+         : unit == "deviations"              ? "sigma"
+         : unit == "strain" || unit == "own" ? ""
+                                             : units.length;
 }
 
 double FieldSpec::inflation(const VectorXd& r) const {

@@ -1,6 +1,6 @@
 # cmake -DROOT=FOLDER -P check_layers.cmake: an include may only go down.
 #   core <- capture_io <- meshing <- simulation, render <- estimation <- runs <- app
-#                 meshing <- importers <- proposal <- app      runs, importers <- python
+#                 meshing <- importers <- proposal <- app      runs, batch, importers, calibration <- python
 #   capture_io <- calibration <- app      estimation/evaluation <- exporters <- app
 #   estimation/inspection <- placing <- app      runs <- batch <- app; of the layers below, batch stands
 #   on core, capture_io, sharing and runs alone      core <- sharing <- runs, batch
@@ -26,7 +26,7 @@ set(below_exporters core capture_io meshing simulation render estimation)
 set(below_runs core sharing capture_io meshing simulation render estimation)
 set(below_batch core sharing capture_io runs)
 set(below_app core sharing capture_io meshing simulation render estimation importers proposal calibration placing exporters runs batch)
-set(below_python core sharing capture_io meshing simulation render estimation importers runs)
+set(below_python core sharing capture_io meshing simulation render estimation importers calibration runs batch)
 set(rooms images model evaluation effects fit inspection diagnosis plan search synth output)
 set(below_images "")
 set(below_model images)

@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "python/batch.h"
+#include "python/calibration.h"
 #include "python/capture.h"
 #include "python/effect.h"
 #include "python/equilibrium.h"
@@ -13,6 +15,7 @@
 #include "python/log.h"
 #include "python/model.h"
 #include "python/runs.h"
+#include "python/sensor.h"
 
 namespace hookeye {
 namespace {
@@ -39,7 +42,10 @@ PYBIND11_MODULE(_hookeye, m) {
   bind_equilibrium(m);
   bind_runs(m);
   bind_files(m);
+  bind_calibration(m);
+  bind_batch(m);
   bind_effects(m);
+  bind_sensors(m);
   m.def("set_threads", &set_threads, pybind11::arg("count"));
   m.attr("__version__") = HOOKEYE_VERSION;
 }

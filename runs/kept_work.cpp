@@ -7,6 +7,7 @@
 #include "core/text_file.h"
 #include "estimation/effects/session_effects.h"
 #include "estimation/fit/archive.h"
+#include "estimation/model/session_sensors.h"
 #include "runs/versions.h"
 
 namespace hookeye {
@@ -19,6 +20,7 @@ std::string made_for(const Run& run) {
                         {"options", run.timeline().value("options", nlohmann::json::object())},
                         {"capture", run.timeline().value("fingerprints", nlohmann::json())}};
   if (const auto added = added_to_catalogue(); !added.empty()) out["effects"] = added;
+  if (const auto added = added_sensors(); !added.empty()) out["sensors"] = added;
   return out.dump();
 }
 

@@ -1,9 +1,7 @@
 // hookeye batch: one verb over many captures, a process each; several batches share a folder.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 #include <memory>
-#include <thread>
 
 #include "app/commands/batch_report.h"
 #include "app/commands/commands.h"
@@ -12,10 +10,9 @@
 #include "app/progress.h"
 #include "app/validators.h"
 #include "batch/batch_index.h"
-#include "batch/batch_worker.h"
-#include "batch/capture_list.h"
+#include "batch/batch_program.h"
+#include "batch/enrolment.h"
 #include "core/fingerprint.h"
-#include "core/memory_left.h"
 #include "core/own_file.h"
 #include "runs/versions.h"
 
@@ -27,7 +24,7 @@ struct BatchArguments {
   std::string out, resume, verb = "discover", slurm;
   int jobs = 0;
   double memory = 0.0, timeout = 0.0;
-  bool retry = false, no_reports = false, worker = false, status = false;
+  bool retry = false, no_reports = false, worker = false, status = false, verbs = false;
 };
 
 /// Options that a batch gives to the verb itself.
@@ -78,72 +75,6 @@ BatchFolder folder_for(const BatchArguments& arguments, const Session& session,
                                            makes_run(arguments.verb) && !arguments.no_reports});
 }
 
-/// What the folder holds already of each capture and its options.
-using Known = std::map<std::pair<std::string, std::vector<std::string>>, std::vector<std::string>>;
-
-Known known_in(const BatchFolder& folder) {
-  Known out;
-  for (const std::string& key : folder.keys()) {
-    const BatchTask task = folder.task(key);
-    out[{task.capture.string(), task.options}].push_back(key);
-  }
-  return out;
-}
-
-/// Enrols all that is listed; returns the keys in the list's order.
-std::vector<std::string> enrol(const BatchFolder& folder, const std::vector<ListedCapture>& list,
-                               Session& session) {
-  const Heartbeat beating(folder.beats(), {});
-  const Known known = known_in(folder);
-  std::map<std::string, std::string> seen;  // capture, by key
-  std::vector<std::string> keys;
-  Progress progress("reading", static_cast<int>(list.size()));
-  for (const ListedCapture& one : list) {
-    if (interrupted()) throw Interrupted{};
-    BatchTask task{"", one.label, one.capture, one.options, ""};
-    set_key(task, folder.order());
-    const auto [same, first] = seen.try_emplace(task.key, one.capture.string());
-    if (!first) {
-      if (same->second != one.capture.string())
-        session.warn(fmt::format("{} has the same content as {}: it is worked on once",
-                                 one.capture.string(), same->second));
-      continue;
-    }
-    if (!folder.enrol(task, beating.worker()) &&
-        !std::filesystem::exists(folder.task(task.key).capture))
-      folder.set_capture(task.key, task.capture);
-    if (const auto found = known.find({task.capture.string(), task.options}); found != known.end())
-      for (const std::string& other : found->second) folder.set_past(other, other != task.key);
-    keys.push_back(task.key);
-    progress.advance(one.label);
-  }
-  return keys;
-}
-
-void try_failed_again(const BatchFolder& folder, const std::vector<std::string>& keys) {
-  for (const Ticket& ticket : folder.tickets().at(TicketPlace::failed)) {
-    if (!keys.empty() && std::find(keys.begin(), keys.end(), ticket.key) == keys.end()) continue;
-    if (folder.tickets().move(ticket, TicketPlace::failed, {ticket.key, 0, ""}, TicketPlace::todo))
-      folder.drop_result(ticket);
-  }
-}
-
-/// As many processes as there are cores for, captures, and memory where it is told.
-void share_machine(const BatchArguments& arguments, const Session& session, int open,
-                   WorkOptions& work) {
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  int jobs = arguments.jobs;
-  if (jobs == 0) {
-    jobs = std::max(1, std::min(open, cores / std::max(1, session.threads)));
-    if (arguments.memory > 0.0)
-      jobs = std::clamp(static_cast<int>(memory_left().bytes / arguments.memory), 1, jobs);
-  }
-  work.jobs = jobs;
-  work.threads = session.threads > 0 ? session.threads : std::max(1, cores / jobs);
-  work.memory = arguments.memory;
-  work.timeout = arguments.timeout;
-}
-
 void work_here(const BatchFolder& folder, const BatchArguments& arguments,
                const std::vector<std::string>& keys, const std::filesystem::path& program,
                Session& session) {
@@ -153,7 +84,9 @@ void work_here(const BatchFolder& folder, const BatchArguments& arguments,
   work.keys = keys;
   work.wait_for_others = !arguments.worker;
   work.cancel = &interrupted();
-  share_machine(arguments, session, before.todo + before.running, work);
+  work.timeout = arguments.timeout;
+  share_machine({arguments.jobs, session.threads, arguments.memory}, before.todo + before.running,
+                work);
   Progress progress("batch", before.all());
   work.progress = [&](const BatchCounts& now) {
     std::string note = fmt::format("{} at work", now.running);
@@ -161,16 +94,39 @@ void work_here(const BatchFolder& folder, const BatchArguments& arguments,
     progress.set(now.done + now.failed, now.all(), note);
   };
   work.warn = [&](const std::string& sentence) { session.warn(sentence); };
-  try {
-    work_on(folder, work);
-  } catch (const Interrupted&) {
-    if (!arguments.worker) write_index(folder, batch_rows(folder, keys));
-    throw;
+  arguments.worker ? work_on(folder, work) : work_and_index(folder, work);
+}
+
+std::vector<std::string> enrol_all(const BatchFolder& folder,
+                                   const std::vector<ListedCapture>& list, Session& session) {
+  Progress progress("reading", static_cast<int>(list.size()));
+  EnrolOptions options;
+  options.cancel = &interrupted();
+  options.progress = [&](const std::string& label) { progress.advance(label); };
+  options.warn = [&](const std::string& sentence) { session.warn(sentence); };
+  return enrol(folder, list, options);
+}
+
+/// What each verb may be told here, for who starts this program: Python.
+BatchProgram own_program(const CLI::App& app) {
+  BatchProgram out{own_file(), version_text(), {}};
+  for (const std::string& name : batch_verbs()) {
+    const CLI::App& verb = *app.get_subcommand(name);
+    const KindOfOption kind_of = kind_in(verb);
+    for (const CLI::Option* option : verb.get_options())
+      for (const std::string& word : option->get_lnames())
+        if (const OptionKind kind = kind_of(word); kind != OptionKind::unknown)
+          out.verbs[name][word] = kind;
   }
+  return out;
 }
 
 void run_batch(const BatchArguments& arguments, const CLI::App& app, Session& session) {
   const std::filesystem::path program = own_file();
+  if (arguments.verbs) {
+    session.document = to_json(own_program(app));
+    return;
+  }
   std::vector<ListedCapture> list;
   if (arguments.resume.empty()) {
     const CLI::App& verb = *app.get_subcommand(arguments.verb);
@@ -179,7 +135,7 @@ void run_batch(const BatchArguments& arguments, const CLI::App& app, Session& se
   }
   const BatchFolder folder = folder_for(arguments, session, program);
   const std::vector<std::string> keys =
-      list.empty() ? std::vector<std::string>() : enrol(folder, list, session);
+      list.empty() ? std::vector<std::string>() : enrol_all(folder, list, session);
   if (arguments.retry) try_failed_again(folder, keys);
   if (!arguments.slurm.empty()) {
     send_to_slurm(folder,
@@ -196,7 +152,7 @@ void run_batch(const BatchArguments& arguments, const CLI::App& app, Session& se
     return;
   }
   const std::vector<nlohmann::json> rows = batch_rows(folder, keys);
-  write_index(folder, rows);
+  if (arguments.status || arguments.worker) write_index(folder, rows);
   report_batch(folder, rows, session);
 }
 
@@ -218,7 +174,7 @@ void add_batch(CLI::App& app, CommandBody& chosen) {
   out->needs(list);
   resume->excludes(list)->excludes(out);
   command->add_option("--verb", arguments->verb, "What each capture is given to")
-      ->check(CLI::IsMember({"discover", "fit", "check", "simulate", "render"}))
+      ->check(CLI::IsMember(batch_verbs()))
       ->capture_default_str()
       ->excludes(resume);
   command->add_option("--jobs", arguments->jobs, "Captures at once (default: as cores allow)")
@@ -232,10 +188,11 @@ void add_batch(CLI::App& app, CommandBody& chosen) {
   command->add_flag("--status", arguments->status, "Only tell how far it is, and write the index");
   command->add_flag("--worker", arguments->worker, "Leave where nothing waits any more")
       ->needs(resume);
+  command->add_flag("--verbs", arguments->verbs, "Which options each verb has")->group("");
   command->add_option("--slurm", arguments->slurm,
                       "Send a job array of --jobs workers, with these options of sbatch");
   command->callback([&chosen, &app, arguments, list, resume] {
-    if (!list->count() && !resume->count())
+    if (!list->count() && !resume->count() && !arguments->verbs)
       throw CLI::RequiredError("CAPTURES with -o, or --resume");
     chosen = [&app, arguments](Session& session) { run_batch(*arguments, app, session); };
   });

@@ -5,130 +5,46 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
-#include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"
+#include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/validators.h"
+#include "calibration/board_options.h"
 #include "calibration/detection.h"
+#include "calibration/files.h"
 #include "calibration/output.h"
 #include "capture_io/camera_covariance.h"
-#include "core/input_error.h"
-#include "core/text_file.h"
+#include "capture_io/cameras_file.h"
 
 namespace hookeye {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct CalibrateCommand {
   std::vector<std::string> photos, cameras;
-  std::string kind = "charuco", squares, dots, folder, unit = "mm";
-  double square = 0, spacing = 0, marker = 0, diameter = 0;
-  std::string dictionary;
+  ToldBoard board;
+  std::string folder, unit = "mm";
   CalibrateOptions options;
 };
 
-InputError usage(const std::string& wrong, const std::string& right) {
-  return {{"hookeye calibrate"}, wrong, right};
-}
-
-/// "7x5".
-void read_counts(const std::string& option, const std::string& text, Board& board) {
-  const char* const end = text.data() + text.size();
-  const auto first = std::from_chars(text.data(), end, board.columns);
-  const bool middle = first.ec == std::errc() && first.ptr != end && *first.ptr == 'x';
-  const auto second = middle ? std::from_chars(first.ptr + 1, end, board.rows) : first;
-  const bool good = middle && second.ec == std::errc() && second.ptr == end;
-  const int least = board.dots() ? 2 : 3;
-  if (!good || board.columns < least || board.rows < least || board.columns > 200 ||
-      board.rows > 200)
-    throw usage(fmt::format("{} {} is no count of columns and rows", option, text),
-                fmt::format("as {} 7x5, {} to 200 of each", option, least));
-}
-
-void need(bool there, const std::string& kind, const std::string& option, const std::string& what) {
-  if (!there)
-    throw usage(fmt::format("a board of kind {} needs {}", kind, option),
-                fmt::format("{}: {}", option, what));
-}
-
-void read_dictionary(std::string name, Board& board) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::toupper(c); });
-  if (name.starts_with("DICT_")) name.erase(0, 5);
-  for (const std::string& known : marker_dictionaries()) {
-    std::string upper = known;
-    std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
-    if (upper == name) board.dictionary = known;
-  }
-  if (!board.dictionary.empty()) return;
-  const std::string near = nearest_name(name, marker_dictionaries());
-  throw usage(fmt::format("there is no dictionary {} of markers", name),
-              near.empty() ? fmt::format("one of {}", fmt::join(marker_dictionaries(), ", "))
-                           : fmt::format("did you mean {}?", near));
-}
-
-Board board_of(const CalibrateCommand& told) {
-  Board board;
-  const auto kind = std::ranges::find(board_kinds(), told.kind) - board_kinds().begin();
-  board.kind = static_cast<Board::Kind>(kind);
-  const bool charuco = board.kind == Board::Kind::charuco;
-  if (board.dots()) {
-    need(!told.dots.empty(), told.kind, "--dots", "how many, as 11x8: in a row, and rows");
-    need(told.spacing > 0, told.kind, "--spacing",
-         board.kind == Board::Kind::circles
-             ? "from centre to centre, as measured on the print"
-             : "from row to row (half of that within a row), as measured on the print");
-    read_counts("--dots", told.dots, board);
-    board.pitch = told.spacing, board.diameter = told.diameter;
-    const double room = board.pitch * (board.kind == Board::Kind::circles ? 1.0 : std::sqrt(2.0));
-    if (board.diameter >= room)
-      throw usage(fmt::format("dots of {:g} overlap at a distance of {:g}", board.diameter, room),
-                  "--diameter and --spacing in one unit");
-  } else {
-    need(!told.squares.empty(), told.kind, "--squares", "how many, as 7x5: columns and rows");
-    need(told.square > 0, told.kind, "--square", "its side, as measured on the print");
-    read_counts("--squares", told.squares, board);
-    board.pitch = told.square;
-  }
-  const bool others = board.dots() ? !told.squares.empty() || told.square > 0
-                                   : !told.dots.empty() || told.spacing > 0 || told.diameter > 0;
-  if (others || (!charuco && (told.marker > 0 || !told.dictionary.empty())))
-    throw usage("these options belong to another kind of board than " + told.kind,
-                "charuco: --squares --square --marker --dictionary; chessboard: --squares "
-                "--square; circles: --dots --spacing --diameter");
-  if (!charuco) return board;
-  need(told.marker > 0, told.kind, "--marker", "the side of a marker, as measured on the print");
-  need(!told.dictionary.empty(), told.kind, "--dictionary", "of its markers, as 4X4_50");
-  if (told.marker >= told.square)
-    throw usage(
-        fmt::format("markers of {:g} do not fit into squares of {:g}", told.marker, told.square),
-        "--marker smaller than --square");
-  board.marker = told.marker;
-  read_dictionary(told.dictionary, board);
-  return board;
-}
-
 std::vector<CameraPhotos> cameras_of(const CalibrateCommand& told) {
   if (told.cameras.empty() == told.photos.empty())
-    throw usage(told.photos.empty() ? "there are no photos" : "photos stand beside --camera",
-                "the photos of one camera, or --camera NAME='PATTERN' for each of several");
+    throw bad_calibration(
+        told.photos.empty() ? "there are no photos" : "photos stand beside --camera",
+        "the photos of one camera, or --camera NAME='PATTERN' for each of several");
   if (told.cameras.empty()) return {{"camera", told.photos}};
   std::vector<CameraPhotos> cameras;
   for (const std::string& text : told.cameras) {
     const size_t at = text.find('=');
     const std::string name = text.substr(0, at);
-    const bool plain = std::ranges::all_of(
-        name, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
-    if (at == std::string::npos || at == 0 || at + 1 == text.size() || !plain || at > 80)
-      throw usage(fmt::format("--camera {} names no camera and its photos", text),
-                  "--camera left='calib/left_*.png'; names are letters, digits, - and _");
+    if (at == std::string::npos || at + 1 == text.size() || !is_camera_name(name))
+      throw bad_calibration(fmt::format("--camera {} names no camera and its photos", text),
+                            "--camera left='calib/left_*.png'; names are letters, digits, - and _");
     const auto known = std::ranges::find(cameras, name, &CameraPhotos::name);
     if (known != cameras.end())
       known->sources.push_back(text.substr(at + 1));
@@ -220,6 +136,7 @@ void tell(const Calibration& calibration, const CalibrateCommand& told, Session&
 Calibration calibrated(const CalibrateCommand& told, const Board& board,
                        const std::vector<CameraPhotos>& cameras, const Session& session) {
   CalibrateOptions options = told.options;
+  options.cancel = &interrupted();
   std::optional<Progress> progress;
   if (!session.json)
     options.progress = [&](size_t done, size_t of) {
@@ -230,61 +147,45 @@ Calibration calibrated(const CalibrateCommand& told, const Board& board,
 }
 
 void run_calibrate(const CalibrateCommand& told, Session& session) {
-  if (!boards_can_be_found())
-    throw usage("this build of hookeye finds no boards: it was made without OpenCV's aruco",
-                "a build where libopencv-contrib-dev is installed (apt-get install "
-                "libopencv-contrib-dev, then configure and build again)");
-  const Board board = board_of(told);
+  demand_board_finder();
+  const Board board = board_of(told.board);
   const std::vector<CameraPhotos> cameras = cameras_of(told);
-  const fs::path folder = told.folder, file = folder / "cameras.yaml",
-                 errors = folder / kCovarianceFile;
-  for (const fs::path& one : {file, errors}) refuse_to_overwrite_cameras(one);
+  const std::filesystem::path folder = told.folder;
+  for (const char* name : {kCamerasFile, kCovarianceFile})
+    refuse_to_overwrite_cameras(folder / name);
   const Calibration calibration = calibrated(told, board, cameras, session);
-  const std::string head = one_line(kCamerasMark + ("calibrate " + board.title())) +
-                           one_line("# the world is " + calibration.world);
-  const std::string yaml =
-      calibrated_cameras_yaml(calibration, head + one_line("# lengths are in " + told.unit));
-  const nlohmann::ordered_json content = calibration_json(calibration, told.unit);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw cannot_write(told.folder, error.message());
-  session.document = content;
+  const CalibrationFiles files = write_calibration(calibration, told.unit, folder);
+  session.document = calibration_json(calibration, told.unit);
   session.document["command"] = "calibrate";
-  session.document["file"] = file.string();
-  session.document["covariance_file"] = errors.string();
+  session.document["file"] = files.cameras.string();
+  session.document["covariance_file"] = files.covariance.string();
   session.document["corner_maps"] = nlohmann::ordered_json::array();
-  for (size_t c = 0; c < cameras.size(); ++c) {
-    const fs::path map = folder / ("corners_" + cameras[c].name + ".svg");
-    write_text(map, corner_map(calibration, c));
-    session.document["corner_maps"].push_back(map.string());
-  }
-  write_text(folder / "calibration.json", content.dump(1) + "\n");
-  write_text(errors, calibrated_covariance_yaml(calibration, told.unit, head));
-  write_text(file, yaml);
+  for (const auto& map : files.maps) session.document["corner_maps"].push_back(map.string());
   tell(calibration, told, session);
   session.say(
       "written to {}; a capture takes it by `cameras: {{from: cameras.yaml}}`, and how well "
       "it is known by `camera_covariance: {}`\n",
-      file.string(), kCovarianceFile);
+      files.cameras.string(), kCovarianceFile);
 }
 
 void add_board_options(CLI::App& command, CalibrateCommand& told) {
-  command.add_option("--board", told.kind, "Kind of board (default: charuco)")
+  command.add_option("--board", told.board.kind, "Kind of board (default: charuco)")
       ->check(CLI::IsMember(board_kinds()));
-  command.add_option("--squares", told.squares, "Squares of the board: 7x5 (columns x rows)");
-  command.add_option("--square", told.square, "Side of a square")->check(above_zero());
-  command.add_option("--marker", told.marker, "Side of a marker of a ChArUco board")
+  command.add_option("--squares", told.board.squares, "Squares of the board: 7x5 (columns x rows)");
+  command.add_option("--square", told.board.square, "Side of a square")->check(above_zero());
+  command.add_option("--marker", told.board.marker, "Side of a marker of a ChArUco board")
       ->check(above_zero());
-  command.add_option("--dictionary", told.dictionary, "Of its markers: 4X4_50 .. APRILTAG_36h11");
-  command.add_option("--dots", told.dots, "Dots: 11x8 (in a row x rows)");
+  command.add_option("--dictionary", told.board.dictionary,
+                     "Of its markers: 4X4_50 .. (default: seen in photos)");
+  command.add_option("--dots", told.board.dots, "Dots: 11x8 (in a row x rows)");
   command
-      .add_option("--spacing", told.spacing,
+      .add_option("--spacing", told.board.spacing,
                   "From dot to dot; of an asymmetric grid from row to row")
       ->check(above_zero());
-  command.add_option("--diameter", told.diameter, "Of a dot")->check(above_zero());
+  command.add_option("--diameter", told.board.diameter, "Of a dot")->check(above_zero());
   command
       .add_option("--unit", told.unit, "Unit of these lengths (default: mm); nothing is converted")
-      ->check(CLI::IsMember({"mm", "cm", "m", "um"}));
+      ->check(CLI::IsMember(board_units()));
 }
 
 }  // namespace
@@ -303,7 +204,7 @@ void add_calibrate(CLI::App& app, CommandBody& chosen) {
   command
       ->add_option("--lens", told->options.lens,
                    "0, 4 (k1 k2 p1 p2), 5 (and k3; default) or 8 numbers of the lens")
-      ->check(CLI::IsMember({0, 4, 5, 8}));
+      ->check(CLI::IsMember(lens_numbers()));
   command->add_option("--frame", told->options.frame,
                       "A photo: the world is the frame of its board, not the first camera's");
   command->callback(

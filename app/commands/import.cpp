@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "app/commands/cameras_file.h"
 #include "app/commands/commands.h"
 #include "app/commands/import_files.h"
 #include "app/validators.h"
+#include "capture_io/cameras_file.h"
 #include "core/input_error.h"
 #include "core/scope.h"
 #include "core/text_file.h"
@@ -163,9 +163,9 @@ void run_import(const ImportCommand& options, Session& session) {
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error) throw cannot_write(options.folder, error.message());
-  write_text(file,
-             cameras_yaml(imported, one_line(kCamerasMark + ("import " + importer->name() + told)) +
-                                        one_line("# the world is " + imported.world)));
+  write_text(
+      file, cameras_yaml(imported, head_line(kCamerasMark + ("import " + importer->name() + told)) +
+                                       head_line("# the world is " + imported.world)));
   session.say("{}: {}\n{}", sources.front().string(), importer->title(),
               cameras_table(imported, seen));
   session.say("{}", wrapped("the world is " + imported.world, 2));

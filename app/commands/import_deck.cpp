@@ -1,9 +1,9 @@
 // hookeye import DECK.inp: the body, its material, supports and loads of a deck.
 #include <nlohmann/json.hpp>
 
-#include "app/commands/cameras_file.h"
 #include "app/commands/import_files.h"
 #include "app/scratch_folder.h"
+#include "capture_io/cameras_file.h"
 #include "core/scope.h"
 #include "importers/deck.h"
 
@@ -22,7 +22,7 @@ void run_import_decks(const std::vector<fs::path>& decks, const fs::path& folder
   ImportedDeck imported = import_decks(decks, scratch.path());
   std::string told;
   for (const fs::path& deck : decks) told += " " + deck.filename().string();
-  const std::string head = one_line("hookeye import deck" + told);
+  const std::string head = head_line("hookeye import deck" + told);
   for (auto& [name, text] : imported.files) {
     std::string above = (fs::path(name).extension() == ".inp" ? "** " : "# ") + head;
     if (name == "body.yaml")

@@ -1,9 +1,9 @@
 // hookeye import SCAN.obj: a textured scan as the body of a capture.
 #include <nlohmann/json.hpp>
 
-#include "app/commands/cameras_file.h"
 #include "app/commands/import_files.h"
 #include "app/scratch_folder.h"
+#include "capture_io/cameras_file.h"
 #include "core/scope.h"
 #include "importers/scan.h"
 
@@ -16,7 +16,7 @@ void run_import_scan(const fs::path& scan, double scale, const fs::path& folder,
   const Scope scope("source " + scan.string());
   const ScratchFolder scratch("the scan");
   ImportedScan imported = import_scan(scan, scale, scratch.path());
-  const std::string head = "# " + one_line("hookeye import scan " + scan.filename().string());
+  const std::string head = "# " + head_line("hookeye import scan " + scan.filename().string());
   for (auto& [name, text] : imported.files) {
     if (name == "body.obj") text = head + text;
     if (name == "body.yaml")

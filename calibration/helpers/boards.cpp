@@ -11,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/board.h"
+#include "calibration/helpers/saddle.h"
 #include "core/helper_main.h"
 #include "core/input_error.h"
 
@@ -22,58 +23,12 @@ using Points = std::vector<cv::Point2f>;
 struct Found {
   std::map<int, cv::Point2f> corners;
   std::string why;
+  size_t markers = 0;  ///< of a ChArUco board: those in their places
 };
 
 cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
   const auto at = std::ranges::find(marker_dictionaries(), name) - marker_dictionaries().begin();
   return cv::aruco::getPredefinedDictionary(static_cast<int>(at));
-}
-
-constexpr int kFarthest = 8;  ///< reach of a disc [px]: farther, the lens bends edges
-
-/// From the grey values in a disc (row by row of its square) to the coefficients of
-/// x^2, xy, y^2, x, y, 1, by least squares; places near its rim count little.
-Eigen::Matrix<double, 6, Eigen::Dynamic> fit_of_disc(int reach) {
-  const int side = 2 * reach + 1;
-  Eigen::Matrix<double, Eigen::Dynamic, 6> terms(side * side, 6);
-  Eigen::VectorXd weights(side * side);
-  for (int i = 0; i < side * side; ++i) {
-    const double x = i % side - reach, y = i / side - reach;
-    terms.row(i) << x * x, x * y, y * y, x, y, 1.0;
-    weights[i] = std::max(0.0, 1.0 - (x * x + y * y) / ((reach + 1.0) * (reach + 1.0)));
-  }
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> weighted =
-      terms.transpose() * weights.asDiagonal();
-  return (weighted * terms).eval().ldlt().solve(weighted);
-}
-
-/// Moves a corner to the saddle of the grey around it. (cv::cornerSubPix() wants windows much wider
-/// than the blur: within the blurred saddle its steps lead away from it.) `reach` of the disc [px].
-/// False where the corner ran away, is none, or is too near to the rim.
-bool refine(const cv::Mat& grey, int reach, cv::Point2f& corner) {
-  const float rim = static_cast<float>(reach) + 2.0F;
-  const cv::Rect2f inside(rim, rim, static_cast<float>(grey.cols) - 2 * rim,
-                          static_cast<float>(grey.rows) - 2 * rim);
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> fit = fit_of_disc(reach);
-  const cv::Point2f rough = corner;
-  constexpr int kMostSteps = 30;
-  for (int step = 0; step < kMostSteps; ++step) {
-    if (!inside.contains(corner) || cv::norm(corner - rough) > reach) return false;
-    cv::Mat around;
-    cv::getRectSubPix(grey, {2 * reach + 1, 2 * reach + 1}, corner, around, CV_32F);
-    const Eigen::Map<const Eigen::VectorXf> values(around.ptr<float>(),
-                                                   static_cast<Eigen::Index>(around.total()));
-    const Eigen::Matrix<double, 6, 1> c = fit * values.cast<double>();
-    Eigen::Matrix2d bend;
-    bend << 2 * c[0], c[1], c[1], 2 * c[2];
-    if (bend.determinant() >= 0.0) return false;
-    const Eigen::Vector2d move = -bend.inverse() * c.segment<2>(3);
-    const double length = move.norm();
-    const Eigen::Vector2d part = move * std::min(1.0, 1.0 / std::max(length, 1e-12));
-    corner += cv::Point2f(static_cast<float>(part.x()), static_cast<float>(part.y()));
-    if (length < 1e-3) return true;
-  }
-  return false;
 }
 
 // ---- ChArUco ----
@@ -194,7 +149,7 @@ Found find_charuco(const cv::Mat& grey, const Board& board) {
     found.why = fmt::format("{} markers seen, but not in the places of a {}x{} board", seen.size(),
                             board.columns, board.rows);
   else
-    corners_between(grey, board, layout, good, found);
+    corners_between(grey, board, layout, good, found), found.markers = good.size();
   return found;
 }
 
@@ -273,13 +228,56 @@ Found find(const cv::Mat& grey, const Board& board) {
 
 // ---- what is asked ----
 
-std::string other_markers(const cv::Mat& grey, const std::string& told) {
+/// Dictionaries that have the board's markers; of those that begin with the same ones the smallest.
+std::vector<std::string> dictionaries_for(const Board& board) {
+  std::vector<std::string> names;
+  std::vector<cv::Mat> codes;
+  for (const std::string& name : marker_dictionaries()) {
+    const auto dictionary = dictionary_of(name);
+    if (dictionary->bytesList.rows < board.marker_count()) continue;
+    const cv::Mat own = dictionary->bytesList.rowRange(0, board.marker_count());
+    const bool known = std::ranges::any_of(codes, [&](const cv::Mat& other) {
+      return other.size() == own.size() && cv::norm(other, own, cv::NORM_INF) == 0.0;
+    });
+    if (known) continue;
+    names.push_back(name), codes.push_back(own.clone());
+  }
+  return names;
+}
+
+struct Fit {
+  std::string dictionary;
+  size_t markers = 0, corners = 0;
+};
+
+std::vector<Fit> fits_of(const cv::Mat& grey, Board board) {
+  std::vector<Fit> fits;
+  for (const std::string& name : dictionaries_for(board)) {
+    board.dictionary = name;
+    const Found found = find_charuco(grey, board);
+    fits.push_back({name, found.markers, found.corners.size()});
+  }
+  return fits;
+}
+
+/// The dictionary of which most markers are seen, and how many.
+std::pair<std::string, size_t> most_seen(const cv::Mat& grey) {
   std::string best;
   size_t most = 3;  // a few are seen in any texture
   for (const std::string& name : marker_dictionaries()) {
     const size_t count = markers_in(grey, name).size();
     if (count > most) best = name, most = count;
   }
+  return {best, most};
+}
+
+std::string markers_seen_in(const cv::Mat& grey) {
+  const auto [best, most] = most_seen(grey);
+  return best.empty() ? "" : fmt::format("{} markers of {} are", most, best);
+}
+
+std::string other_markers(const cv::Mat& grey, const std::string& told) {
+  const auto [best, most] = most_seen(grey);
   if (best.empty() || best == told) return {};
   return fmt::format("{} markers of {} are in it: --dictionary {}", most, best, best);
 }
@@ -291,6 +289,12 @@ std::string instead(const cv::Mat& grey, Board board) {
     if (board.columns != told.columns && find_charuco(grey, board).corners.size() >= 6)
       return fmt::format("a {} is in it: --squares {}x{}", board.title(), board.columns,
                          board.rows);
+    const std::vector<Fit> fits = fits_of(grey, told);
+    const auto best = std::ranges::max_element(fits, {}, &Fit::markers);
+    if (best != fits.end() && best->corners >= 6 && best->dictionary != told.dictionary)
+      return fmt::format(
+          "{} markers of {} are in it, in their places on this board: --dictionary {}",
+          best->markers, best->dictionary, best->dictionary);
     return other_markers(grey, told.dictionary);
   }
   for (const auto& [more, what] : std::map<int, const char*>{
@@ -355,6 +359,15 @@ std::string answer(Unpacker& request) {
     auto bytes = request.take<std::string>();
     if (bytes.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) throw WireFault();
     const cv::Mat grey(height, width, CV_8UC1, bytes.data());
+    if (task == "dictionaries") {
+      std::vector<std::string> names;
+      std::vector<uint64_t> markers, corners;
+      for (const Fit& one : fits_of(grey, board))
+        names.push_back(one.dictionary), markers.push_back(one.markers),
+            corners.push_back(one.corners);
+      return out.put(names).put(markers).put(corners).take();
+    }
+    if (task == "markers") return out.put(markers_seen_in(grey)).take();
     if (task == "instead") return out.put(instead(grey, board)).take();
     const Found found = find(grey, board);
     std::vector<int> ids;

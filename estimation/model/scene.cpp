@@ -14,6 +14,7 @@
 #include "estimation/model/gauges.h"
 #include "estimation/model/model.h"
 #include "estimation/model/photo_pyramid.h"
+#include "estimation/model/session_sensors.h"
 
 namespace hookeye {
 
@@ -259,8 +260,11 @@ std::shared_ptr<Scene> bare_scene(const Capture& capture, const Limits& limits) 
   scene->photos.resize(capture.examples.size());
   if (capture.body.texture == BodySpec::Texture::image)
     scene->albedo = albedo_planes(capture.body, any_rgb(capture));
-  for (const ExampleSpec& example : capture.examples)
-    check_fields(*scene, example), check_gauges(*scene, example);
+  for (const ExampleSpec& example : capture.examples) {
+    check_fields(*scene, example);
+    check_gauges(*scene, example);
+    check_sensors(capture, example);
+  }
   return scene;
 }
 
@@ -313,6 +317,7 @@ std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole
     out->capture.examples.push_back(example);
     check_fields(*out, example);
     check_gauges(*out, example);
+    check_sensors(tests, example);
   }
   for (auto& photos : photos_of(tests, {scene.readings, true, {}}))
     out->photos.push_back(std::move(photos));

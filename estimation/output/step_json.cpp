@@ -16,6 +16,7 @@
 #include "estimation/fit/lost_ellipticity.h"
 #include "estimation/model/fitted_fields.h"
 #include "estimation/model/parameters_json.h"
+#include "estimation/model/session_sensors.h"
 #include "estimation/output/compare_picture.h"
 #include "estimation/output/field_output.h"
 #include "estimation/output/material_card.h"
@@ -145,7 +146,7 @@ json measured_json(const Scene& scene, const Fitted& fitted) {
                      {"region", where(told)},
                      {"measured", list(told.value)},
                      {"predicted", list(one.predicted)},
-                     {"unit", unit_of(told, scene.capture.units)},
+                     {"unit", measured_unit(told, scene.capture.units)},
                      {"sigma", one_sigma ? json(told.sigma[0]) : json(list(told.sigma))},
                      {"over_sigma", list(one.r)}});
     }

@@ -8,16 +8,19 @@ import logging as _logging
 from . import importers
 from ._hookeye import Camera, __version__
 from ._registered import register, unregister
+from .batch import Batch, batch
+from .calibration import Calibration, calibrate
 from .capture import Capture
 from .catalogue import effects, options
-from .contract import check_effect
+from .contract import check_effect, check_sensor
 from .effect import Effect, Setup
 from .equilibrium import Equilibrium
-from .errors import Cancelled, EffectError, InputError, NumericalError
+from .errors import Cancelled, EffectError, InputError, NumericalError, SensorError
 from .kinematics import cofactor, determinant, invariants
 from .model import Evaluation, Model, Parameter, Picture
 from .progress import Progress, ProgressBar
-from .run import Diagnosis, Field, Run, Step, batch, discover, fit
+from .run import Diagnosis, Field, Run, Step, discover, fit
+from .sensor import Sensor
 from .tables import Table
 from .threads import set_threads
 
@@ -25,9 +28,9 @@ from .threads import set_threads
 _logging.getLogger("hookeye").addHandler(_logging.NullHandler())
 
 __all__ = [
-    "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
+    "Batch", "Calibration", "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
     "Evaluation", "Field", "InputError", "Model", "NumericalError", "Parameter", "Picture",
-    "Progress", "ProgressBar", "Run", "Setup", "Step", "Table", "__version__", "batch",
-    "check_effect", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
+    "Progress", "ProgressBar", "Run", "Sensor", "SensorError", "Setup", "Step", "Table", "__version__", "batch",
+    "calibrate", "check_effect", "check_sensor", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
     "options", "register", "set_threads", "unregister",
 ]

@@ -40,10 +40,10 @@ def bad(wrong: str, right: str) -> InputError:
     return InputError(f"{wrong}\n  {right}", wrong=wrong, right=right)
 
 
-def name_of(effect: Effect) -> str:
+def name_of(effect: Any, what: str = "an effect") -> str:
     own = effect.name or re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", type(effect).__name__).lower()
     if not isinstance(own, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", own):
-        raise bad(f"an effect cannot have the name {own!r}",
+        raise bad(f"{what} cannot have the name {own!r}",
                    "small letters, digits and _, as in `skin_spring`")
     return own
 
@@ -51,7 +51,7 @@ def name_of(effect: Effect) -> str:
 _PLAIN = (str, int, float, tuple, dict, list)
 
 
-def _code_of(effect: Effect) -> str:
+def code_of(effect: Any, base: type = Effect) -> str:
     """Tells one definition from another: what the methods do, and the plain values that they, the class
     and the object hold; not where they are written, nor their docstrings."""
 
@@ -67,7 +67,7 @@ def _code_of(effect: Effect) -> str:
 
     parts = []
     for cls in type(effect).__mro__:
-        if cls in (Effect, object):
+        if cls in (base, object):
             continue
         for key, value in sorted(vars(cls).items()):
             if inspect.isfunction(value):
@@ -96,7 +96,7 @@ class Bridge:
         self.name = name_of(effect)
         self.title = effect.title or self.name.replace("_", " ")
         self.manual = " ".join((type(effect).__doc__ or "").split()) or self.title
-        self.code = _code_of(effect)
+        self.code = code_of(effect)
         there = [kind for kind in _KINDS if _has(effect, kind)]
         if not there:
             raise bad(f"the effect '{self.name}' does nothing",

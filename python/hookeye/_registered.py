@@ -1,23 +1,32 @@
-"""Effects that were put beside those built in."""
+"""Effects and sensors that were put beside those built in."""
 
 from __future__ import annotations
 
-from typing import Any, Dict, Tuple
+from typing import Any, Dict, Tuple, Union
 
 from . import _hookeye
 from ._bridge import Bridge, bad, name_of
+from ._sensor_bridge import SensorBridge
 from .effect import Effect, EffectLike
-from .errors import EffectError
+from .errors import EffectError, SensorError
+from .sensor import Sensor
 
 
-def register(effect: EffectLike) -> str:
-    """Puts an effect beside those built in, until the program ends; one registered before under the
-    same name goes. Returns the name."""
-    return registered(effect)
+def register(effect: Union[EffectLike, Sensor]) -> str:
+    """Puts an effect or a sensor beside those built in, until the program ends; one registered before
+    under the same name goes. Returns the name."""
+    return register_sensor(effect) if is_sensor(effect) else registered(effect)
 
 
-def unregister(effect: EffectLike) -> None:
-    """Takes an effect out again. Models and runs that have it are not opened any more."""
+def unregister(effect: Union[EffectLike, Sensor]) -> None:
+    """Takes an effect or a sensor out again. Captures, models and runs that have it are not opened any
+    more."""
+    if is_sensor(effect) or (isinstance(effect, str) and effect in known_sensors):
+        name = effect if isinstance(effect, str) else SensorBridge(made_sensor(effect)).name
+        known_sensors.pop(name, None)
+        if not _hookeye.unregister_sensor(name):
+            raise bad(f"no sensor '{name}' is registered", "hookeye.register() of its class")
+        return
     name = effect if isinstance(effect, str) else name_of(made(effect))
     known.pop(name, None)
     if not _hookeye.unregister_effect(name):
@@ -36,6 +45,8 @@ def registered(effect: EffectLike) -> str:
 
 
 known: Dict[str, Tuple[type, str]] = {}
+#: The same of sensors.
+known_sensors: Dict[str, Tuple[type, str]] = {}
 
 
 def made(effect: Any) -> Effect:
@@ -48,3 +59,24 @@ def made(effect: Any) -> Effect:
             raise EffectError(f"effect {effect.__name__}: cannot be made without arguments: {error}",
                               effect.__name__, "__init__") from error
     raise TypeError(f"effect: a class derived from hookeye.Effect is expected, not {effect!r}")
+
+
+def is_sensor(given: Any) -> bool:
+    return isinstance(given, Sensor) or (isinstance(given, type) and issubclass(given, Sensor))
+
+
+def made_sensor(sensor: Any) -> Sensor:
+    if isinstance(sensor, Sensor):
+        return sensor
+    try:
+        return sensor()
+    except Exception as error:
+        raise SensorError(f"sensor {sensor.__name__}: cannot be made without arguments: {error}",
+                          sensor.__name__, "__init__") from error
+
+
+def register_sensor(sensor: Any) -> str:
+    bridge = SensorBridge(made_sensor(sensor))
+    _hookeye.register_sensor(bridge, bridge.code)
+    known_sensors[bridge.name] = (bridge.own.__class__, bridge.code)
+    return bridge.name

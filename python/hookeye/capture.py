@@ -50,7 +50,9 @@ class Capture:
     """
 
     def __init__(self, path: PathLike, *, options: Optional[Mapping[str, float]] = None) -> None:
-        self._own = _hookeye.Capture(path, dict(options or {}))
+        #: Numbers to decide by that are not the standard ones.
+        self.options: Dict[str, float] = dict(options or {})
+        self._own = _hookeye.Capture(path, self.options)
         self._folder: Any = None  # of from_dict: lives as long as the capture
 
     @classmethod

@@ -8,10 +8,12 @@ import numpy as np
 
 from . import _hookeye
 from ._bridge import Bridge
-from ._registered import known, made, registered
+from ._registered import (is_sensor, known, known_sensors, made, made_sensor, register_sensor,
+                          registered)
+from ._sensor_bridge import SensorBridge
 from .capture import Capture
 from .effect import EffectLike
-from .errors import EffectError
+from .errors import EffectError, InputError, SensorError
 from .model import Model
 from .tables import table
 
@@ -35,12 +37,8 @@ class _Contract:
         mesh = capture.mesh
         self.size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
         s = (mesh.points - mesh.points.mean(axis=0)) / self.size
-        # Stretched, bent and twisted by some per cent: nothing is turned inside out.
-        bent = np.column_stack([0.08 * s[:, 2]**2 + 0.03 * s[:, 0], 0.04 * s[:, 1] - 0.1 * s[:, 0] * s[:, 2],
-                                0.12 * s[:, 2] + 0.1 * s[:, 0] * s[:, 1]])
-        self.x = mesh.points + self.size * bent
-        wave = 2 * np.pi * s
-        self.along = np.column_stack([np.sin(wave[:, 1] + 1), np.sin(wave[:, 2]), np.cos(wave[:, 0])])
+        self.x = mesh.points + self.size * _bent(s)
+        self.along = _wave(s)
 
     def at(self, values: Any = None, x: Any = None) -> Dict[str, np.ndarray]:
         """`values` None: the model without the effect."""
@@ -166,6 +164,17 @@ class _Contract:
             self.tangent_is_that_of_the_forces()
 
 
+def _bent(s: np.ndarray) -> np.ndarray:
+    """Stretched, bent and twisted by some per cent: nothing is turned inside out."""
+    return np.column_stack([0.08 * s[:, 2]**2 + 0.03 * s[:, 0], 0.04 * s[:, 1] - 0.1 * s[:, 0] * s[:, 2],
+                            0.12 * s[:, 2] + 0.1 * s[:, 0] * s[:, 1]])
+
+
+def _wave(s: np.ndarray) -> np.ndarray:
+    wave = 2 * np.pi * s
+    return np.column_stack([np.sin(wave[:, 1] + 1), np.sin(wave[:, 2]), np.cos(wave[:, 0])])
+
+
 def _rotation(axis: np.ndarray, angle: float) -> np.ndarray:
     n = axis / np.linalg.norm(axis)
     cross = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
@@ -194,4 +203,84 @@ def check_effect(effect: EffectLike, capture: Capture) -> Any:
         if not there:
             known.pop(bridge.name, None)
             _hookeye.unregister_effect(bridge.name)
+    return table(contract.rows, ["check", "passed", "value", "limit"])
+
+
+class _SensorContract:
+    """One sensor on the body of a capture, bent."""
+
+    def __init__(self, bridge: SensorBridge, capture: Capture) -> None:
+        self.bridge = bridge
+        self.rows: List[Dict[str, Any]] = []
+        mesh = capture.mesh
+        for region in bridge.regions:
+            if region not in mesh.regions:
+                wrong = f"the sensor '{bridge.name}' looks at the unknown region '{region}'"
+                right = f"the capture has {', '.join(mesh.regions)}"
+                raise InputError(f"{wrong}\n  {right}", wrong=wrong, right=right)
+        nodes = [mesh.regions[region]["nodes"] for region in bridge.regions]
+        rest = mesh.points[np.concatenate(nodes)] if nodes else bridge.points
+        self.counts = [len(one) for one in nodes] or [len(rest)]
+        size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+        s = (rest - mesh.points.mean(axis=0)) / size
+        self.u = size * _bent(s)
+        self.x = rest + self.u
+        #: The points move; and the whole body is placed elsewhere, with and without a turn.
+        turned = np.cross([0.3, -0.8, 0.5], self.x), np.cross([0.3, -0.8, 0.5], self.u)
+        wave = size * _wave(s)
+        self.ways = [(wave, wave), (np.tile([0.2, 0.5, -0.7], (len(s), 1)) * size, 0 * wave), turned]
+        self.example = next(iter(capture.examples), "")
+
+    def asked(self, check: str, value: float, limit: float, method: str, wrong: str) -> None:
+        passed = bool(value <= limit)
+        self.rows.append({"check": check, "passed": passed, "value": float(value), "limit": limit})
+        if not passed:
+            raise SensorError(f"sensor '{self.bridge.name}': {wrong} ({value:.3g}, at most {limit:g})",
+                              self.bridge.name, method)
+
+    def run(self) -> None:
+        at = (self.counts, self.example)
+        none = np.empty((0, *self.x.shape))
+        value, _ = self.bridge.answer(self.x, self.u, none, none, *at)
+        again, _ = self.bridge.answer(self.x, self.u, none, none, *at)
+        self.asked("the same twice", float(value.shape != again.shape or (value != again).any()), 0.0,
+                   "predict", "asked twice it answers differently")
+        given = np.stack([self.bridge.along(self.x, self.u, dx, du, *at, len(value))
+                          for dx, du in self.ways])
+        self.asked("it sees motion", float(not given.any()), 0.0, "predict",
+                   "whatever moves, its numbers stay as they are")
+        method = "derivative" if hasattr(self.bridge.own, "derivative") else "predict"
+        scale = float(np.abs(given).max())
+        for (dx, du), own in zip(self.ways, given):
+            coarse, fine = (self.bridge.difference(self.x, self.u, dx, du, *at, share)
+                            for share in (4e-4, 2e-4))
+            # Of second order: Richardson's value, and how far it may be off.
+            slope, error = fine + (fine - coarse) / 3, np.abs(fine - coarse).max()
+            self.asked("its derivative is that of finite differences",
+                       float(np.abs(own - slope).max()) / scale, float(1e-6 + error / scale), method,
+                       "the derivative is not that of predict(): abs(), a branch or a wrong formula")
+
+
+def check_sensor(sensor: Any, capture: Capture) -> Any:
+    """Asks a sensor in Python what the program relies on, on the body of a capture, bent and moved.
+
+    It answers the same twice, it sees motion, and its derivative (by its class, by complex steps or by
+    differences) is that of finite differences. Returns a table of the checks, or raises SensorError for
+    the first that fails. It need not be registered.
+    """
+    if not is_sensor(sensor):
+        raise TypeError(f"sensor: a class derived from hookeye.Sensor is expected, not {sensor!r}")
+    if not isinstance(capture, Capture):
+        raise TypeError(f"capture: a hookeye.Capture is expected, not {type(capture).__name__}")
+    bridge = SensorBridge(made_sensor(sensor))
+    there = bridge.name in known_sensors
+    if not there:  # the capture may name it
+        register_sensor(bridge.own)
+    try:
+        contract = _SensorContract(bridge, capture)
+        contract.run()
+    finally:
+        if not there:
+            known_sensors.pop(bridge.name, None)
+            _hookeye.unregister_sensor(bridge.name)
     return table(contract.rows, ["check", "passed", "value", "limit"])

@@ -42,3 +42,15 @@ class EffectError(RuntimeError):
 
     def __reduce__(self):
         return (type(self), (str(self), self.effect, self.method))
+
+
+class SensorError(RuntimeError):
+    """A sensor written in Python went wrong: `sensor`, and the `method` of it. What that threw is the
+    cause (`__cause__`)."""
+
+    def __init__(self, message: str, sensor: str = "", method: str = "") -> None:
+        super().__init__(message)
+        self.sensor, self.method = sensor, method
+
+    def __reduce__(self):
+        return (type(self), (str(self), self.sensor, self.method))

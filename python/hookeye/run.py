@@ -7,10 +7,8 @@ import logging
 import os
 import pathlib
 import tempfile
-import threading
-from concurrent.futures import ThreadPoolExecutor
 from html import escape
-from typing import Any, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -336,57 +334,3 @@ def discover(capture: Capture, out: Optional[PathLike] = None, *, without: Itera
     command = f"hookeye.discover({str(capture.file)!r})"
     own = _hookeye.discover(capture._own, folder, list(without), command, listener(on_step), cancel)
     return Run(folder, own, capture, kept)
-
-
-def batch(captures: Union[Iterable[Union[PathLike, Capture]], Mapping[str, Any]],
-          verb: str = "discover", out: PathLike = "runs", *, workers: int = 2,
-          cancel: Any = None) -> Dict[str, Union[Run, Exception]]:
-    """The verb on each capture, several at once, into OUT/NAME. One that fails stops no other: its
-    exception stands in its place. A capture's name is its key, or that of its folder."""
-    stop = _Stop(cancel)
-    verbs = {"fit": lambda c, o: fit(c, out=o, cancel=stop),
-             "discover": lambda c, o: discover(c, o, cancel=stop)}
-    if verb not in verbs:
-        wrong = f"batch: there is no verb '{verb}'"
-        raise InputError(wrong, wrong=wrong, right="fit or discover")
-    if workers < 1:
-        raise InputError(f"workers: {workers}", wrong=f"workers: {workers}", right="from 1")
-    named = dict(captures) if isinstance(captures, Mapping) else _named(captures)
-
-    def one(name: str, given: Any) -> Union[Run, Exception]:
-        try:
-            capture = given if isinstance(given, Capture) else Capture(given)
-            return verbs[verb](capture, pathlib.Path(out) / name)
-        except Exception as error:
-            return error
-
-    with ThreadPoolExecutor(max_workers=workers) as pool:
-        jobs = {name: pool.submit(one, name, given) for name, given in named.items()}
-        try:
-            return {name: job.result() for name, job in jobs.items()}
-        except BaseException:  # Ctrl-C comes to this thread alone
-            stop.own.set()
-            raise
-
-
-class _Stop:
-    """Set where the user's `cancel` is, or its own."""
-
-    def __init__(self, cancel: Any) -> None:
-        self.own = threading.Event()
-        self._cancel = cancel
-
-    def is_set(self) -> bool:
-        return self.own.is_set() or (self._cancel is not None and self._cancel.is_set())
-
-
-def _named(captures: Iterable[Any]) -> Dict[str, Any]:
-    named: Dict[str, Any] = {}
-    for given in captures:
-        place = pathlib.Path(given.file.parent if isinstance(given, Capture) else given)
-        name = place.parent.name if place.suffix in (".yaml", ".yml") else place.name
-        if name in named:
-            wrong = f"batch: two captures have the name '{name}'"
-            raise InputError(wrong, wrong=wrong, right="a dict of names")
-        named[name] = given
-    return named

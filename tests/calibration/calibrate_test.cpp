@@ -7,12 +7,12 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <fstream>
-#include <opencv2/aruco.hpp>
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/detection.h"
 #include "calibration/drawn_board.h"
 #include "calibration/output.h"
+#include "calibration/photographed.h"
 #include "calibration/turns.h"
 #include "capture_io/camera_covariance.h"
 #include "core/text_file.h"
@@ -22,22 +22,6 @@ namespace hookeye::test {
 namespace {
 
 using testing::HasSubstr;
-
-DrawnBoard charuco(int columns, int rows, const std::string& dictionary = "4X4_50") {
-  DrawnBoard drawn;
-  drawn.board.columns = columns, drawn.board.rows = rows;
-  drawn.board.pitch = 20, drawn.board.marker = 15, drawn.board.dictionary = dictionary;
-  const auto number =
-      std::ranges::find(marker_dictionaries(), dictionary) - marker_dictionaries().begin();
-  const auto markers = cv::aruco::getPredefinedDictionary(static_cast<int>(number));
-  const int side = markers->markerSize + 2;
-  for (int id = 0; id < drawn.board.marker_count(); ++id) {
-    cv::Mat picture;
-    markers->drawMarker(id, side, picture);
-    drawn.markers.emplace_back(picture.begin<uchar>(), picture.end<uchar>());
-  }
-  return drawn;
-}
 
 DrawnBoard chessboard(int columns, int rows) {
   DrawnBoard drawn;
@@ -52,21 +36,6 @@ DrawnBoard dots(Board::Kind kind, int columns, int rows, double pitch, double di
   drawn.board.columns = columns, drawn.board.rows = rows;
   drawn.board.pitch = pitch, drawn.board.diameter = diameter;
   return drawn;
-}
-
-/// Photos of all cameras in a folder, NAME_07.png.
-std::vector<CameraPhotos> photograph(const TemporaryFolder& folder, const DrawnBoard& drawn,
-                                     const std::vector<Camera>& cameras,
-                                     const std::vector<BoardPose>& poses, std::mt19937& random) {
-  std::vector<CameraPhotos> photos;
-  for (const Camera& camera : cameras) {
-    const BoardPhotographer photographer(camera);
-    for (size_t i = 0; i < poses.size(); ++i)
-      write_image(folder / fmt::format("{}_{:02}.png", camera.name, i + 1),
-                  photographer.photo(drawn, poses[i], {}, random), {Encoding::Kind::srgb});
-    photos.push_back({camera.name, {(folder / (camera.name + "_*.png")).string()}});
-  }
-  return photos;
 }
 
 /// What was found minus what is true, as BundleCovariance has its numbers.
@@ -342,16 +311,6 @@ TEST(Bundle, OneCameraIsThatOfOpenCv) {
                 0.03 * errors->error(i))
         << errors->parameters[i].name;
   }
-}
-
-/// What calibrate() says where it refuses.
-std::string refused(const Board& board, const std::vector<CameraPhotos>& photos) {
-  try {
-    calibrate(board, photos, {});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "it was taken";
 }
 
 TEST(Calibrate, SaysWhatIsInThePhotosInstead) {

@@ -78,10 +78,11 @@ def test_the_page_s_lines_run(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     os.symlink(folder / "capture", tmp_path / "block")
     blocks = re.findall(r"```python\n(.*?)```", (SOURCES / "docs/python.md").read_text(), re.S)
-    assert len(blocks) == 3
+    assert len(blocks) == 4
     names = {}
     for block in blocks:
         exec(block, names)
     assert "stiff_skin" in list(names["diagnosis"].table["effect"])
     he.unregister("stiff_skin")
+    he.unregister("opening")
     assert names["model"]["kappa"].fixed and (tmp_path / "run/run.json").exists()

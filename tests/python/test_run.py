@@ -233,18 +233,6 @@ def test_a_folder_without_a_page_goes_with_its_run(capture):
     assert not folder.exists()
 
 
-def test_a_batch_goes_on_where_one_fails(folder, tmp_path, fitted):
-    shutil.copytree(folder / "capture", tmp_path / "broken")
-    next((tmp_path / "broken/photos").iterdir()).unlink()
-    runs = he.batch([folder / "capture", tmp_path / "broken"], "fit", out=tmp_path / "runs",
-                    workers=2)
-    assert isinstance(runs["broken"], he.InputError)
-    assert runs["capture"].timeline["steps"][0]["parameters"] == fitted.timeline["steps"][0]["parameters"]
-    assert not (tmp_path / "runs/broken").exists()
-    with pytest.raises(he.InputError, match="no verb"):
-        he.batch([], "explore")
-
-
 def test_without_pandas_tables_are_plain(fitted, monkeypatch):
     monkeypatch.setattr("hookeye.tables.pandas_if_there", lambda: None)
     table = fitted.parameters

@@ -12,6 +12,7 @@
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
 #include "estimation/inspection/si.h"
+#include "estimation/model/session_sensors.h"
 #include "meshing/extent.h"
 
 namespace hookeye::inspection {
@@ -277,7 +278,7 @@ void ask_for_their_signs(Sight& sight, const Readings& series, Warnings& warning
             sensor_in_words(sight, measured), sight.example(one.example).name,
             told(centred.empty() ? measured.value : one.value),
             centred.empty() ? "" : " less the mean of all", told(one.in_equilibrium),
-            unit_of(measured, sight.scene().capture.units),
+            measured_unit(measured, sight.scene().capture.units),
             signs.all() ? fmt::format(", as in all {} examples where it is sure", signs.asked) : "",
             seen_in_photos(sight, one.example)),
         fmt::format("{}: change the sign{}", meaning, signs.all() ? " in all of them" : ""));

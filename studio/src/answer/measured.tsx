@@ -20,7 +20,7 @@ const heldOut = (m: Measured): boolean => run.value.capture?.examples.find((e) =
 function measuredCsv(all: Measured[]): void {
   saveCsv('measured.csv', [
     ['example', 'kind', 'region', 'unit', 'component', 'sigma', 'measured', 'model'],
-    ...all.flatMap((m) => m.measured.map((value, k) => [m.example, m.kind, m.region, unitOf(m), m.measured.length > 1 ? 'xyz'[k] : '', sigmaOf(m, k), value, m.predicted[k]]))]);
+    ...all.flatMap((m) => m.measured.map((value, k) => [m.example, m.kind, m.region, unitOf(m), m.measured.length > 1 ? componentOf(m, k) : '', sigmaOf(m, k), value, m.predicted[k]]))]);
 }
 
 export function MeasuredTable(props: {all: Measured[]}) {
@@ -86,6 +86,15 @@ const titles: Record<string, string> = {
   strain_of: 'Measured and predicted strains',
 };
 
+/** A sensor of the user's own is a kind of its own, by its name. */
+function groupsOf(all: Measured[]) {
+  const sensors = [...new Set(all.filter((m) => m.kind === 'sensor').map((m) => m.region))];
+  return [...Object.keys(titles).map((kind) => ({title: titles[kind], own: all.filter((m) => m.kind === kind)})),
+    ...sensors.map((name) => ({title: `Measured and predicted: ${name}`, own: all.filter((m) => m.kind === 'sensor' && m.region === name)}))];
+}
+
+const componentOf = (m: Measured, k: number) => (m.kind === 'sensor' ? String(k + 1) : 'xyz'[k]);
+
 export function MeasuredForces() {
   const newest = run.value.steps[run.value.steps.length - 1];
   const all = newest?.metrics?.measured ?? [];
@@ -97,11 +106,10 @@ export function MeasuredForces() {
   }
   return (
     <div>
-      {Object.keys(titles).map((kind) => {
-        const own = all.filter((m) => m.kind === kind);
+      {groupsOf(all).map(({title, own}) => {
         const pairs = own.flatMap((m) => m.measured.map((value, k): Pair => (
-          {name: `${m.example} ${m.region} ${m.measured.length > 1 ? 'xyz'[k] : ''}`.replace('  ', ' ').trim(), measured: value, half: 1.96 * sigmaOf(m, k), model: m.predicted[k]})));
-        return own.length > 0 && <Pairs key={kind} title={titles[kind]} unit={unitOf(own[0])} pairs={pairs} />;
+          {name: `${m.example} ${m.region} ${m.measured.length > 1 ? componentOf(m, k) : ''}`.replace('  ', ' ').trim(), measured: value, half: 1.96 * sigmaOf(m, k), model: m.predicted[k]})));
+        return own.length > 0 && <Pairs key={title} title={title} unit={unitOf(own[0])} pairs={pairs} />;
       })}
     </div>
   );

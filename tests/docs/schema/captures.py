@@ -85,6 +85,7 @@ def full_capture():
                     {"position_of": [10, 0, 40], "value": [10.2, 0, 42.1],
                      "covariance": [[0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.4]]},
                     {"travel_of": "grip", "along": [0, 0, 1], "value": 2.5, "sigma": 0.1},
+                    {"sensor": "opening", "value": [34.2, 1], "sigma": 0.05},
                     {"rotation_of": "grip", "axis": [0, 0, 1], "value": 20, "sigma": 0.5},
                     {"strain_of": [[20, 10, 10], [20, 10, 30]], "value": 0.01, "sigma": 2e-5},
                     {"field": "u.csv", "sigma": 0.01, "correlation": 2, "scale": 1, "tolerance": 100,

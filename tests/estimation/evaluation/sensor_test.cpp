@@ -8,6 +8,7 @@
 #include "estimation/effects/catalogue.h"
 #include "estimation/effects_scene.h"
 #include "estimation/model/gauges.h"
+#include "estimation/model/session_sensors.h"
 
 namespace hookeye::test {
 namespace {
@@ -39,6 +40,80 @@ std::shared_ptr<const Scene> sensed_block() {
                                            told(Kind::strain_of, {3.0, -2.0, 12.5})};
   }
   return scene;
+}
+
+/// travel_of along a direction, as a sensor that a program adds.
+class AddedTravel final : public SessionSensor {
+ public:
+  explicit AddedTravel(const Vector3d& along) : along_(along) {}
+  std::string name() const override { return "added_travel"; }
+  std::string unit() const override { return "mm"; }
+  std::vector<std::string> regions() const override { return {"grip"}; }
+  Matrix3Xd points() const override { return {}; }
+  SensorAnswer answer(const SensedMotion& motion) const override {
+    const Eigen::Index n = motion.u.size() / 3;
+    Eigen::RowVectorXd mean(3 * n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      mean.segment<3>(3 * i) = along_.transpose() / static_cast<double>(n);
+    return {mean * motion.u, mean * motion.du};
+  }
+
+ private:
+  Vector3d along_;
+};
+
+/// position_of a point, and how far it went: two numbers of different kinds.
+class AddedPoint final : public SessionSensor {
+ public:
+  std::string name() const override { return "added_point"; }
+  std::string unit() const override { return "mm"; }
+  std::vector<std::string> regions() const override { return {}; }
+  Matrix3Xd points() const override { return Vector3d(0.0, 0.0, 40.0); }
+  SensorAnswer answer(const SensedMotion& motion) const override { return {motion.x, motion.dx}; }
+};
+
+MeasuredSpec told_by(const std::string& sensor, int size) {
+  MeasuredSpec out = told(Kind::sensor, Vector3d::Zero());
+  out.region = sensor;
+  out.value = VectorXd::Zero(size), out.sigma = VectorXd::Ones(size);
+  return out;
+}
+
+TEST(Sensor, OneThatAProgramAddsIsTheOneBuiltIn) {
+  const Vector3d along = Vector3d(1, 2, 2) / 3.0;
+  add_sensor(std::make_shared<AddedTravel>(along), "1");
+  add_sensor(std::make_shared<AddedPoint>(), "2");
+  EXPECT_THAT(added_sensors(), testing::ElementsAre("added_point 2", "added_travel 1"));
+  auto scene = std::make_shared<Scene>(*block_scene());
+  for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
+    scene->photos[e].clear();
+    scene->capture.examples[e].photos.clear();
+    scene->capture.examples[e].measured = {told(Kind::travel_of, along), told_by("added_travel", 1),
+                                           told(Kind::position_of, Vector3d::Zero()),
+                                           told_by("added_point", 3)};
+    EXPECT_NO_THROW(check_sensors(scene->capture, scene->capture.examples[e]));
+  }
+  const std::shared_ptr<const Scene> whole = scene;
+  ModelForm form = base_form(whole);
+  form.ingredients.push_back(
+      find_effect("placement")->candidates(form.realise(form.initial()), nullptr).front());
+  VectorXd p = form.initial();
+  p.tail(6).setConstant(0.01);
+  Workspace workspace(whole);
+  const auto here = std::get<Evaluation>(workspace.evaluate(form, p, {}));
+  double most = 0.0;
+  for (const ExampleEvaluation& example : here.examples)
+    for (size_t k = 0; k < 4; k += 2) {
+      const MeasuredEvaluation &built_in = example.measured[k], &added = example.measured[k + 1];
+      EXPECT_LT((built_in.predicted - added.predicted).norm(), 1e-12);
+      EXPECT_LT((built_in.J - added.J).norm(), 1e-12 * built_in.J.norm());
+      most = std::max(most, built_in.J.norm());
+    }
+  EXPECT_GT(most, 0.0);
+  EXPECT_TRUE(take_sensor("added_point"));
+  EXPECT_FALSE(take_sensor("added_point"));
+  EXPECT_THROW(check_sensors(scene->capture, scene->capture.examples[0]), InputError);
+  EXPECT_TRUE(take_sensor("added_travel"));
 }
 
 TEST(Sensor, DerivativesAreThoseOfFiniteDifferences) {

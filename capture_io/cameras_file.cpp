@@ -1,4 +1,4 @@
-#include "app/commands/cameras_file.h"
+#include "capture_io/cameras_file.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ void refuse_to_overwrite_cameras(const std::filesystem::path& file) {
                    "another folder behind -o, or move the file away");
 }
 
-std::string one_line(std::string text) {
+std::string head_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 32; }, '?');
   return text + "\n";
