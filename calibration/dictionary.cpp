@@ -47,8 +47,8 @@ Tally tally_of(const Board& board, const PhotoList& list, const CalibrateOptions
 /// What the photos show instead: the board the other way round, or markers in other places.
 [[noreturn]] void refuse_unknown(const Board& board, const PhotoList& list, const Tally& tally) {
   std::string right =
-      "the board as it is printed (squares are counted, not corners), flat, sharp, "
-      "with a white rim; or --dictionary, if it has markers of its own";
+      "the board as it is printed (squares are counted, not corners), flat, sharp, with a white "
+      "rim, and markers of a dictionary that OpenCV predefines";
   const auto looks = order_of_looks(list.photos.size());
   for (size_t k = 0; k < std::min(kLooks, looks.size()); ++k) {
     const std::filesystem::path& file = list.photos[looks[k]].file;

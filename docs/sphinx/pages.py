@@ -119,7 +119,7 @@ def python_page():
         out.append(f".. autofunction:: hookeye.{name}")
     out += ["```", "", "## Classes", ""]
     for name in classes:
-        directive = "autoexception" if name in ("Cancelled", "InputError", "NumericalError") else "autoclass"
+        directive = "autoexception" if name in ("Cancelled", "InputError", "NumericalError", "SensorError") else "autoclass"
         out += [f"### {name}", "", "```{eval-rst}", f".. {directive}:: hookeye.{name}", "```", ""]
     out += ["## Importers", "", "```{eval-rst}", ".. automodule:: hookeye.importers", "```", ""]
     return "\n".join(out)

@@ -8,7 +8,7 @@ import logging as _logging
 from . import importers
 from ._hookeye import Camera, __version__
 from ._registered import register, unregister
-from .batch import Batch, batch
+from .batches import Batch, batch
 from .calibration import Calibration, calibrate
 from .capture import Capture
 from .catalogue import effects, options

@@ -8,8 +8,9 @@ from typing import Any, Sequence, Union
 class Sensor:
     """Base of sensors in Python. What a class may say:
 
-    `name` (default: the class's, in small letters), which a capture names by `measured: - {sensor:
-    NAME, value, sigma}`; `unit` of its numbers; and where it looks, one of
+    `name` (default: the class's, in small letters), which a capture names by
+    `measured: - {sensor: NAME, value, sigma}`; `unit` of its numbers; and where it looks, one of
+
     - `region`: a region's nodes; `regions`: those of several,
     - `points`: places on the body as it was given, (n, 3).
 
