@@ -100,7 +100,7 @@ TEST(Sensor, OneThatAProgramAddsIsTheOneBuiltIn) {
   VectorXd p = form.initial();
   p.tail(6).setConstant(0.01);
   Workspace workspace(whole);
-  const auto here = std::get<Evaluation>(workspace.evaluate(form, p, {}));
+  const auto here = workspace.evaluate(form, p, {}).value();
   double most = 0.0;
   for (const ExampleEvaluation& example : here.examples)
     for (size_t k = 0; k < 4; k += 2) {
