@@ -100,14 +100,14 @@ TEST(Solver, RerunsAreBitEqualAndWarmEqualsCold) {
   EquilibriumOptions options;
   options.tolerance = 1e-11;
   const auto first = solver.solve(c.energy(), c.loading(), options);
-  ASSERT_EQ(first.index(), 0u);
+  ASSERT_TRUE(first.has_value());
   const MatrixXd load = test::noise(a.q.size(), 3);
   const MatrixXd before = sensitivities(*first, c.loading(), load, {});
   BentBlock other = c;
   other.law = neo_hookean(0.0525, 0.57);
   other.lift = 0.7;
   const auto warm = solver.solve(other.energy(), other.loading(), options);
-  ASSERT_EQ(warm.index(), 0u);
+  ASSERT_TRUE(warm.has_value());
   EXPECT_LE((warm->q - other.solved().q).cwiseAbs().maxCoeff(), 1e-8);
   EXPECT_EQ(warm->factorizations, 1);
   // The first solution's factor is the caller's: the warm solve must not have written into it.

@@ -127,10 +127,10 @@ TEST_P(OpenPatch, NewtonConvergesAtTheRateOfTheTrueTangent) {
   EquilibriumSolver solver(std::make_shared<TetMesh>(c.mesh));
   EquilibriumOptions options;
   options.tolerance = 1e-11;
-  ASSERT_EQ(solver.solve(c.energy(), c.loading(), options).index(), 0u);
+  ASSERT_TRUE(solver.solve(c.energy(), c.loading(), options).has_value());
   c.pressure *= 1.02;
   const auto warm = solver.solve(c.energy(), c.loading(), options);
-  ASSERT_EQ(warm.index(), 0u);
+  ASSERT_TRUE(warm.has_value());
   EXPECT_GE(warm->newton_iterations, 2);
   EXPECT_LE(warm->newton_iterations, 5);
 }
