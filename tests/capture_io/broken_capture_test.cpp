@@ -246,7 +246,7 @@ const BrokenCase broken_cases[] = {
      swap("{force_on: grip, value: [0, 0, 2.5]", "{calibration: front, value: 0"),
      "capture.yaml:59:10: a measurement of example `pull` has no key `calibration`\n"
      "  known here: value, sigma, covariance, about, along, axis, force_on, moment_on, "
-     "position_of, travel_of, rotation_of, strain_of, field"},
+     "position_of, travel_of, rotation_of, strain_of, field, sensor"},
     {"CovarianceThatIsNone", swap("sigma: 0.02", "covariance: [[1, 2, 0], [2, 1, 0], [0, 0, 1]]"),
      "capture.yaml:59:58: `covariance` is none\n"
      "  3 lists of 3 numbers, symmetric and positive definite"},
