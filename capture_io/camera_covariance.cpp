@@ -230,7 +230,7 @@ void read_camera_covariance(const YamlNode& node, const CaptureFolder& folder, C
 
 void measure_calibration(Capture& capture) {
   if (!capture.camera_covariance) return;
-  const CameraCovariance& all = *capture.camera_covariance;
+  const std::shared_ptr<const CameraCovariance> all = capture.camera_covariance;
   const auto fitted = [&](const std::string& camera) {
     return std::ranges::any_of(capture.examples, [&](const ExampleSpec& example) {
       return !example.validate &&
@@ -238,12 +238,12 @@ void measure_calibration(Capture& capture) {
     });
   };
   auto used = std::make_shared<const CameraCovariance>(
-      part_of(all, [&](size_t i) { return fitted(all.numbers[i].camera); }));
+      part_of(*all, [&](size_t i) { return fitted(all->numbers[i].camera); }));
   capture.camera_covariance = used->numbers.empty() ? nullptr : used;
   if (used->numbers.empty()) return;
   MeasuredSpec spec;
   spec.kind = MeasuredSpec::Kind::calibration;
-  spec.place = all.place;
+  spec.place = all->place;
   const auto size = static_cast<Eigen::Index>(kCalibratedNumbers * used->cameras().size());
   spec.value = Eigen::VectorXd::Zero(size);
   spec.sigma = Eigen::VectorXd::Ones(size);
