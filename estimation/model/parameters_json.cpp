@@ -13,10 +13,11 @@ std::pair<double, double> interval_within(const Parameter& parameter, double low
 }
 
 bool centre_is_unknown(const Parameter& parameter, double low, double high) {
+  constexpr double kAnywhere = 0.5;  // of the body: of a place that may be anywhere it is 0.95
   const double body = parameter.high - parameter.low;
   std::tie(low, high) = interval_within(parameter, low, high);
   return parameter.long_name.starts_with("centre of the ") && std::isfinite(body) &&
-         high - low > 0.5 * body;
+         high - low > kAnywhere * body;
 }
 
 json parameters_json(const std::vector<Parameter>& parameters, const Eigen::VectorXd& value,

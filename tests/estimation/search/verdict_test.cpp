@@ -50,17 +50,24 @@ TEST(Verdict, SaysWhatOnlyAFinerMeshWouldShow) {
                                      "something small that is not named"));
 }
 
+/// The base model with a ball of this amplitude.
+struct WithBall {
+  explicit WithBall(double amplitude) {
+    const auto ball = find_effect("stiffness_field")->candidate(test::base_model(), "free ball");
+    fitted.form = test::extended(test::base(), ball);
+    VectorXd values = test::some_values(*ball);
+    values[0] = amplitude;
+    first = fitted.form.size() - values.size();
+    fitted.p = test::with_values(fitted.form, values);
+  }
+  Fitted fitted;
+  Eigen::Index first = 0;  ///< of the ball's values
+};
+
 /// What a bound gave is no measurement.
 TEST(Verdict, AValueAtTheEndOfWhatIsTriedIsToldAsThat) {
-  const auto ball = find_effect("stiffness_field")->candidate(test::base_model(), "free ball");
-  ASSERT_NE(ball, nullptr);
-  Fitted fitted;
-  fitted.form = test::extended(test::base(), ball);
-  VectorXd values = test::some_values(*ball);
-  const auto said = [&](double amplitude) {
-    values[0] = amplitude;
-    fitted.p = test::with_values(fitted.form, values);
-    return effects_in_words(fitted).at(0);
+  const auto said = [](double amplitude) {
+    return effects_in_words(WithBall(amplitude).fitted).at(0);
   };
   EXPECT_THAT(said(3.9), testing::Not(testing::HasSubstr("ended at")));
   EXPECT_THAT(said(4.0),
@@ -70,16 +77,9 @@ TEST(Verdict, AValueAtTheEndOfWhatIsTriedIsToldAsThat) {
 
 /// The ranges of a place, and what its photos do not know of it.
 TEST(Verdict, APlaceIsToldWithItsRanges) {
-  const auto ball = find_effect("stiffness_field")->candidate(test::base_model(), "free ball");
-  ASSERT_NE(ball, nullptr);
-  Fitted fitted;
-  fitted.form = test::extended(test::base(), ball);
-  VectorXd values = test::some_values(*ball);
-  values[0] = std::log(2.0);
-  fitted.p = test::with_values(fitted.form, values);
+  auto [fitted, a] = WithBall(std::log(2.0));
   EXPECT_THAT(effects_in_words(fitted).at(0), testing::Not(testing::HasSubstr("ranges")));
   fitted.low = fitted.high = fitted.p;
-  const Eigen::Index a = fitted.p.size() - values.size();
   fitted.low[a] = std::log(1.5), fitted.high[a] = std::log(3.0);
   EXPECT_THAT(effects_in_words(fitted).at(0),
               testing::AllOf(testing::HasSubstr("a ball 2 (1.5 to 3) times as stiff"),
