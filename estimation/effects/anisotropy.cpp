@@ -72,26 +72,18 @@ class Anisotropy final : public Effect {
     return starts_with(variant, "free around") ? free_around(model, a) : nullptr;
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    if (!additive_base(model))
-      if (auto pulling = refit_of_pulling(model, *scored, values)) return pulling;
-    const auto numbers = numbers_in(scored->variant());
-    if (!starts_with(scored->variant(), "along") || numbers.size() != 3) return scored;
-    const double k = values[0];
-    values = Vector3d(k, 0.0, 0.0);
-    return free_around(model, Vector3d(numbers[0], numbers[1], numbers[2]));
-  }
-
-  std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& refitted,
-                                                 VectorXd& values) const override {
-    return plainer_stiffnesses(model, refitted, values);
-  }
-
-  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
-                                     const VectorXd& values) const override {
-    return further_fibres(model, refitted, values);
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    switch (edge) {
+      case FormEdge::refit:
+        return refits(model, from, values);
+      case FormEdge::plainer:
+        return plainer_stiffnesses(model, from, values);
+      case FormEdge::further:
+        return further_fibres(model, from, values);
+      default:
+        return {};
+    }
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -117,6 +109,16 @@ class Anisotropy final : public Effect {
   }
 
  private:
+  std::vector<NextForm> refits(const Model& model, const Ingredient& scored,
+                               const VectorXd& values) const {
+    if (!additive_base(model))
+      if (auto pulling = refit_of_pulling(model, scored, values); !pulling.empty()) return pulling;
+    const auto numbers = numbers_in(scored.variant());
+    if (!starts_with(scored.variant(), "along") || numbers.size() != 3) return {};
+    return {{free_around(model, Vector3d(numbers[0], numbers[1], numbers[2])),
+             Vector3d(values[0], 0.0, 0.0)}};
+  }
+
   static Parameter stiffness(const Model& model) {
     const double mu = initial_shear_modulus(model.energy);
     return {"anisotropy.k",

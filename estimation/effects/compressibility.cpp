@@ -156,19 +156,20 @@ class Compressibility final : public Effect {
     return variant == "bulk modulus" && !free.empty() ? modulus_form(model, free) : nullptr;
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
     const auto free = free_volumetric(model);
-    if (scored->variant() == "bulk modulus" || values.size() != static_cast<int>(free.size()))
-      return scored;
+    if (edge != FormEdge::refit || from.variant() == "bulk modulus" ||
+        values.size() != static_cast<int>(free.size()))
+      return {};
+    VectorXd start(values.size());
     for (size_t i = 0; i < free.size(); ++i) {
       const EnergyTerm& term = *model.energy.parts[free[i].part].term;
       // a linear prediction may overshoot what is possible
       const double ratio = ratio_of(std::clamp(values[i], 0.05, 0.495));
-      values[i] = std::max(value_of_ratio(term, free[i], ratio), 1e-6 * initial_moduli(term).mu);
+      start[i] = std::max(value_of_ratio(term, free[i], ratio), 1e-6 * initial_moduli(term).mu);
     }
-    return modulus_form(model, free);
+    return {{modulus_form(model, free), std::move(start)}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

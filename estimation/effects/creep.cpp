@@ -76,12 +76,12 @@ class Creep final : public Effect {
     return levelling_form(model, variant);
   }
 
-  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
-                                     const VectorXd& values) const override {
-    if (values.size() != 1) return {};
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge != FormEdge::further || values.size() != 1) return {};
     const double last = static_cast<double>(model.examples.size()) - 1.0;
     // Nearly a line over twice all examples; half of it after a third of them as the logarithm's.
-    const double tau = refitted.variant() == kSteady ? 2.0 * last : 0.4 * last;
+    const double tau = from.variant() == kSteady ? 2.0 * last : 0.4 * last;
     return {{levelling_form(model, kRetarded), Eigen::Vector2d(values[0], tau)},
             {levelling_form(model, kRelaxing), Eigen::Vector2d(values[0], tau)}};
   }

@@ -65,15 +65,13 @@ class Exposure final : public Effect {
                                             const std::string& variant) const override {
     return variant == kWithHeldOut ? every_photo(model, true) : nullptr;
   }
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    if (scored->variant() != kEachPhoto) return scored;
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge != FormEdge::refit || from.variant() != kEachPhoto) return {};
     auto form = every_photo(model, true);
-    const VectorXd fitted = values;
-    values.setZero(static_cast<Eigen::Index>(form->parameters().size()));
-    values.head(fitted.size()) = fitted;
-    return form;
+    VectorXd start = VectorXd::Zero(static_cast<Eigen::Index>(form->parameters().size()));
+    start.head(values.size()) = values;
+    return {{std::move(form), std::move(start)}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

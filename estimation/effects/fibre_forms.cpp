@@ -12,8 +12,8 @@ const char* const kPullingAlong = "pulling along";
 const char* const kPulling = "free pulling around";
 const char* const kPullingVolume = "free pulling, volume counted, around";
 
-std::vector<Effect::Further> after_fibre(const Model& model, const Vector3d& a, double k) {
-  std::vector<Effect::Further> all;
+std::vector<NextForm> after_fibre(const Model& model, const Vector3d& a, double k) {
+  std::vector<NextForm> all;
   if (k > 0.0) {
     const Eigen::Vector4d pulling(k, 0.0, 0.0, 0.0);
     all.push_back({pulling_around(model, a, false), pulling});
@@ -48,11 +48,11 @@ std::shared_ptr<const Ingredient> pulling_along(const Model& model, const Vector
   return make_ingredient(std::move(spec));
 }
 
-std::shared_ptr<const Ingredient> refit_of_pulling(const Model& model, const Ingredient& scored,
-                                                   VectorXd& values) {
-  if (!starts_with(scored.variant(), kPullingAlong)) return nullptr;
-  values = Eigen::Vector4d(values[0], 0.0, 0.0, 0.0);
-  return pulling_around(model, rounded(base_axis(scored), 1.0), false);
+std::vector<NextForm> refit_of_pulling(const Model& model, const Ingredient& scored,
+                                       const VectorXd& values) {
+  if (!starts_with(scored.variant(), kPullingAlong)) return {};
+  return {{pulling_around(model, rounded(base_axis(scored), 1.0), false),
+           Eigen::Vector4d(values[0], 0.0, 0.0, 0.0)}};
 }
 
 std::shared_ptr<const Ingredient> pulling_around(const Model& model, const Vector3d& a,
@@ -87,8 +87,8 @@ std::shared_ptr<const Ingredient> fibre_form(const Model& model, const std::stri
   return nullptr;
 }
 
-std::vector<Effect::Further> further_fibres(const Model& model, const Ingredient& refitted,
-                                            const VectorXd& values) {
+std::vector<NextForm> further_fibres(const Model& model, const Ingredient& refitted,
+                                     const VectorXd& values) {
   if (additive_base(model)) return {};
   if (starts_with(refitted.variant(), "free around"))
     return after_fibre(model, rounded(turned(base_axis(refitted), values[1], values[2]), 1.0),
@@ -96,7 +96,7 @@ std::vector<Effect::Further> further_fibres(const Model& model, const Ingredient
   if (!starts_with(refitted.variant(), kPulling))
     return further_stiffnesses(model, refitted, values);
   const Vector3d a = rounded(base_axis(refitted), 1.0);
-  std::vector<Effect::Further> all = {{pulling_around(model, a, true), values}};
+  std::vector<NextForm> all = {{pulling_around(model, a, true), values}};
   for (auto& form : stiffnesses_after_fibre(model, a, values[0])) all.push_back(std::move(form));
   return all;
 }

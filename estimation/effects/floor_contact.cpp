@@ -154,60 +154,96 @@ class FloorContact final : public Effect {
     return nullptr;
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    const auto plane = scored_plane(scored->variant());
-    if (!plane) return scored;
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    switch (edge) {
+      case FormEdge::refit:
+        return freed_planes(model, from, values);
+      case FormEdge::smaller:
+        return hardened(model, from, values);
+      case FormEdge::plainer:
+        return straightened(model, from, values);
+      case FormEdge::further:
+        return softer_or_tilted(model, from, values);
+    }
+    return {};
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    const std::string length = model.scene->capture.units.length;
+    const std::string unit = model.scene->capture.units.stress() + "/" + length;
+    const auto form = plane_form(ingredient.variant());
+    if (!form)
+      return fmt::format("the body touches a {} (contact stiffness {} {})", ingredient.variant(),
+                         figure(values[0]), unit);
+    const Plane plane = form->plane(values);
+    const double gap = plane.out.dot(plane.through) - reach(*model.scene, plane.out);
+    const std::string side = form->tilts
+                                 ? fmt::format("its side towards {}", vector_text(plane.out))
+                                 : fmt::format("its {} side", kSides[form->side]);
+    const std::string place =
+        form->tilts ? ", around " + place_text(plane.through, body_size(*model.scene).size) : "";
+    return fmt::format(
+        "the body touches a {} on {}, {} {} from where it ends at rest{}{}",
+        form->hard ? "plane" : "cushion", side, figure(gap), length, place,
+        form->hard ? "" : fmt::format(" (stiffness {} {})", figure(values[1]), unit));
+  }
+
+ private:
+  std::vector<NextForm> freed_planes(const Model& model, const Ingredient& scored,
+                                     const VectorXd& values) const {
+    const auto plane = scored_plane(scored.variant());
+    if (!plane) return {};
     // Tilt is freed where the score asks for it: free at an axis as well, a cushion at the body's
     // end imitates softening and outruns it. Frames are laid along tables and walls: what is next
     // to an axis of the frame starts as normal to it.
     for (int side = 0; side < 6; ++side)
       if (plane->out.dot(outward(side)) > std::cos(kLeaning)) {
         const double position = pressed(model, *plane).dot(outward(side));
-        values =
-            Eigen::Vector2d(plane->out == outward(side) ? plane->position : position, values[0]);
-        return refitted(model, {false, false, side, outward(side)});
+        return {
+            {refitted(model, {false, false, side, outward(side)}),
+             Eigen::Vector2d(plane->out == outward(side) ? plane->position : position, values[0])}};
       }
-    values = Eigen::Vector4d(plane->position, values[0], 0.0, 0.0);
     const Vector3d out = rounded(plane->out, 1.0);
-    return refitted(model, {false, true, -1, out, pressed(model, *plane)});
+    return {{refitted(model, {false, true, -1, out, pressed(model, *plane)}),
+             Eigen::Vector4d(plane->position, values[0], 0.0, 0.0)}};
   }
 
-  std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& larger,
-                                                 VectorXd& values) const override {
-    auto form = plane_form(larger.variant());
-    if (!form || form->hard) return nullptr;
+  std::vector<NextForm> hardened(const Model& model, const Ingredient& cushion,
+                                 const VectorXd& values) const {
+    auto form = plane_form(cushion.variant());
+    if (!form || form->hard) return {};
     form->hard = true;
-    const VectorXd cushion = values;
-    values.resize(form->tilts ? 3 : 1);
-    values << cushion[0], cushion.tail(values.size() - 1);
-    return refitted(model, *form);
+    VectorXd start(form->tilts ? 3 : 1);
+    start << values[0], values.tail(start.size() - 1);
+    return {{refitted(model, *form), std::move(start)}};
   }
 
-  std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& larger,
-                                                 VectorXd& values) const override {
-    const auto form = plane_form(larger.variant());
-    if (!form || !form->tilts) return nullptr;
+  std::vector<NextForm> straightened(const Model& model, const Ingredient& tilted,
+                                     const VectorXd& values) const {
+    const auto form = plane_form(tilted.variant());
+    if (!form || !form->tilts) return {};
     const Plane plane = form->plane(values);
     for (int side = 0; side < 6; ++side) {
       if (plane.out.dot(outward(side)) < std::cos(kHalfStep)) continue;
-      values.conservativeResize(values.size() - 2);
-      values[0] = plane.through.dot(outward(side));
-      return refitted(model,
-                      {form->hard, false, side, outward(side), Vector3d::Zero(), form->stiffness});
+      VectorXd start = values.head(values.size() - 2);
+      start[0] = plane.through.dot(outward(side));
+      return {{refitted(model, {form->hard, false, side, outward(side), Vector3d::Zero(),
+                                form->stiffness}),
+               std::move(start)}};
     }
-    return nullptr;
+    return {};
   }
 
   /// A cushion as stiff as the hard plane is, and free: a corner sinks into what is hard to a face.
   /// A plane that stood normal to an axis, tilting about where it is pressed: one up to half a step
   /// of the grid off looks like that.
-  std::vector<Further> further_forms(const Model& model, const Ingredient& narrow,
-                                     const VectorXd& values) const override {
+  std::vector<NextForm> softer_or_tilted(const Model& model, const Ingredient& narrow,
+                                         const VectorXd& values) const {
     const auto form = plane_form(narrow.variant());
     if (!form) return {};
-    std::vector<Further> all;
+    std::vector<NextForm> all;
     if (form->hard) {
       PlaneForm cushion = *form;
       cushion.hard = false, cushion.stiffness = 0.0;
@@ -237,28 +273,6 @@ class FloorContact final : public Effect {
     return all;
   }
 
-  std::string sentence(const Model& model, const Ingredient& ingredient,
-                       const VectorXd& values) const override {
-    const std::string length = model.scene->capture.units.length;
-    const std::string unit = model.scene->capture.units.stress() + "/" + length;
-    const auto form = plane_form(ingredient.variant());
-    if (!form)
-      return fmt::format("the body touches a {} (contact stiffness {} {})", ingredient.variant(),
-                         figure(values[0]), unit);
-    const Plane plane = form->plane(values);
-    const double gap = plane.out.dot(plane.through) - reach(*model.scene, plane.out);
-    const std::string side = form->tilts
-                                 ? fmt::format("its side towards {}", vector_text(plane.out))
-                                 : fmt::format("its {} side", kSides[form->side]);
-    const std::string place =
-        form->tilts ? ", around " + place_text(plane.through, body_size(*model.scene).size) : "";
-    return fmt::format(
-        "the body touches a {} on {}, {} {} from where it ends at rest{}{}",
-        form->hard ? "plane" : "cushion", side, figure(gap), length, place,
-        form->hard ? "" : fmt::format(" (stiffness {} {})", figure(values[1]), unit));
-  }
-
- private:
   std::shared_ptr<const Ingredient> soft(const Model& model, const ScoredPlane& scored) const {
     const double k = soft_stiffness(model);
     const Units& units = model.scene->capture.units;

@@ -201,7 +201,7 @@ std::shared_ptr<const Ingredient> graded_form(const Model& model, const std::str
   return layers(model, Vector3d(n[0], n[1], n[2]));
 }
 
-std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& log_factor) {
+std::vector<NextForm> further_grades(const Model& model, const VectorXd& log_factor) {
   const Scene& scene = *model.scene;
   const TetMesh& mesh = scene.body->mesh;
   const BodySize body = body_size(scene);
@@ -216,13 +216,13 @@ std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& 
           {layers(model, across), in_layers}};
 }
 
-Effect::Further layers_like(const Model& model, const Vector3d& across, double a) {
+NextForm layers_like(const Model& model, const Vector3d& across, double a) {
   VectorXd values(5);
   values << a, 0.0, 0.0, 0.0, 0.05 * body_size(*model.scene).size;
   return {.form = layers(model, across), .values = values};
 }
 
-Effect::Further ball_like(const Model& model, const VectorXd& blob, int place) {
+NextForm ball_like(const Model& model, const VectorXd& blob, int place) {
   VectorXd values(6);
   values << blob[0] / std::sqrt(8.0), blob.segment<3>(1),
       std::cbrt(6.0 * std::sqrt(EIGEN_PI)) * blob[4], 0.0;

@@ -17,12 +17,12 @@ bool is_graded(const std::string& variant);
 /// within a ball, as an inclusion is. Null: another variant.
 std::shared_ptr<const Ingredient> graded_form(const Model& model, const std::string& variant);
 /// Gradient and layers, where they are most like a log of the stiffness told element by element.
-std::vector<Effect::Further> further_grades(const Model& model, const VectorXd& log_factor);
+std::vector<NextForm> further_grades(const Model& model, const VectorXd& log_factor);
 /// Two layers parted through the body's middle: exp(a) times as stiff beyond as before.
-Effect::Further layers_like(const Model& model, const Vector3d& across, double a);
+NextForm layers_like(const Model& model, const Vector3d& across, double a);
 /// The ball, where it is most like a Gaussian of these values (free_place): of one integral over
 /// the body of its logarithm and of that squared.
-Effect::Further ball_like(const Model& model, const VectorXd& blob, int place = 1);
+NextForm ball_like(const Model& model, const VectorXd& blob, int place = 1);
 /// a, x, y, z, radius: one place of free amplitude in the log of the stiffness.
 std::vector<Parameter> free_place(const Model& model);
 /// Over which a ball's edge is smeared: thinner is a jump to every mesh, thicker than the body a

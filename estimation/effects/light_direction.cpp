@@ -84,28 +84,14 @@ class LightDirection final : public Effect {
     return nullptr;
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    const bool turned = starts_with(scored->variant(), kSun);
-    if (!turned && !starts_with(scored->variant(), kStrength)) return scored;
-    auto form = rebuild(model, kLamp + when(scored->variant()));
-    if (!form) return scored;
-    values = turned ? Vector3d(values[0], values[1], 0.0) : Vector3d(0.0, 0.0, values[0]);
-    return form;
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge == FormEdge::refit) return whole_lamp(model, from, values);
+    return edge == FormEdge::plainer ? angles_or_strength(model, from, values)
+                                     : std::vector<NextForm>{};
   }
 
   /// Without what is nearer to nothing, in units of what counts as large.
-  std::shared_ptr<const Ingredient> plainer_form(const Model& model, const Ingredient& refitted,
-                                                 VectorXd& values) const override {
-    if (!starts_with(refitted.variant(), kLamp)) return nullptr;
-    const auto parameters = refitted.parameters();
-    const bool turned = values.head<2>().norm() / parameters[0].typical >=
-                        std::abs(values[2]) / parameters[2].typical;
-    values = turned ? VectorXd(values.head<2>()) : VectorXd(values.tail<1>());
-    return rebuild(model, (turned ? kSun : kStrength) + when(refitted.variant()));
-  }
-
   std::string sentence(const Model& model, const Ingredient& ingredient,
                        const VectorXd& values) const override {
     const std::string variant = ingredient.variant();
@@ -125,6 +111,27 @@ class LightDirection final : public Effect {
   }
 
  private:
+  std::vector<NextForm> whole_lamp(const Model& model, const Ingredient& scored,
+                                   const VectorXd& values) const {
+    const bool turned = starts_with(scored.variant(), kSun);
+    if (!turned && !starts_with(scored.variant(), kStrength)) return {};
+    auto form = rebuild(model, kLamp + when(scored.variant()));
+    if (!form) return {};
+    return {{std::move(form),
+             turned ? Vector3d(values[0], values[1], 0.0) : Vector3d(0.0, 0.0, values[0])}};
+  }
+
+  std::vector<NextForm> angles_or_strength(const Model& model, const Ingredient& lamp,
+                                           const VectorXd& values) const {
+    if (!starts_with(lamp.variant(), kLamp)) return {};
+    const auto parameters = lamp.parameters();
+    const bool turned = values.head<2>().norm() / parameters[0].typical >=
+                        std::abs(values[2]) / parameters[2].typical;
+    auto form = rebuild(model, (turned ? kSun : kStrength) + when(lamp.variant()));
+    if (!form) return {};
+    return {{std::move(form), turned ? VectorXd(values.head<2>()) : VectorXd(values.tail<1>())}};
+  }
+
   static std::vector<Stretch> sun_stretches(const Model& model) {
     return stretches(*model.scene, [&](int e) { return any_sun(model.examples[e]); });
   }

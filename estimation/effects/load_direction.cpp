@@ -86,12 +86,13 @@ class LoadDirection final : public Effect {
   /// The same turn from the other side. A slender body bends under what pushes it sideways and
   /// hardly gives along its length: of a load that points far from where it was told a refit
   /// settles the part across, and may keep the part along with the wrong sign.
-  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
-                                     const VectorXd& values) const override {
-    const auto loaded = turned_examples(model, refitted.variant());
-    auto form = candidate(model, refitted.variant());
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge != FormEdge::further) return {};
+    const auto loaded = turned_examples(model, from.variant());
+    auto form = candidate(model, from.variant());
     if (loaded.empty() || !form) return {};
-    const auto axes = axes_of(model, loaded, refitted.variant());
+    const auto axes = axes_of(model, loaded, from.variant());
     if (axes.size() != 2) return {};
     const Vector3d told = leading_force(model.scene->capture.examples[loaded.front()]);
     const Vector3d now = rotation_of(turn_about(axes, values)) * told;

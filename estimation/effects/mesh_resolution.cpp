@@ -73,12 +73,11 @@ class MeshResolution final : public Effect {
     return remeshes(variant) ? refined(model, variant) : nullptr;
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    const std::string variant = scored->variant().substr(std::string("change by ").size());
-    values.setZero(1);
-    return refined(model, variant);
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd&) const override {
+    const std::string change = "change by ";
+    if (edge != FormEdge::refit || !starts_with(from.variant(), change)) return {};
+    return {{refined(model, from.variant().substr(change.size())), VectorXd::Zero(1)}};
   }
 
   bool remeshes(const std::string& variant) const override {

@@ -154,13 +154,13 @@ class SoftClamp final : public Effect {
     return spring_form(model, region);
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    if (starts_with(scored->variant(), "springs")) return scored;
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge != FormEdge::refit || starts_with(from.variant(), "springs")) return {};
     const double typical = typical_compliance(model);
-    for (double& c : values) c = 1.0 / std::clamp(c, 1e-2 * typical, 1e2 * typical);
-    return spring_form(model, scored->variant());
+    VectorXd stiffnesses = values;
+    for (double& c : stiffnesses) c = 1.0 / std::clamp(c, 1e-2 * typical, 1e2 * typical);
+    return {{spring_form(model, from.variant()), std::move(stiffnesses)}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

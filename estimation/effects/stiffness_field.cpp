@@ -92,38 +92,66 @@ class StiffnessField final : public Effect {
     return field(model, bumps->centres, bumps->radius, std::make_shared<ScaledForces>());
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    if (const auto across = across_of(scored->variant())) {
-      const Effect::Further layers = layers_like(model, *across, values[0]);
-      values = layers.values;
-      return layers.form;
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    switch (edge) {
+      case FormEdge::refit:
+        return freely_placed(model, from, values);
+      case FormEdge::smaller:
+        return likest_blob(model, from, values);
+      case FormEdge::further:
+        return further(model, from, values);
+      default:
+        return {};
     }
-    const auto [form, nth] = place_variant(scored->variant());
+  }
+
+  std::string sentence(const Model& model, const Ingredient& ingredient,
+                       const VectorXd& values) const override {
+    if (starts_with(ingredient.variant(), "field"))
+      return fmt::format("stiffness varies over the body by factors from {} to {}",
+                         figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
+    if (is_places(ingredient.variant())) return places_sentence(model, ingredient, values);
+    if (is_graded(ingredient.variant())) return graded_sentence(model, ingredient, values);
+    if (const auto across = across_of(ingredient.variant())) {
+      const NextForm layers = layers_like(model, *across, values[0]);
+      return graded_sentence(model, *layers.form, layers.values);
+    }
+    const Blob place = values.size() == 5 ? blob_of(ingredient, values)
+                                          : *blob_in(place_variant(ingredient.variant()).form);
+    return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
+                       values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
+                       figure(place.radius), model.scene->capture.units.length,
+                       place_text(place.centre, body_size(*model.scene).size));
+  }
+
+ private:
+  std::vector<NextForm> freely_placed(const Model& model, const Ingredient& scored,
+                                      const VectorXd& values) const {
+    if (const auto across = across_of(scored.variant()))
+      return {layers_like(model, *across, values[0])};
+    const auto [form, nth] = place_variant(scored.variant());
     const auto place = blob_in(form);
-    if (!place) return scored;
-    values = freed(*place, values[0]);
-    return free_blob(model, nth);
+    if (!place) return {};
+    return {{free_blob(model, nth), freed(*place, values[0])}};
   }
 
   /// The one blob that is most like the field but for its mean.
-  std::shared_ptr<const Ingredient> smaller_form(const Model& model, const Ingredient& refitted,
-                                                 VectorXd& values) const override {
-    const auto bumps = bumps_in(refitted.variant());
-    if (!bumps) return nullptr;
+  std::vector<NextForm> likest_blob(const Model& model, const Ingredient& field,
+                                    const VectorXd& values) const {
+    const auto bumps = bumps_in(field.variant());
+    if (!bumps) return {};
     const auto [place, amplitude] =
         likest_place(model.scene->body->mesh, bumps->centres, bumps->radius, values);
-    values = freed(place, amplitude);
-    return free_blob(model, 1);
+    return {{free_blob(model, 1), freed(place, amplitude)}};
   }
 
-  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
-                                     const VectorXd& values) const override {
+  std::vector<NextForm> further(const Model& model, const Ingredient& refitted,
+                                const VectorXd& values) const {
     if (is_graded(refitted.variant())) return {};
     if (is_places(refitted.variant())) {
       const auto balls = balls_like(model, refitted, values);
-      return balls ? std::vector<Further>{*balls} : std::vector<Further>{};
+      return balls ? std::vector<NextForm>{*balls} : std::vector<NextForm>{};
     }
     const auto [form, nth] = place_variant(refitted.variant());
     if (nth > 1) return {ball_like(model, values, nth)};
@@ -144,26 +172,6 @@ class StiffnessField final : public Effect {
     return all;
   }
 
-  std::string sentence(const Model& model, const Ingredient& ingredient,
-                       const VectorXd& values) const override {
-    if (starts_with(ingredient.variant(), "field"))
-      return fmt::format("stiffness varies over the body by factors from {} to {}",
-                         figure(std::exp(values.minCoeff())), figure(std::exp(values.maxCoeff())));
-    if (is_places(ingredient.variant())) return places_sentence(model, ingredient, values);
-    if (is_graded(ingredient.variant())) return graded_sentence(model, ingredient, values);
-    if (const auto across = across_of(ingredient.variant())) {
-      const Effect::Further layers = layers_like(model, *across, values[0]);
-      return graded_sentence(model, *layers.form, layers.values);
-    }
-    const Blob place = values.size() == 5 ? blob_of(ingredient, values)
-                                          : *blob_in(place_variant(ingredient.variant()).form);
-    return fmt::format("a {} place {} times as stiff as the rest, of radius {} {} around {}",
-                       values[0] >= 0 ? "stiff" : "soft", figure(std::exp(values[0])),
-                       figure(place.radius), model.scene->capture.units.length,
-                       place_text(place.centre, body_size(*model.scene).size));
-  }
-
- private:
   /// Free ones: a fixed one's derivative scales all parts that have weights, another place's too.
   static bool is_place(const std::string& variant) {
     const std::string form = place_variant(variant).form;

@@ -251,7 +251,7 @@ VectorXd fibre_at_rest(double k) {
 /// The transverse form around each axis of an orthotropic one: the axis that the fibre stood for
 /// may be another than that of the symmetry. Each starts near the base law, where it has an
 /// equilibrium: what eleven values share between them may have none in five.
-void add_transverse(const Model& model, const Matrix3d& frame, std::vector<Effect::Further>& all) {
+void add_transverse(const Model& model, const Matrix3d& frame, std::vector<NextForm>& all) {
   VectorXd start = VectorXd::Zero(5);
   start.head(2).setConstant(0.1 * initial_shear_modulus(model.energy));
   for (int i = 0; i < 3; ++i)
@@ -259,7 +259,7 @@ void add_transverse(const Model& model, const Matrix3d& frame, std::vector<Effec
 }
 
 /// From the same stiffnesses.
-void add_all(const Model& model, const Stiffness6& C, std::vector<Effect::Further>& all) {
+void add_all(const Model& model, const Stiffness6& C, std::vector<NextForm>& all) {
   if (is_isotropic_at_rest(model.energy))
     all.push_back({all_stiffnesses(model), values_of(C, 0.0)});
 }
@@ -308,19 +308,18 @@ std::shared_ptr<const Ingredient> stiffness_form(const Model& model, const std::
   return starts_with(variant, kOrthotropic) ? orthotropic_around(model, a) : nullptr;
 }
 
-std::vector<Effect::Further> stiffnesses_after_fibre(const Model& model, const Vector3d& a,
-                                                     double k) {
+std::vector<NextForm> stiffnesses_after_fibre(const Model& model, const Vector3d& a, double k) {
   // A fibre that hardly stretches, or only pulls, is no guide: where both push as well, the body
   // may have no equilibrium.
   const VectorXd start = fibre_at_rest(std::min(k, initial_shear_modulus(model.energy)));
-  std::vector<Effect::Further> all = {{transverse_around(model, a), start}};
+  std::vector<NextForm> all = {{transverse_around(model, a), start}};
   add_all(model, in_rest_axes(transverse_stiffnesses(start), frame_along(a)), all);
   return all;
 }
 
-std::vector<Effect::Further> further_stiffnesses(const Model& model, const Ingredient& refitted,
-                                                 const VectorXd& values) {
-  std::vector<Effect::Further> all;
+std::vector<NextForm> further_stiffnesses(const Model& model, const Ingredient& refitted,
+                                          const VectorXd& values) {
+  std::vector<NextForm> all;
   if (starts_with(refitted.variant(), kTransverse)) {
     // In the plane across, the axes are anyone's: turned by 45 degrees they see another shear.
     const Vector3d a = rounded(base_axis(refitted), 1.0);
@@ -338,10 +337,9 @@ std::vector<Effect::Further> further_stiffnesses(const Model& model, const Ingre
   return all;
 }
 
-std::shared_ptr<const Ingredient> plainer_stiffnesses(const Model& model,
-                                                      const Ingredient& refitted,
-                                                      VectorXd& values) {
-  if (refitted.variant() != kAll) return nullptr;
+std::vector<NextForm> plainer_stiffnesses(const Model& model, const Ingredient& refitted,
+                                          const VectorXd& values) {
+  if (refitted.variant() != kAll) return {};
   const Stiffness6 C = constants_of(values);
   const Matrix3d frame = symmetry_frame(C);
   const Vector3d a = rounded(frame.col(0), 1.0);
@@ -351,8 +349,7 @@ std::shared_ptr<const Ingredient> plainer_stiffnesses(const Model& model,
   plainer << own(0, 0), own(1, 1), own(2, 2), own(0, 1), own(0, 2), own(1, 2), own(5, 5), own(4, 4),
       0.0, 0.0, std::atan2(frame.col(1).dot(around.col(2)), frame.col(1).dot(around.col(1))),
       values[kConstants];
-  values = plainer;
-  return linear_orthotropic_around(model, a);
+  return {{linear_orthotropic_around(model, a), std::move(plainer)}};
 }
 
 std::string stiffness_sentence(const Model& model, const Ingredient& ingredient,

@@ -28,15 +28,13 @@ Parameter modulus_of(const Model& model, const std::string& name, const std::str
 ///   be a wrong one, and but for the share linear in its values.
 std::shared_ptr<const Ingredient> stiffness_form(const Model& model, const std::string& variant);
 /// Those to try after a fibre of modulus `k` along `a`.
-std::vector<Effect::Further> stiffnesses_after_fibre(const Model& model, const Vector3d& a,
-                                                     double k);
+std::vector<NextForm> stiffnesses_after_fibre(const Model& model, const Vector3d& a, double k);
 /// Those to try after one of the above.
-std::vector<Effect::Further> further_stiffnesses(const Model& model, const Ingredient& refitted,
-                                                 const VectorXd& values);
-/// Linear orthotropy that is most like all constants, `values` moved to it; null: `refitted` is not
-/// it.
-std::shared_ptr<const Ingredient> plainer_stiffnesses(const Model& model,
-                                                      const Ingredient& refitted, VectorXd& values);
+std::vector<NextForm> further_stiffnesses(const Model& model, const Ingredient& refitted,
+                                          const VectorXd& values);
+/// Linear orthotropy that is most like all constants; empty: `refitted` is not that form.
+std::vector<NextForm> plainer_stiffnesses(const Model& model, const Ingredient& refitted,
+                                          const VectorXd& values);
 /// What one of the above says in words; empty: `ingredient` is none.
 std::string stiffness_sentence(const Model& model, const Ingredient& ingredient,
                                const VectorXd& values);

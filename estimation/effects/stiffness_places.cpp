@@ -214,11 +214,11 @@ std::shared_ptr<const Ingredient> places_form(const Model& model, const std::str
   return form.count > 0 ? places_of(model, form) : nullptr;
 }
 
-std::vector<Effect::Further> places_like(const Model& model, const std::vector<Vector3d>& centres,
-                                         double radius, const VectorXd& values) {
+std::vector<NextForm> places_like(const Model& model, const std::vector<Vector3d>& centres,
+                                  double radius, const VectorXd& values) {
   // a place has five numbers: more of them say no less than the bumps
   const int most = (static_cast<int>(centres.size()) - 1) / 5;
-  std::vector<Effect::Further> out;
+  std::vector<NextForm> out;
   for (const StiffPlaces& one :
        likest_places(model.scene->body->mesh, centres, radius, values, most)) {
     const auto count = static_cast<int>(one.blobs.size());
@@ -231,8 +231,8 @@ std::vector<Effect::Further> places_like(const Model& model, const std::vector<V
   return out;
 }
 
-std::optional<Effect::Further> balls_like(const Model& model, const Ingredient& blobs,
-                                          const VectorXd& values) {
+std::optional<NextForm> balls_like(const Model& model, const Ingredient& blobs,
+                                   const VectorXd& values) {
   const Several form = several_in(blobs.variant());
   if (form.count == 0 || form.balls) return {};
   VectorXd start(values.size() + 1);
@@ -243,7 +243,7 @@ std::optional<Effect::Further> balls_like(const Model& model, const Ingredient& 
     thickness += ball[5] / form.count;
   }
   start[values.size()] = thickness;
-  return Effect::Further{
+  return NextForm{
       .form = places_of(model, {form.count, true}), .values = start, .same_claim = true};
 }
 

@@ -31,11 +31,11 @@ std::shared_ptr<const Ingredient> places_form(const Model& model, const std::str
 bool is_places(const std::string& variant);
 /// Two blobs, three and so on, where a field of bumps is most like them; as few numbers as bumps,
 /// at most. (One is the field's smaller form.) Photos tell how many: the field itself hardly does.
-std::vector<Effect::Further> places_like(const Model& model, const std::vector<Vector3d>& centres,
-                                         double radius, const VectorXd& values);
+std::vector<NextForm> places_like(const Model& model, const std::vector<Vector3d>& centres,
+                                  double radius, const VectorXd& values);
 /// Balls in place of blobs, each as ball_like() has it. Nothing: they are balls.
-std::optional<Effect::Further> balls_like(const Model& model, const Ingredient& blobs,
-                                          const VectorXd& values);
+std::optional<NextForm> balls_like(const Model& model, const Ingredient& blobs,
+                                   const VectorXd& values);
 std::string places_sentence(const Model& model, const Ingredient& ingredient,
                             const VectorXd& values);
 

@@ -70,16 +70,15 @@ class StrainStiffening final : public Effect {
   }
 
   /// The same function with a control point in the middle; the power free.
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    if (scored->variant() == kScoredPower) {
-      values = Eigen::Vector2d(values[0], kPower);
-      return of_power(model, true);
-    }
-    if (!starts_with(scored->variant(), kAdditive)) return scored;
-    const auto at = refined_ramp(ramp_in(scored->variant()), values);
-    return of_additive(model, at);
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge != FormEdge::refit) return {};
+    if (from.variant() == kScoredPower)
+      return {{of_power(model, true), Eigen::Vector2d(values[0], kPower)}};
+    if (!starts_with(from.variant(), kAdditive)) return {};
+    VectorXd finer = values;
+    const auto at = refined_ramp(ramp_in(from.variant()), finer);
+    return {{of_additive(model, at), std::move(finer)}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

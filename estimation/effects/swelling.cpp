@@ -89,30 +89,12 @@ class Swelling final : public Effect {
     return blob(model, place->centre, place->radius, forces_by_log_stretch());
   }
 
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    const auto place = blob_in(scored->variant());
-    if (!place) return scored;
-    values = freed(*place, values[0]);
-    return free_blob(model);
-  }
-
-  std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
-                                     const VectorXd& values) const override {
-    if (starts_with(refitted.variant(), "field")) return {};
-    const Scene& scene = *model.scene;
-    Model with = model;
-    refitted.apply(values, with);
-    VectorXd present = VectorXd::Ones(scene.body->mesh.size());
-    if (with.energy.swelling.size() > 0) present = with.energy.swelling;
-    if (model.energy.swelling.size() > 0) present = present.cwiseQuotient(model.energy.swelling);
-    const double radius = bump_radius(scene, kSwellingBumps);
-    const auto centres = spread_centres(scene, kSwellingBumps);
-    const std::vector<Further> all = {{gradient(model), in_fields(linear_fields(scene), present)},
-                                      {field(model, centres, radius),
-                                       in_fields(field_of_bumps(scene, centres, radius), present)}};
-    return refitted.variant() == kFreeGradient ? std::vector<Further>{all[1]} : all;
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge == FormEdge::further) return gradient_and_field(model, from, values);
+    const auto place = blob_in(from.variant());
+    if (edge != FormEdge::refit || !place) return {};
+    return {{free_blob(model), freed(*place, values[0])}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,
@@ -144,6 +126,24 @@ class Swelling final : public Effect {
   }
 
  private:
+  std::vector<NextForm> gradient_and_field(const Model& model, const Ingredient& refitted,
+                                           const VectorXd& values) const {
+    if (starts_with(refitted.variant(), "field")) return {};
+    const Scene& scene = *model.scene;
+    Model with = model;
+    refitted.apply(values, with);
+    VectorXd present = VectorXd::Ones(scene.body->mesh.size());
+    if (with.energy.swelling.size() > 0) present = with.energy.swelling;
+    if (model.energy.swelling.size() > 0) present = present.cwiseQuotient(model.energy.swelling);
+    const double radius = bump_radius(scene, kSwellingBumps);
+    const auto centres = spread_centres(scene, kSwellingBumps);
+    const std::vector<NextForm> all = {
+        {gradient(model), in_fields(linear_fields(scene), present)},
+        {field(model, centres, radius),
+         in_fields(field_of_bumps(scene, centres, radius), present)}};
+    return refitted.variant() == kFreeGradient ? std::vector<NextForm>{all[1]} : all;
+  }
+
   static Parameter stretch() {
     return {"swelling.s", "", "change of length", 0.0, -0.5, 1.0, 0.01, false};
   }

@@ -122,12 +122,12 @@ class TensionCompressionAsymmetry final : public Effect {
   }
 
   /// The same function with a control point in the middle.
-  std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                               std::shared_ptr<const Ingredient> scored,
-                                               VectorXd& values) const override {
-    if (!starts_with(scored->variant(), kAdditive)) return scored;
-    const auto at = refined_ramp(ramp_in(scored->variant()), values);
-    return of_additive(model, starts_with(scored->variant(), kTension), at);
+  std::vector<NextForm> forms_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                   const VectorXd& values) const override {
+    if (edge != FormEdge::refit || !starts_with(from.variant(), kAdditive)) return {};
+    VectorXd finer = values;
+    const auto at = refined_ramp(ramp_in(from.variant()), finer);
+    return {{of_additive(model, starts_with(from.variant(), kTension), at), std::move(finer)}};
   }
 
   std::string sentence(const Model& model, const Ingredient& ingredient,

@@ -37,12 +37,9 @@ class Forms {
     while (!open_.empty()) {
       const Open one = open_.front();
       open_.pop_front();
-      if (!one.refit) {
-        VectorXd values = one.values;
-        const auto refitted = effect_.refit_form(model_, one.form, values);
-        if (refitted != one.form) take(refitted, values, true);
-      }
-      go_on_from(one);
+      if (!one.refit) go_on_from(one, FormEdge::refit);
+      for (const FormEdge edge : {FormEdge::further, FormEdge::smaller, FormEdge::plainer})
+        go_on_from(one, edge);
     }
     for (DeclaredForm& form : all_)
       if (form.refit) form.ways = 1;
@@ -56,13 +53,9 @@ class Forms {
     bool refit;
   };
 
-  void go_on_from(const Open& one) {
-    for (const auto& further : effect_.further_forms(model_, *one.form, one.values))
-      take(further.form, further.values, true);
-    VectorXd values = one.values;
-    if (auto smaller = effect_.smaller_form(model_, *one.form, values)) take(smaller, values, true);
-    values = one.values;
-    if (auto plainer = effect_.plainer_form(model_, *one.form, values)) take(plainer, values, true);
+  void go_on_from(const Open& one, FormEdge edge) {
+    for (const NextForm& next : effect_.forms_from(edge, model_, *one.form, one.values))
+      take(next.form, next.values, true);
   }
 
   const Effect& effect_;

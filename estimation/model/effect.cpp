@@ -33,25 +33,22 @@ std::shared_ptr<const Scene> Effect::refit_scene(const Scene&, const std::string
   return nullptr;
 }
 
-std::shared_ptr<const Ingredient> Effect::smaller_form(const Model&, const Ingredient&,
-                                                       Eigen::VectorXd&) const {
-  return nullptr;
-}
-
-std::shared_ptr<const Ingredient> Effect::plainer_form(const Model&, const Ingredient&,
-                                                       Eigen::VectorXd&) const {
-  return nullptr;
-}
-
-std::vector<Effect::Further> Effect::further_forms(const Model&, const Ingredient&,
-                                                   const Eigen::VectorXd&) const {
+std::vector<NextForm> Effect::forms_from(FormEdge, const Model&, const Ingredient&,
+                                         const Eigen::VectorXd&) const {
   return {};
 }
 
-std::shared_ptr<const Ingredient> Effect::refit_form(const Model&,
-                                                     std::shared_ptr<const Ingredient> scored,
-                                                     Eigen::VectorXd&) const {
-  return scored;
+std::optional<NextForm> Effect::form_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                          const Eigen::VectorXd& values) const {
+  auto all = forms_from(edge, model, from, values);
+  if (all.empty()) return std::nullopt;
+  return std::move(all.front());
+}
+
+NextForm Effect::refit_form(const Model& model, const std::shared_ptr<const Ingredient>& scored,
+                            const Eigen::VectorXd& values) const {
+  auto larger = form_from(FormEdge::refit, model, *scored, values);
+  return larger ? *std::move(larger) : NextForm{scored, values};
 }
 
 }  // namespace hookeye

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,29 @@ namespace hookeye {
 enum class EffectGroup { material, loads, supports, history, measurement, numerical };
 
 using Ingredients = std::vector<std::shared_ptr<const Ingredient>>;
+
+/// Why a fit goes on from one form of an effect to another.
+enum class FormEdge {
+  refit,    ///< larger, after the score named it (blob to field, compliance to log stiffness)
+  smaller,  ///< may say as much (a field that stands out in one place: one blob); kept where it
+            ///< misses no more
+  plainer,  ///< without numbers that may be nothing (a tilt, a lamp's strength beside its angles);
+            ///< kept where they do not pay for themselves
+  further   ///< another of the same meaning (fibres that only pull, creep that levels off), or the
+            ///< same form started in another valley: tried where more than noise is left
+};
+
+/// Another form of an effect, started where it is most like the one that leads to it.
+struct NextForm {
+  std::shared_ptr<const Ingredient> form;
+  Eigen::VectorXd values;
+  /// Another form of the same parameters, fitted from `values` first: `form` starts where it
+  /// ends. Null: `form` is fitted at once.
+  std::shared_ptr<const Ingredient> by_way_of = nullptr;
+  /// It says the same in another shape (a place that ends at an edge, or fades): it need not take
+  /// most of what is left, which may be another effect's.
+  bool same_claim = false;
+};
 
 /// One hypothesis: an ingredient whose null values leave the model unchanged.
 ///
@@ -44,37 +68,17 @@ class Effect {
   /// asked first by candidate(). Null: look among the candidates.
   virtual std::shared_ptr<const Ingredient> rebuild(const Model& model,
                                                     const std::string& variant) const;
-  /// Larger form to refit with after the score named the effect (blob to field, compliance to log
-  /// stiffness); default: the scored ingredient itself. `values` are moved to the new form's.
-  virtual std::shared_ptr<const Ingredient> refit_form(const Model& model,
-                                                       std::shared_ptr<const Ingredient> scored,
-                                                       Eigen::VectorXd& values) const;
-  /// A smaller form that may say as much once the larger one is refitted (a field that stands out
-  /// in one place: one blob). `values` are moved to it. Null: none; the default.
-  virtual std::shared_ptr<const Ingredient> smaller_form(const Model& model,
-                                                         const Ingredient& refitted,
-                                                         Eigen::VectorXd& values) const;
-  /// The same form without numbers that may turn out to be nothing: a tilt, a lamp's strength
-  /// beside its angles. `values` are moved to it. It is kept where they do not pay for themselves.
-  /// Null: none; the default.
-  virtual std::shared_ptr<const Ingredient> plainer_form(const Model& model,
-                                                         const Ingredient& refitted,
-                                                         Eigen::VectorXd& values) const;
-  /// Forms to try once the refitted one leaves more than noise, likeliest first: others of the same
-  /// meaning (fibres that only pull, creep that levels off), each started where it is most like
-  /// `refitted`, or the same form started in another valley. `model` is without the effect.
-  struct Further {
-    std::shared_ptr<const Ingredient> form;
-    Eigen::VectorXd values;
-    /// Another form of the same parameters, fitted from `values` first: `form` starts where it
-    /// ends. Null: `form` is fitted at once.
-    std::shared_ptr<const Ingredient> by_way_of = nullptr;
-    /// It says the same in another shape (a place that ends at an edge, or fades): it need not take
-    /// most of what is left, which may be another effect's.
-    bool same_claim = false;
-  };
-  virtual std::vector<Further> further_forms(const Model& model, const Ingredient& refitted,
-                                             const Eigen::VectorXd& values) const;
+  /// The forms to which one goes on from `from` at `values`, along edges of that kind, likeliest
+  /// first: the graph of the effect's forms. `model` is without the effect. Default: none.
+  virtual std::vector<NextForm> forms_from(FormEdge edge, const Model& model,
+                                           const Ingredient& from,
+                                           const Eigen::VectorXd& values) const;
+  /// The first of forms_from(). Empty: there is none.
+  std::optional<NextForm> form_from(FormEdge edge, const Model& model, const Ingredient& from,
+                                    const Eigen::VectorXd& values) const;
+  /// What a refit of a scored form fits: along FormEdge::refit, or the form itself.
+  NextForm refit_form(const Model& model, const std::shared_ptr<const Ingredient>& scored,
+                      const Eigen::VectorXd& values) const;
   /// Whether the form of this variant lives on another mesh than the capture tells; then
   /// refit_scene() makes the scene to fit on, from the capture of `scene`.
   virtual bool remeshes(const std::string& variant) const;

@@ -78,15 +78,11 @@ struct Reached {
 };
 
 /// All forms that the effect goes on to from there, wider ones first.
-std::vector<Effect::Further> onward(const Effect& effect, const Model& without,
-                                    const Reached& from) {
-  auto out = effect.further_forms(without, *from.form, from.values);
-  VectorXd values = from.values;
-  if (auto smaller = effect.smaller_form(without, *from.form, values))
-    out.push_back({std::move(smaller), values});
-  values = from.values;
-  if (auto plainer = effect.plainer_form(without, *from.form, values))
-    out.push_back({std::move(plainer), values});
+std::vector<NextForm> onward(const Effect& effect, const Model& without, const Reached& from) {
+  std::vector<NextForm> out;
+  for (const FormEdge edge : {FormEdge::further, FormEdge::smaller, FormEdge::plainer})
+    for (NextForm& next : effect.forms_from(edge, without, *from.form, from.values))
+      out.push_back(std::move(next));
   return out;
 }
 
@@ -106,7 +102,7 @@ VectorXd last_values(const Fitted& fitted) {
   return at.of(fitted.p, at.last());
 }
 
-Result<Fitted> further(Workspace& workspace, const Fitted& fitted, const Effect::Further& to,
+Result<Fitted> further(Workspace& workspace, const Fitted& fitted, const NextForm& to,
                        const FitOptions& options) {
   if (!to.by_way_of) return in_form(workspace, fitted, {to.form, to.values}, options);
   auto way = in_form(workspace, fitted, {to.by_way_of, to.values}, options);
@@ -142,14 +138,12 @@ Result<Fitted> add_effect_as(Workspace& workspace, const Fitted& current, const 
   const VectorXd own = last_values(*fitted);
   Model without = before.realise(fitted->p.head(before.size()));
   without.states = realised(*fitted).states;
-  const auto wanted = [&](const Effect::Further& one) {
-    return form_name(one.form->variant()) == form;
-  };
+  const auto wanted = [&](const NextForm& one) { return form_name(one.form->variant()) == form; };
   const auto first = onward(effect, without, {fitted->form.ingredients.back(), own});
-  for (const Effect::Further& one : first)
+  for (const NextForm& one : first)
     if (wanted(one)) return further(workspace, *fitted, one, options);
-  for (const Effect::Further& one : first)
-    for (const Effect::Further& next : onward(effect, without, {one.form, one.values}))
+  for (const NextForm& one : first)
+    for (const NextForm& next : onward(effect, without, {one.form, one.values}))
       if (wanted(next)) return further(workspace, *fitted, next, options);
   return no_result({"", 0.0,
                     "the refit ended as '" + fitted->form.ingredients.back()->variant() +

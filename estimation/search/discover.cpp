@@ -188,7 +188,7 @@ class Search {
   /// `now` with one of its effects in another form.
   static Step wider_step(const Fitted& now, Fitted wide) {
     size_t at = 0;
-    while (form_of(*now.form.ingredients[at]) == form_of(*wide.form.ingredients[at])) ++at;
+    while (key_of(*now.form.ingredients[at]) == key_of(*wide.form.ingredients[at])) ++at;
     const std::string name = wide.form.ingredients[at]->name();
     return step_with(name, std::move(wide), {name});
   }

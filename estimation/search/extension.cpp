@@ -38,11 +38,12 @@ std::pair<std::shared_ptr<const Ingredient>, VectorXd> entering(const Model& mod
   const auto scored = score.best->parameters();
   VectorXd nulls(score.values.size());
   for (int i = 0; i < nulls.size(); ++i) nulls[i] = scored[i].value;
-  VectorXd values = nulls + share * (score.values - nulls);
-  auto ingredient = find_effect(score.effect)->refit_form(model, score.best, values);
+  const VectorXd linear = nulls + share * (score.values - nulls);
+  auto [ingredient, values, by_way_of, same_claim] =
+      find_effect(score.effect)->refit_form(model, score.best, linear);
   if (remeshed_by(*ingredient)) {  // what the other mesh changes, linear, stands for it here
     ingredient = score.best;
-    values = nulls + share * (score.values - nulls);
+    values = linear;
   }
   const auto parameters = ingredient->parameters();
   for (int i = 0; i < values.size(); ++i)

@@ -6,6 +6,7 @@
 
 #include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
+#include "estimation/model/model_key.h"
 #include "estimation/search/discover.h"
 #include "estimation/search/extension.h"
 #include "estimation/search/kept_stiffness.h"
@@ -24,8 +25,8 @@ FitOptions warm(const FitOptions& options) {
 /// The refit form of `scored`, when it lives on a mesh of its own. Null: it does not.
 std::shared_ptr<const Ingredient> remeshing_form(const Model& model,
                                                  const std::shared_ptr<const Ingredient>& scored,
-                                                 VectorXd values) {
-  auto form = find_effect(scored->name())->refit_form(model, scored, values);
+                                                 const VectorXd& values) {
+  auto form = find_effect(scored->name())->refit_form(model, scored, values).form;
   return remeshed_by(*form) ? form : nullptr;
 }
 
@@ -38,33 +39,28 @@ Result<Fitted> fit_on_its_mesh(Workspace& workspace, const Model& model,
   return fit(workspace, form, start, from_rest);
 }
 
-/// `fitted` with another form of its last effect, which `change` makes of the present one and the
-/// model before it. Empty: it makes none.
-std::optional<std::pair<ModelForm, VectorXd>> with_other_form(
-    const Fitted& fitted,
-    std::shared_ptr<const Ingredient> (Effect::*change)(const Model&, const Ingredient&,
-                                                        VectorXd& values) const) {
+/// `fitted` with another form of its last effect, along that edge. Empty: none leads on.
+std::optional<std::pair<ModelForm, VectorXd>> with_other_form(const Fitted& fitted, FormEdge edge) {
   const Ingredient& last = *fitted.form.ingredients.back();
   const ParameterLayout at = fitted.form.layout();
   const VectorXd before = at.before(fitted.p, at.last());
   ModelForm other = fitted.form;
   other.ingredients.pop_back();
-  VectorXd values = at.of(fitted.p, at.last());
-  auto form = (find_effect(last.name())->*change)(other.realise(before), last, values);
-  if (!form) return std::nullopt;
-  const auto parameters = form->parameters();
+  auto next = find_effect(last.name())
+                  ->form_from(edge, other.realise(before), last, at.of(fitted.p, at.last()));
+  if (!next) return std::nullopt;
+  VectorXd& values = next->values;
+  const auto parameters = next->form->parameters();
   for (int i = 0; i < values.size(); ++i)
     values[i] = std::clamp(values[i], parameters[i].low, parameters[i].high);
-  other.ingredients.push_back(std::move(form));
+  other.ingredients.push_back(std::move(next->form));
   VectorXd there = at.with(fitted.p, at.last(), values);
   there = with_stiffness_of(fitted.form.realise(fitted.p), other, std::move(there));
   return std::pair{std::move(other), std::move(there)};
 }
 
-/// "stiffness_field as 'ball'" of the last effect.
-std::string form_in_words(const ModelForm& form) {
-  const Ingredient& last = *form.ingredients.back();
-  return last.name() + " as '" + last.variant() + "'";
+std::string last_in_words(const ModelForm& form) {
+  return key_of(*form.ingredients.back()).words();
 }
 
 /// One of the last effect's numbers that `plainer` does without is off its null by more than five
@@ -86,7 +82,7 @@ bool pays_for_itself(const Fitted& fitted, const Ingredient& plainer) {
 /// The plainer form of the last effect where what it does without does not pay for itself
 /// (refit_score), else `fitted`.
 Result<Fitted> fit_plainest(Workspace& workspace, Fitted fitted, const FitOptions& options) {
-  const auto other = with_other_form(fitted, &Effect::plainer_form);
+  const auto other = with_other_form(fitted, FormEdge::plainer);
   if (!other || pays_for_itself(fitted, *other->first.ingredients.back())) return fitted;
   auto second = fit(workspace, other->first, other->second, warm(options));
   if (!second) {
@@ -98,7 +94,7 @@ Result<Fitted> fit_plainest(Workspace& workspace, Fitted fitted, const FitOption
   const double gain = refit_score(*second, yardstick) - refit_score(fitted, yardstick);
   return tell(options.decided,
               {Asked::widened,
-               form_in_words(other->first),
+               last_in_words(other->first),
                gain >= 0.0,
                {gain, 0.0, ""},
                "reduced: its penalised log likelihood over that of the form with more numbers"})
@@ -112,7 +108,7 @@ Result<Fitted> fit_smallest(Workspace& workspace, const ModelForm& form, const V
                             const FitOptions& options) {
   auto larger = fit(workspace, form, start, warm(options));
   if (!larger) return larger;
-  const auto other = with_other_form(*larger, &Effect::smaller_form);
+  const auto other = with_other_form(*larger, FormEdge::smaller);
   if (!other) return fit_plainest(workspace, *std::move(larger), options);
   // far from there: coarse to fine
   auto second = fit(workspace, other->first, other->second, options);
@@ -123,7 +119,7 @@ Result<Fitted> fit_smallest(Workspace& workspace, const ModelForm& form, const V
   Fitted& smaller = *second;
   const bool as_good = tell(
       options.decided, {Asked::widened,
-                        form_in_words(other->first),
+                        last_in_words(other->first),
                         misfit(smaller) <= misfit(*larger),
                         {misfit(smaller), misfit(*larger), ""},
                         "smaller form: its misfit, fitted and held out, against the larger one's"});

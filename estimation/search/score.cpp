@@ -11,6 +11,7 @@
 #include "estimation/effects/catalogue.h"
 #include "estimation/effects/typical_sizes.h"
 #include "estimation/evaluation/normal_equations.h"
+#include "estimation/model/model_key.h"
 #include "estimation/search/refit_score.h"
 
 namespace hookeye {
@@ -106,8 +107,7 @@ GaussianPrior prior_of(const ScoredModel& model, const std::vector<EffectiveSums
 std::string effects_in_words(const ModelForm& form) {
   std::string out;
   for (const Ingredient* one : effects_of(form))
-    out += (out.empty() ? "" : ", ") + one->name() +
-           (one->variant().empty() ? "" : " as '" + one->variant() + "'");
+    out += (out.empty() ? "" : ", ") + key_of(*one).words();
   return out;
 }
 

@@ -12,14 +12,6 @@
 
 namespace hookeye {
 
-std::string form_of(const Ingredient& one) { return one.name() + " as " + one.variant(); }
-
-std::string forms_of(const ModelForm& form) {
-  std::string out;
-  for (const auto& one : form.ingredients) out += form_of(*one) + ", ";
-  return out;
-}
-
 namespace {
 
 /// Some parameter from `offset` on stands 15 standard errors off its null: 100 in log-likelihood,
@@ -134,13 +126,8 @@ bool equals_after_swap(Workspace& workspace, const Fitted& rival, const Fitted& 
 
 namespace {
 
-/// Which a refused swap answers.
-std::string question(const ModelForm& form, const Ingredient& dropped, const std::string& effect) {
-  return forms_of(form) + ": " + effect + " in place of " + form_of(dropped);
-}
-
 bool same_form(const Ingredient& one, const Ingredient& other) {
-  return form_of(one) == form_of(other);
+  return key_of(one) == key_of(other);
 }
 
 /// What ties with the leader where `dropped` is not in the model, but for itself.
@@ -210,7 +197,7 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
         diagnosed(workspace, dropped, fit_without(workspace, fitted, i, options.fit), options);
     if (!lighter) continue;
     for (const EffectScore* score : doubles_of(dropped, lighter->diagnosis)) {
-      const std::string asked = question(fitted.form, dropped, score->effect);
+      const SwapKey asked{ModelKey(fitted.form), key_of(dropped), score->effect};
       if (refused.contains(asked)) continue;
       auto refit = in_its_place(workspace, *lighter, *score, options, events);
       if (!refit) continue;
@@ -288,7 +275,7 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
   std::vector<Refit> refits;
   std::vector<std::string> open = {tie.front()};
   for (auto rival = tie.begin() + 1; rival != tie.end(); ++rival) {
-    const auto known = refused.find(question(last.form, *all[i], *rival));
+    const auto known = refused.find({ModelKey(last.form), key_of(*all[i]), *rival});
     if (known == refused.end()) {
       open.push_back(*rival);
       continue;

@@ -7,14 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "estimation/model/model_key.h"
 #include "estimation/search/contest.h"
 
 namespace hookeye {
-
-/// Effect and variant.
-std::string form_of(const Ingredient& one);
-/// Of all of a model.
-std::string forms_of(const ModelForm& form);
 
 struct Parted {
   ModelForm form;
@@ -48,14 +44,21 @@ struct Swap {
 /// The step in which one effect took another's place.
 Step swapped_step(Swap swap);
 
-/// What came of swaps that were refused: by all forms of the model, the one that left and the
-/// effect that came. What was asked behind a refit is not fitted again once that refit stands, nor
-/// where a tie asks for it; beside other effects it is.
+/// A swap that was asked for.
+struct SwapKey {
+  ModelKey model;
+  FormKey out;
+  std::string in;  ///< an effect
+  auto operator<=>(const SwapKey&) const = default;
+};
+
+/// What came of swaps that were refused. What was asked behind a refit is not fitted again once
+/// that refit stands, nor where a tie asks for it; beside other effects it is.
 struct RefusedSwap {
   ModelForm form;
   VectorXd p;
 };
-using RefusedSwaps = std::map<std::string, RefusedSwap>;
+using RefusedSwaps = std::map<SwapKey, RefusedSwap>;
 
 /// Two effects or more are not enough: one of them may stand for another. It was chosen while the
 /// others were missing, or is a double that only the held-out photos tell from the right one (creep

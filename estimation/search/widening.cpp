@@ -29,18 +29,17 @@ Model model_without(const Fitted& fitted, size_t at) {
 
 /// The effect's further forms; where others were added after it, first the smaller one, which the
 /// refit had asked while they were missing (a stiff place, and what a field took on of a clamp).
-std::vector<Effect::Further> further_forms(const Fitted& fitted, size_t at) {
+std::vector<NextForm> further_forms(const Fitted& fitted, size_t at) {
   const Ingredient& narrow = *fitted.form.ingredients[at];
   const Effect* effect = find_effect(narrow.name());
   if (!effect) return {};
   Model without = model_without(fitted, at);
   without.states = realised(fitted).states;
   const VectorXd own = values_of(fitted, at);
-  auto forms = effect->further_forms(without, narrow, own);
-  VectorXd fewer = own;
+  auto forms = effect->forms_from(FormEdge::further, without, narrow, own);
   if (at + 1 < fitted.form.ingredients.size())
-    if (auto smaller = effect->smaller_form(without, narrow, fewer))
-      forms.insert(forms.begin(), {std::move(smaller), std::move(fewer)});
+    if (auto smaller = effect->form_from(FormEdge::smaller, without, narrow, own))
+      forms.insert(forms.begin(), *std::move(smaller));
   return forms;
 }
 
@@ -50,7 +49,7 @@ struct Reformed {
   VectorXd start;
 };
 
-Reformed reformed(const Fitted& narrow, size_t at, const Effect::Further& further) {
+Reformed reformed(const Fitted& narrow, size_t at, const NextForm& further) {
   ModelForm form = narrow.form;
   form.ingredients[at] = further.form;
   VectorXd start = narrow.form.layout().with(narrow.p, at, further.values);
@@ -79,7 +78,7 @@ double over_floor(const Fitted& fitted, const Floor& floor) {
 
 /// In the further form; where that starts from another's end, `first` is that one.
 Result<Fitted> fit_further(Workspace& workspace, const Fitted& narrow, size_t at,
-                           const Effect::Further& further, const Reformed& first,
+                           const NextForm& further, const Reformed& first,
                            const FitOptions& options) {
   auto way = fit_in(workspace, narrow, first, options);
   if (!way || !further.by_way_of) return way;
@@ -150,13 +149,13 @@ bool told_paying(const Decided& decided, const std::string& words, const Fitted&
 Result<Fitted> plainest(Workspace& workspace, Fitted wide, size_t at, const Floor& floor,
                         const FitOptions& options, const DiscoverEvents& events) {
   const Ingredient& ingredient = *wide.form.ingredients[at];
-  VectorXd values = values_of(wide, at);
-  const auto form =
-      find_effect(ingredient.name())->plainer_form(model_without(wide, at), ingredient, values);
-  if (!form) return wide;
-  const std::string words = form->name() + " as '" + form->variant() + "'";
+  const auto plainer =
+      find_effect(ingredient.name())
+          ->form_from(FormEdge::plainer, model_without(wide, at), ingredient, values_of(wide, at));
+  if (!plainer) return wide;
+  const std::string words = key_of(*plainer->form).words();
   auto result = announced(events, words, [&] {
-    return fit_in(workspace, wide, reformed(wide, at, {form, values}), options);
+    return fit_in(workspace, wide, reformed(wide, at, *plainer), options);
   });
   if (!result) {
     if (cancelled(result.error())) return failure_of(result);
@@ -184,10 +183,9 @@ Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Flo
       if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second)
         continue;
       if (better && on_floor(best, floor)) break;
-      const std::string words = further.form->name() + " as '" + further.form->variant() + "'";
+      const std::string words = key_of(*further.form).words();
       const auto& way = further.by_way_of;
-      const Reformed first =
-          reformed(narrow, at, way ? Effect::Further{way, further.values} : further);
+      const Reformed first = reformed(narrow, at, way ? NextForm{way, further.values} : further);
       if (!further.same_claim && gets_nowhere(workspace, first, *scale, options)) {
         tell(options.decided,
              {Asked::widened,
@@ -227,14 +225,14 @@ Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Flo
 }
 
 Result<std::optional<Fitted>> WiderForms::ask(const Fitted& fitted, size_t at, const Floor& floor) {
-  const std::string narrow = form_of(*fitted.form.ingredients[at]);
-  if (!asked_.insert({forms_of(fitted.form), at}).second) return std::nullopt;
+  const FormKey narrow = key_of(*fitted.form.ingredients[at]);
+  if (!asked_.insert({ModelKey(fitted.form), narrow}).second) return std::nullopt;
   std::optional<Fitted> left_much;
   auto result = widened(workspace_, fitted, at, floor, options_, events_, &left_much);
   if (!result) return failure_of(result);
-  if (left_much) left_much_.push_back({forms_of(fitted.form), at, std::move(*left_much)});
+  if (left_much) left_much_.push_back({ModelKey(fitted.form), at, std::move(*left_much)});
   Fitted& wide = *result;
-  const std::string form = form_of(*wide.form.ingredients[at]);
+  const FormKey form = key_of(*wide.form.ingredients[at]);
   if (form == narrow && wide.p == fitted.p) return std::nullopt;
   came_to_.insert(form);
   return std::move(wide);
@@ -244,16 +242,17 @@ Result<std::optional<Fitted>> WiderForms::instead_of(const Refit& winner, const 
                                                      const Floor& floor) {
   std::optional<Fitted> best;
   size_t at = 0;
+  const ModelKey asked(now.form);
   for (LeftMuch& one : left_much_)
-    if (one.forms == forms_of(now.form) && (!best || score_above(one.fitted, *best, floor) > 0.0))
+    if (one.asked == asked && (!best || score_above(one.fitted, *best, floor) > 0.0))
       best = one.fitted, at = one.at;
-  std::erase_if(left_much_, [&](const LeftMuch& one) { return one.forms == forms_of(now.form); });
+  std::erase_if(left_much_, [&](const LeftMuch& one) { return one.asked == asked; });
   if (!best || numerical(winner.effect)) return std::nullopt;
   const double ahead = score_above(*best, winner.fitted, floor);
   const Ingredient& form = *best->form.ingredients[at];
   if (!tell(options_.decided,
             {Asked::widened,
-             form.name() + " as '" + form.variant() + "'",
+             key_of(form).words(),
              ahead > 0.0,
              {ahead, 0.0, ""},
              "enriched, in place of " + winner.effect + ": penalised log likelihood over that"}))
@@ -261,8 +260,8 @@ Result<std::optional<Fitted>> WiderForms::instead_of(const Refit& winner, const 
   auto result = plainest(workspace_, std::move(*best), at, floor, options_, events_);
   if (!result) return failure_of(result);
   const Fitted& wide = *result;
-  if (forms_of(wide.form) == forms_of(now.form)) return std::nullopt;
-  came_to_.insert(form_of(*wide.form.ingredients[at]));
+  if (ModelKey(wide.form) == asked) return std::nullopt;
+  came_to_.insert(key_of(*wide.form.ingredients[at]));
   return *std::move(result);
 }
 
@@ -318,12 +317,11 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
       const Ingredient& larger = *rest.form.ingredients[at];
       const Effect* effect = find_effect(larger.name());
       if (!effect) continue;  // no effect of the catalogue: a placebo
-      VectorXd values = values_of(without, at);
-      auto smaller = effect->smaller_form(model_without(without, at), larger, values);
+      const auto smaller = effect->form_from(FormEdge::smaller, model_without(without, at), larger,
+                                             values_of(without, at));
       if (!smaller) continue;
-      const std::string words =
-          smaller->name() + " as '" + smaller->variant() + "' without " + all[i]->name();
-      const Reformed other = reformed(without, at, {std::move(smaller), std::move(values)});
+      const std::string words = key_of(*smaller->form).words() + " without " + all[i]->name();
+      const Reformed other = reformed(without, at, *smaller);
       if (ends_far_off(workspace, other, *now, options)) continue;
       auto lighter =
           announced(events, words, [&] { return fit_in(workspace, without, other, options); });
@@ -341,6 +339,6 @@ std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fit
   return {};
 }
 
-bool WiderForms::came_to(const Ingredient& form) const { return came_to_.contains(form_of(form)); }
+bool WiderForms::came_to(const Ingredient& form) const { return came_to_.contains(key_of(form)); }
 
 }  // namespace hookeye

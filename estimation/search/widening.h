@@ -6,25 +6,26 @@
 #include <string>
 #include <utility>
 
+#include "estimation/model/model_key.h"
 #include "estimation/search/contest.h"
 
 namespace hookeye {
 
 /// Where an effect leaves more than the floor its form may be too narrow: what it leaves over looks
 /// like another effect (method.md, "Which effect is missing", 6). The model with its ingredient
-/// `at` in the best of its effect's further forms (Effect::further_forms; where others came after
+/// `at` in the best of its effect's further forms (FormEdge::further; where others came after
 /// it, its smaller form too) and of theirs, or as it is. A form stays where it takes most of what
 /// is over the floor (or says the same in another shape), where fitted and held-out photos together
 /// pay for its parameters by more than a tie, and where the held-out ones do not speak against it:
 /// else it is another effect that is missing. Of what a wide form says a plainer one
-/// (Effect::plainer_form) stays where it scores as well. `left_much`: of those that pay and leave
+/// (FormEdge::plainer) stays where it scores as well. `left_much`: of those that pay and leave
 /// too much for that, the one that says most, without its pictures.
 Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
                        const FitOptions& options, const DiscoverEvents& events = {},
                        std::optional<Fitted>* left_much = nullptr);
 
 /// An effect that only the larger form of another makes room for: without it, and with that other
-/// in its smaller form (Effect::smaller_form), the photos stay at the floor and the score falls by
+/// in its smaller form (FormEdge::smaller), the photos stay at the floor and the score falls by
 /// less than a tie. (A stiffness field within 3 % had stayed beside a wall that was fitted as a
 /// soft cushion.) Told in the result: who leaves.
 std::optional<Refit> drop_beside_smaller(Workspace& workspace, const Fitted& fitted,
@@ -55,7 +56,7 @@ class WiderForms {
 
  private:
   struct LeftMuch {
-    std::string forms;  ///< of the model that was asked
+    ModelKey asked;
     size_t at;
     Fitted fitted;
   };
@@ -63,8 +64,8 @@ class WiderForms {
   const FitOptions& options_;
   const DiscoverEvents& events_;
   std::vector<LeftMuch> left_much_;
-  std::set<std::pair<std::string, size_t>> asked_;  ///< all forms, and which of them was asked
-  std::set<std::string> came_to_;
+  std::set<std::pair<ModelKey, FormKey>> asked_;
+  std::set<FormKey> came_to_;
 };
 
 }  // namespace hookeye

@@ -73,7 +73,7 @@ struct Tried {
     VectorXd values = some_values(*one);
     EXPECT_FALSE(effect.sentence(model, *one, values).empty());
     const VectorXd scored = forces(extended(base, one), with_values(extended(base, one), values));
-    const auto larger = effect.refit_form(model, one, values);
+    const auto larger = effect.refit_form(model, one, values).form;
     ASSERT_EQ(values.size(), static_cast<int>(larger->parameters().size()));
     EXPECT_FALSE(effect.sentence(model, *larger, values).empty());
     const ModelForm form = extended(base, larger);

@@ -32,7 +32,8 @@ std::vector<std::string> names(const Ingredient& ingredient) {
 /// other directions are alike.
 void add_further(const Effect& effect, const Ingredient& refitted, std::set<std::string>& kinds,
                  std::vector<Case>& all) {
-  for (const auto& further : effect.further_forms(base_model(), refitted, some_values(refitted))) {
+  for (const auto& further :
+       effect.forms_from(FormEdge::further, base_model(), refitted, some_values(refitted))) {
     EXPECT_EQ(further.values.size(), static_cast<int>(further.form->parameters().size()));
     if (further.by_way_of) {
       EXPECT_EQ(names(*further.by_way_of), names(*further.form));
@@ -43,10 +44,10 @@ void add_further(const Effect& effect, const Ingredient& refitted, std::set<std:
     all.push_back({&effect, further.form});
     add_further(effect, *further.form, kinds, all);
   }
-  VectorXd values = some_values(refitted);
-  if (const auto plainer = effect.plainer_form(base_model(), refitted, values)) {
-    EXPECT_EQ(values.size(), static_cast<int>(plainer->parameters().size()));
-    all.push_back({&effect, plainer});
+  if (const auto plainer =
+          effect.form_from(FormEdge::plainer, base_model(), refitted, some_values(refitted))) {
+    EXPECT_EQ(plainer->values.size(), static_cast<int>(plainer->form->parameters().size()));
+    all.push_back({&effect, plainer->form});
   }
 }
 
@@ -59,9 +60,9 @@ std::vector<Case> all_cases(bool refit_forms) {
     for (const auto& one : effect->candidates(base_model(), nullptr)) {
       all.push_back({effect, one});
       if (!refit_forms) continue;
-      VectorXd values = some_values(*one);
-      const auto larger = effect->refit_form(base_model(), one, values);
-      EXPECT_EQ(values.size(), static_cast<int>(larger->parameters().size()));
+      const NextForm refit = effect->refit_form(base_model(), one, some_values(*one));
+      const auto& larger = refit.form;
+      EXPECT_EQ(refit.values.size(), static_cast<int>(larger->parameters().size()));
       const bool first = seen.empty();
       std::set<std::string> kinds;
       if (seen.insert(larger->variant()).second && larger != one) all.push_back({effect, larger});
@@ -338,9 +339,9 @@ TEST(Catalogue, SmallerFormsSayTheSameWhereOneValueStandsOut) {
     for (Eigen::Index k = 0; k < nulls.size(); ++k) {
       VectorXd values = nulls;
       values[k] = some_values(*c.ingredient)[k];
-      VectorXd fewer = values;
-      const auto smaller = c.effect->smaller_form(base_model(), *c.ingredient, fewer);
-      if (!smaller) break;
+      const auto next = c.effect->form_from(FormEdge::smaller, base_model(), *c.ingredient, values);
+      if (!next) break;
+      const auto& [smaller, fewer, by_way_of, same_claim] = *next;
       if (c.ingredient->variant().rfind("cushion", 0) == 0) {
         // a hard floor is the cushion that is as stiff as it says, 3e4 times the declared
         values[1] = numbers_in(smaller->variant()).back();

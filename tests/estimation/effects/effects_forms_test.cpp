@@ -43,11 +43,11 @@ TEST(StiffnessField, BesidePlacesOneMoreMayStand) {
     const auto blob = std::find_if(
         all.begin(), all.end(), [](const auto& one) { return one->variant().starts_with("blob"); });
     ASSERT_NE(blob, all.end());
-    VectorXd values = VectorXd::Constant(1, 0.5);
-    const auto free = field.refit_form(base_model(), *blob, values);
+    const auto [free, values, by_way_of, same_claim] =
+        field.refit_form(base_model(), *blob, VectorXd::Constant(1, 0.5));
     EXPECT_EQ(free->variant(),
               place == 1 ? std::string("free blob") : "free blob, place " + std::to_string(place));
-    const auto ball = field.further_forms(base_model(), *free, values).front();
+    const auto ball = *field.form_from(FormEdge::further, base_model(), *free, values);
     for (const auto& form : {*blob, free, ball.form}) {
       const auto again = field.candidate(base_model(), form->variant());
       ASSERT_TRUE(again) << form->variant();
@@ -108,28 +108,25 @@ TEST(Catalogue, PlainerFormsSayTheSameWithoutTheirNumbers) {
   std::set<std::string> tried;
   for (const Effect* effect : catalogue())
     for (const auto& one : effect->candidates(base_model(), nullptr)) {
-      VectorXd values = some_values(*one);
-      auto larger = effect->refit_form(base_model(), one, values);
+      auto larger = effect->refit_form(base_model(), one, some_values(*one)).form;
       if (effect->name() == "floor_contact")  // one that without its tilt is normal to an axis
         larger =
             effect->candidate(base_model(), "cushion towards (0, 0, 1), tilting about (1, 2, 41)");
-      values = some_values(*larger);
-      VectorXd fewer = values;
-      const auto found = effect->plainer_form(base_model(), *larger, fewer);
+      VectorXd values = some_values(*larger);
+      const auto found = effect->form_from(FormEdge::plainer, base_model(), *larger, values);
       if (!found) continue;
       std::set<std::string> kept;
-      for (const Parameter& p : found->parameters()) kept.insert(p.name);
+      for (const Parameter& p : found->form->parameters()) kept.insert(p.name);
       const auto all = larger->parameters();
-      ASSERT_EQ(fewer.size(), static_cast<int>(kept.size())) << larger->variant();
+      ASSERT_EQ(found->values.size(), static_cast<int>(kept.size())) << larger->variant();
       ASSERT_LT(kept.size(), all.size()) << larger->variant();
       for (size_t i = 0; i < all.size(); ++i)
         if (!kept.count(all[i].name)) values[i] = all[i].value;
-      fewer = values;
-      const auto same = effect->plainer_form(base_model(), *larger, fewer);
+      const auto same = effect->form_from(FormEdge::plainer, base_model(), *larger, values);
       if (!same) continue;  // a plane that is oblique without its tilt
-      const ModelForm form = extended(base(), larger), other = extended(base(), same);
+      const ModelForm form = extended(base(), larger), other = extended(base(), same->form);
       const VectorXd expected = signature(form.realise(with_values(form, values)), q);
-      const VectorXd plain = signature(other.realise(with_values(other, fewer)), q);
+      const VectorXd plain = signature(other.realise(with_values(other, same->values)), q);
       EXPECT_LT((plain - expected).norm(), 1e-9 * expected.norm()) << larger->variant();
       tried.insert(effect->name());
     }
@@ -140,11 +137,12 @@ TEST(Catalogue, PlainerFormsSayTheSameWithoutTheirNumbers) {
 /// same floor.
 TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
   const Effect& effect = *find_effect("floor_contact");
-  VectorXd values = Eigen::Vector2d(12.0, 1e-4);
   const auto cushion = effect.candidate(base_model(), "cushion on side +x");
   ASSERT_TRUE(cushion);
-  const auto hard = effect.smaller_form(base_model(), *cushion, values);
-  ASSERT_TRUE(hard);
+  const auto next =
+      effect.form_from(FormEdge::smaller, base_model(), *cushion, Eigen::Vector2d(12.0, 1e-4));
+  ASSERT_TRUE(next);
+  const auto& [hard, values, by_way_of, same_claim] = *next;
   const Model stiffer = base().realise(2.0 * base().initial());
   ASSERT_GT(initial_shear_modulus(stiffer.energy),
             1.5 * initial_shear_modulus(base_model().energy));
@@ -156,11 +154,11 @@ TEST(FloorContact, AHardPlaneIsReadAsItWasWritten) {
   EXPECT_EQ(signature(form.realise(with_values(form, values)), q),
             signature(other.realise(with_values(other, values)), q));
   // and as soft as it is, it is the cushion that a refit goes on to
-  const auto further = effect.further_forms(base_model(), *hard, values);
+  const auto further = effect.forms_from(FormEdge::further, base_model(), *hard, values);
   ASSERT_EQ(further.size(), 3u);
   EXPECT_EQ(further[0].form->variant(), cushion->variant());
   for (size_t i = 0; i < 2; ++i) {  // the second one tilts, the third starts elsewhere
-    const Effect::Further& wider = further[i];
+    const NextForm& wider = further[i];
     EXPECT_FALSE(wider.by_way_of) << "it starts where the other ended";
     const ModelForm wide = extended(base(), wider.form);
     EXPECT_EQ(signature(wide.realise(with_values(wide, wider.values)), q),
@@ -192,7 +190,7 @@ TEST(FloorContact, APlaneNormalToAnAxisMayTiltWhereItLeavesMore) {
   const auto cushion = effect.candidate(model, "cushion on side +x");
   ASSERT_TRUE(cushion);
   const VectorXd values = Eigen::Vector2d(reach - 0.5, 1e-4);
-  const auto further = effect.further_forms(model, *cushion, values);
+  const auto further = effect.forms_from(FormEdge::further, model, *cushion, values);
   ASSERT_EQ(further.size(), 2u);
   EXPECT_EQ(further[0].values, VectorXd(Eigen::Vector4d(reach - 0.5, 1e-4, 0.0, 0.0)));
   EXPECT_THAT(further[1].form->variant(), testing::StartsWith("hard plane towards (1, 0, 0)"));
@@ -203,14 +201,16 @@ TEST(FloorContact, APlaneNormalToAnAxisMayTiltWhereItLeavesMore) {
   ASSERT_TRUE(further[1].by_way_of) << "its tilt has kinks, a softer one's has none";
   EXPECT_LT(plane_form(further[1].by_way_of->variant())->stiffness,
             0.1 * plane_form(further[1].form->variant())->stiffness);
-  const auto stays = effect.further_forms(model, *cushion, Eigen::Vector2d(near, 1e-4));
+  const auto stays =
+      effect.forms_from(FormEdge::further, model, *cushion, Eigen::Vector2d(near, 1e-4));
   EXPECT_EQ(stays.size(), 1u) << "it stands there";
   const auto n = numbers_in(further[0].form->variant());
   ASSERT_EQ(n.size(), 6u);
   const Vector3d about(n[3], n[4], n[5]), there = bent->q.segment<3>(3 * deepest);
   EXPECT_LE((about - (there - 0.5 * Vector3d::UnitX())).norm(), 0.1)
       << about.transpose() << " for " << there.transpose();
-  EXPECT_THAT(effect.further_forms(model, *further[0].form, further[0].values), testing::IsEmpty());
+  EXPECT_THAT(effect.forms_from(FormEdge::further, model, *further[0].form, further[0].values),
+              testing::IsEmpty());
 }
 
 /// The block is longest along z: the part of the load across stays, the part along changes sides.
@@ -225,7 +225,7 @@ TEST(LoadDirection, StartsAgainAsItsMirrorImage) {
   const auto bend = effect.candidate(base_model(), "in bend");
   ASSERT_TRUE(bend);
   const Eigen::Vector2d values(0.7, -0.3);
-  const auto further = effect.further_forms(base_model(), *bend, values);
+  const auto further = effect.forms_from(FormEdge::further, base_model(), *bend, values);
   ASSERT_EQ(further.size(), 1u);
   EXPECT_EQ(further[0].form->variant(), bend->variant());
   const Vector3d then = towards(*bend, values), now = towards(*further[0].form, further[0].values);
@@ -233,8 +233,9 @@ TEST(LoadDirection, StartsAgainAsItsMirrorImage) {
   EXPECT_LT((now - then.cwiseProduct(Vector3d(1, 1, -1))).norm(), 0.02);
   const auto pull = effect.candidate(base_model(), "in pull");
   ASSERT_TRUE(pull);
-  EXPECT_THAT(effect.further_forms(base_model(), *pull, Eigen::Vector2d(0.05, 0.02)),
-              testing::IsEmpty());
+  EXPECT_THAT(
+      effect.forms_from(FormEdge::further, base_model(), *pull, Eigen::Vector2d(0.05, 0.02)),
+      testing::IsEmpty());
 }
 
 /// A stiff place in a field whose other values are all the same: that is the modulus' own.
@@ -248,9 +249,9 @@ TEST(StiffnessField, TheSmallerFormIsThePlaceAndTheRestGoesToTheModulus) {
     values[k] += 0.6;
     const ModelForm larger = extended(base(), field);
     const VectorXd p = with_values(larger, values);
-    VectorXd few = values;
-    const auto blob = effect.smaller_form(model, *field, few);
-    ASSERT_TRUE(blob);
+    const auto next = effect.form_from(FormEdge::smaller, model, *field, values);
+    ASSERT_TRUE(next);
+    const auto& [blob, few, by_way_of, same_claim] = *next;
     const auto centre = numbers_in(field->variant());
     for (int i = 0; i < 3; ++i)
       EXPECT_NEAR(few[1 + i], centre[static_cast<size_t>(1 + 3 * k + i)], 1e-9) << k;
@@ -288,8 +289,10 @@ TEST(StiffnessField, TheSmallerFormIsFoundBetweenBumps) {
   for (Eigen::Index e = 0; e < places.cols(); ++e) {
     const Vector3d place = places.col(e);
     if (nearest(place) < 0.6 * n[0]) continue;
-    VectorXd values = bumps.colPivHouseholderQr().solve(gaussian_bump(mesh, place, n[0]));
-    ASSERT_TRUE(effect.smaller_form(model, *field, values));
+    const VectorXd heights = bumps.colPivHouseholderQr().solve(gaussian_bump(mesh, place, n[0]));
+    const auto blob = effect.form_from(FormEdge::smaller, model, *field, heights);
+    ASSERT_TRUE(blob);
+    const VectorXd& values = blob->values;
     EXPECT_LT((values.segment<3>(1) - place).norm(), 0.6 * n[0]) << e;
     EXPECT_NEAR(values[0], 1.0, 0.4) << e;
     ++seen;
@@ -329,7 +332,7 @@ TEST(StiffnessField, SeveralPlacesAreFoundInAField) {
   for (size_t i = 0; i < centres.size(); ++i)
     bumps.col(static_cast<Eigen::Index>(i)) = gaussian_bump(mesh, centres[i], n[0]);
   const VectorXd values = bumps.householderQr().solve(log_factor);
-  const auto further = effect.further_forms(base_model(), *field, values);
+  const auto further = effect.forms_from(FormEdge::further, base_model(), *field, values);
   ASSERT_FALSE(further.empty());
   ASSERT_EQ(further.front().form->variant(), "free blobs, 2");
   EXPECT_EQ(further.at(1).form->variant(), "free blobs, 3");
@@ -341,8 +344,8 @@ TEST(StiffnessField, SeveralPlacesAreFoundInAField) {
   }
   EXPECT_EQ(found.size(), 2u);
 
-  const auto balls =
-      effect.further_forms(base_model(), *further.front().form, further.front().values);
+  const auto balls = effect.forms_from(FormEdge::further, base_model(), *further.front().form,
+                                       further.front().values);
   ASSERT_EQ(balls.size(), 1u);
   EXPECT_EQ(balls.front().form->variant(), "free balls, 2");
   EXPECT_TRUE(balls.front().same_claim);
@@ -356,7 +359,7 @@ TEST(StiffnessField, SeveralPlacesAreFoundInAField) {
 TEST(StiffnessField, ABallStartsWhereItIsMostLikeAPlace) {
   VectorXd blob(5);
   blob << -1.3, 2.0, 3.0, 15.0, 4.0;
-  const Effect::Further further = ball_like(base_model(), blob);
+  const NextForm further = ball_like(base_model(), blob);
   EXPECT_EQ(further.form->variant(), "free ball");
   const double a = further.values[0], radius = further.values[4];
   const double volume = 4.0 / 3.0 * EIGEN_PI * std::pow(radius, 3), R3 = std::pow(blob[4], 3);

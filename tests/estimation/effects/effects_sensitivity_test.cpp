@@ -111,7 +111,7 @@ TEST(Sensitivity, MeshResolutionIsTheFinerMesh) {
   ASSERT_EQ(candidates.size(), 1u);
   const Evaluation evaluation = evaluated(base, p, candidates);
   VectorXd none;
-  const auto finer_form = effect.refit_form(model, candidates.front(), none);
+  const auto finer_form = effect.refit_form(model, candidates.front(), none).form;
   const auto scene = effect.refit_scene(*block_scene(), finer_form->variant());
   ASSERT_GT(scene->body->mesh.nodes(), 1.5 * block_scene()->body->mesh.nodes());
   const auto [form, values] = transfer(model, scene, catalogue());
@@ -179,7 +179,7 @@ std::pair<ModelForm, VectorXd> on_finer_mesh(const ModelForm& base, double share
   const Model model = base.realise(base.initial());
   const Effect& effect = *find_effect("mesh_resolution");
   VectorXd none;
-  const auto finer = effect.refit_form(model, effect.candidates(model, nullptr).front(), none);
+  const auto finer = effect.refit_form(model, effect.candidates(model, nullptr).front(), none).form;
   auto [form, p] = on_its_mesh(model, *finer);
   p[form.size() - 1] = share;
   return {form, p};

@@ -41,14 +41,14 @@ TEST(Sensitivity, RefitForms) {
   for (const Effect* effect : catalogue()) {
     std::set<std::string> seen;
     for (const auto& scored : effect->candidates(model, nullptr)) {
-      VectorXd values = some_values(*scored);
-      const auto larger = effect->refit_form(model, scored, values);
+      const auto [larger, values, by_way_of, same_claim] =
+          effect->refit_form(model, scored, some_values(*scored));
       if (effect->remeshes(larger->variant())) continue;  // lives on another mesh: below
       // one free form a kind: the fibre's 24 bases are alike
       if (larger == scored || !seen.insert(larger->variant().substr(0, 12)).second) continue;
       tried += check_form(larger, values);
-      if (const auto smaller = effect->smaller_form(model, *larger, values))
-        tried += check_form(smaller, values);
+      if (const auto smaller = effect->form_from(FormEdge::smaller, model, *larger, values))
+        tried += check_form(smaller->form, smaller->values);
       if (::testing::Test::HasFailure()) return;
     }
   }
@@ -61,15 +61,15 @@ TEST(Sensitivity, AnObliqueWallInAllItsNumbers) {
   const ModelForm base = base_form(block_scene());
   const Model model = with_states(base.realise(base.initial()));
   const Effect& effect = *find_effect("floor_contact");
-  VectorXd values = VectorXd::Constant(1, 2e-4);
   const auto scored = effect.candidate(model, "plane towards (0.8, 0.53, 0.29), position 25");
   ASSERT_NE(scored, nullptr);
-  const auto cushion = effect.refit_form(model, scored, values);
-  ASSERT_EQ(values.size(), 4);
-  values.tail<2>() << 0.06, -0.04;
-  EXPECT_EQ(check_form(cushion, values), 4);
-  const auto hard = effect.smaller_form(model, *cushion, values);
-  EXPECT_EQ(check_form(hard, values), 3);
+  NextForm cushion = effect.refit_form(model, scored, VectorXd::Constant(1, 2e-4));
+  ASSERT_EQ(cushion.values.size(), 4);
+  cushion.values.tail<2>() << 0.06, -0.04;
+  EXPECT_EQ(check_form(cushion.form, cushion.values), 4);
+  const auto hard = effect.form_from(FormEdge::smaller, model, *cushion.form, cushion.values);
+  ASSERT_TRUE(hard);
+  EXPECT_EQ(check_form(hard->form, hard->values), 3);
 }
 
 /// Forms that a refit goes on to, away from their nulls; of a field's bumps the first stand for
@@ -79,13 +79,12 @@ void check_further_forms(const std::string& name, int least) {
   const Model model = base.realise(base.initial());
   const Effect& effect = *find_effect(name);
   const auto scored = effect.candidates(model, nullptr).front();
-  VectorXd values = some_values(*scored);
-  const auto refitted = effect.refit_form(model, scored, values);
+  const NextForm refitted = effect.refit_form(model, scored, some_values(*scored));
   int moving = 0;
   std::set<std::string> seen;
   const std::function<void(const Ingredient&, const VectorXd&)> follow = [&](const Ingredient& from,
                                                                              const VectorXd& at) {
-    for (const auto& further : effect.further_forms(model, from, at)) {
+    for (const auto& further : effect.forms_from(FormEdge::further, model, from, at)) {
       const VectorXd some = some_values(*further.form);
       // one a kind: forms around other directions are alike
       const std::string variant = further.form->variant();
@@ -94,13 +93,13 @@ void check_further_forms(const std::string& name, int least) {
       if (::testing::Test::HasFailure()) return;
       follow(*further.form, some);
     }
-    VectorXd plain = at;
-    if (const auto plainer = effect.plainer_form(model, from, plain))
-      moving += check_form(plainer, some_values(*plainer), 12);
+    if (const auto plainer = effect.form_from(FormEdge::plainer, model, from, at))
+      moving += check_form(plainer->form, some_values(*plainer->form), 12);
   };
-  follow(*refitted, values);
-  if (const auto smaller = effect.smaller_form(model, *refitted, values))
-    follow(*smaller, some_values(*smaller));
+  follow(*refitted.form, refitted.values);
+  if (const auto smaller =
+          effect.form_from(FormEdge::smaller, model, *refitted.form, refitted.values))
+    follow(*smaller->form, some_values(*smaller->form));
   EXPECT_GE(moving, least);
 }
 
