@@ -65,6 +65,10 @@ Head head_of(std::string_view cell) {
     cell = bare_cell(cell.substr(0, at));
     break;
   }
+  if (const size_t at = cell.rfind(" - "); out.measure.empty() && at != std::string_view::npos) {
+    out.measure = measure_called(std::string(cell.substr(at)));
+    if (!out.measure.empty()) cell = bare_cell(cell.substr(0, at));
+  }
   if (const std::string measure = measure_called(out.unit); !measure.empty())
     out.measure = measure, out.unit.clear();
   for (const char* group :

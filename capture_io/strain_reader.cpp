@@ -35,7 +35,7 @@ StrainMeasure read_measure(const YamlNode& node, const FieldTable& table, const 
 }
 
 /// One number, or one a component.
-Eigen::VectorXd read_sigma(const YamlSection& section, int components) {
+Eigen::VectorXd read_strain_sigma(const YamlSection& section, int components) {
   const YamlNode& node =
       section.need("sigma", "give the standard deviation of a strain, a fraction: `sigma: 0.0002`");
   if (node.kind != YamlNode::Kind::sequence)
@@ -94,7 +94,7 @@ std::shared_ptr<const StrainSpec> read_strain(const YamlSection& section, const 
   }
   out->axes = axes.leftCols<2>();
   if (const YamlNode* node = section.find("axes")) out->axes = read_axes(*node);
-  out->sigma = read_sigma(section, table.has_exy ? 3 : 2);
+  out->sigma = read_strain_sigma(section, table.has_exy ? 3 : 2);
   if (table.has_u) {
     out->u = axes * (length * table.u);
     out->u_components = table.has_w ? 3 : 2;

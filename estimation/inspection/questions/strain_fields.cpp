@@ -45,7 +45,7 @@ Against against(const MeasuredSpec& measured, const VectorXd& expected) {
 }
 
 /// A unit that is this many times another; "": none is near.
-std::string unit_of(double factor, double close) {
+std::string strain_unit_of(double factor, double close) {
   const std::pair<double, const char*> units[] = {
       {1e2, "percent"}, {1e3, "millistrain"}, {1e6, "microstrain"}};
   for (const auto& [of, name] : units)
@@ -79,14 +79,16 @@ bool by_displacements(Sight& sight, const MeasuredSpec& measured, Warnings& warn
   if (all.empty() || against(measured, all.front().expected).count < 3.0 * field.components)
     return false;
   const Against told = against(measured, all.front().expected);
-  if (const std::string unit = unit_of(told.factor(), sight.options().close_unit); !unit.empty()) {
+  if (const std::string unit = strain_unit_of(told.factor(), sight.options().close_unit);
+      !unit.empty()) {
     warnings.say(measured.place,
                  fmt::format("the strains of {} are {:.3g} times those of {}", field.told,
                              told.factor(), by),
                  fmt::format("`strain_unit: {}`", unit));
     return true;
   }
-  if (told.factor() > 0.0 && !unit_of(1.0 / told.factor(), sight.options().close_unit).empty()) {
+  if (told.factor() > 0.0 &&
+      !strain_unit_of(1.0 / told.factor(), sight.options().close_unit).empty()) {
     warnings.say(measured.place,
                  fmt::format("the strains of {} are 1/{:.3g} of those of {}", field.told,
                              1.0 / told.factor(), by),
