@@ -194,10 +194,10 @@ void take_strain_units(const Table& table, FieldColumns& out) {
                                    head.name, head.unit),
                        "[1], [%], [mm/m] or [um/m]; mstrain and ustrain are known too");
     if (role > 6 && fraction_in(head.unit) != out.fraction)
-      throw InputError(
-          table.place,
-          fmt::format("column `{}` is in [{}], others in [{}]", head.name, head.unit, unit),
-          "one unit for all strains");
+      throw InputError(table.place,
+                       fmt::format("column `{}` is in `{}`, others in `{}`", head.name,
+                                   head.unit.empty() ? "1" : head.unit, unit.empty() ? "1" : unit),
+                       "one unit for all strains");
     unit = out.strain_unit = head.unit, out.fraction = fraction_in(head.unit);
   }
 }
