@@ -107,11 +107,11 @@ std::vector<Tangents> strain_tangents(const TetMesh& mesh, const FieldSpec& fiel
     const Vector3d normal = faces.normal(at);
     const auto tangents = tangents_along(normal, field.strain->axes);
     if (!tangents)
-      throw InputError(
+      throw InputError(  // + 0.0: of a plane face none is -0
           {field.told, field.lines[static_cast<size_t>(k)]},
           fmt::format("the axes of the strains do not lie in the body's surface, whose normal at "
                       "this point is ({:.2g}, {:.2g}, {:.2g})",
-                      normal.x(), normal.y(), normal.z()),
+                      normal.x() + 0.0, normal.y() + 0.0, normal.z() + 0.0),
           "tell along what exx and eyy are, in the capture's frame: `axes: [[1, 0, 0], [0, 0, "
           "1]]`, or the `frame` of the file");
     out.push_back(*tangents);
