@@ -26,7 +26,7 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
                      {"rms", std::sqrt(apart.squaredNorm() / static_cast<double>(apart.size()))},
                      {"largest", apart.cwiseAbs().maxCoeff()},
                      {"holds", told.field->strain ? "strains" : "displacements"},
-                     {"unit", told.field->strain ? "1" : scene.capture.units.length},
+                     {"unit", told.field->strain ? "strain" : scene.capture.units.length},
                      {"sigma", told.field->sigma},
                      {"rough", rough.count > 0.0 ? json(rough.chi()) : json()},
                      {"components", told.field->components},

@@ -112,6 +112,13 @@ TEST_F(StrainReadings, WithoutDisplacementsTheFirstGuessTells) {
                               "each other's places"),
                     Not(HasSubstr("bend"))));
   change("pull_front.csv", [](auto& row) { std::swap(row[3], row[4]); });
+  change("bend_front.csv", [](auto& row) { row[5] *= -1; });
+  EXPECT_THAT(of_strains(), HasSubstr("bend_front.csv agree with the first guess where exy has the "
+                                      "other sign"));
+  change("bend_front.csv", [](auto& row) { row[5] *= -2; });
+  EXPECT_THAT(of_strains(), HasSubstr("where its shear is gamma = 2 exy"));
+  change("bend_front.csv", [](auto& row) { row[5] *= 0.5; });
+  EXPECT_THAT(of_strains(), IsEmpty());
   change("pull_front.csv", [](auto& row) { row[3] *= 100, row[4] *= 100, row[5] *= 100; });
   EXPECT_THAT(of_strains(), AllOf(HasSubstr("pull_front.csv are"), HasSubstr("`strain_unit`")));
 }
