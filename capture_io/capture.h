@@ -144,7 +144,10 @@ struct PhotoSpec {
   Place place;
 };
 
-/// Displacements of points of the surface, as programs for digital image correlation write them.
+struct StrainSpec;  // strain_field.h
+
+/// Displacements or strains of points of the surface, as programs for digital image correlation
+/// write them.
 struct FieldSpec {
   std::filesystem::path file;
   std::string told;        ///< the file's name for messages
@@ -154,9 +157,12 @@ struct FieldSpec {
   /// measured.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   int components = 3;
-  double sigma = 0.0;        ///< told standard deviation of a component [length]
-  double spacing = 0.0;      ///< middle distance from point to next point [length]
-  double correlation = 0.0;  ///< side of the patch whose points err alike [length]; 0: none do
+  /// What strains it holds, of exx, eyy and (of three components) exy; null: displacements.
+  std::shared_ptr<const StrainSpec> strain;
+  std::string strain_columns;  ///< of the file, where displacements are read; "": it has none
+  double sigma = 0.0;          ///< told standard deviation of a component [length; of strains 1]
+  double spacing = 0.0;        ///< middle distance from point to next point [length]
+  double correlation = 0.0;    ///< side of the patch whose points err alike [length]; 0: none do
   bool correlation_told = false;
   bool unit_told = false;  ///< by the capture or by the file; else it is taken for the capture's
   double tolerance = 0.0;  ///< how far a point may lie off the surface [length]; 0: not told
@@ -204,6 +210,8 @@ struct MeasuredKind {
   const char* words;  ///< "force on"
 };
 const MeasuredKind& kind_of(const MeasuredSpec& measured);
+/// A field of strains.
+bool is_strain_field(const MeasuredSpec& measured);
 /// It tells a force or a moment of a support.
 bool is_reaction(const MeasuredSpec& measured);
 /// It tells something of the body, not of what looks at it.

@@ -1,4 +1,5 @@
-// Measured fields of displacement: a file, its unit, its frame, and how its noise hangs together.
+// Measured fields of displacement or strain: a file, its unit, its frame, and how its noise hangs
+// together.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -12,6 +13,7 @@
 
 #include "capture_io/capture_reader.h"
 #include "capture_io/field_table.h"
+#include "capture_io/strain_reader.h"
 
 namespace hookeye {
 namespace {
@@ -181,7 +183,8 @@ Frame read_frame(const YamlNode& node) {
 }
 
 std::map<std::string, std::string> read_columns(const YamlNode& node) {
-  const std::vector<std::string> roles{"X", "Y", "Z", "U", "V", "W"};
+  std::vector<std::string> roles(kFieldRoles.begin(), kFieldRoles.end());
+  roles.emplace_back("GXY");
   const YamlSection section(node, "columns of the field", roles);
   std::map<std::string, std::string> out;
   for (const std::string& role : roles)
@@ -193,11 +196,14 @@ std::map<std::string, std::string> read_columns(const YamlNode& node) {
 constexpr double kStepsAlike = 3.0;
 
 void read_field_noise(const YamlSection& section, FieldSpec& field) {
-  field.sigma = read_positive(
-      section.need("sigma", "give the standard deviation of a displacement: `sigma: 0.01`"),
-      "sigma");
+  if (!field.strain)
+    field.sigma = read_positive(
+        section.need("sigma", "give the standard deviation of a displacement: `sigma: 0.01`"),
+        "sigma");
   field.spacing = spacing_of(field.X);
-  field.correlation = kStepsAlike * field.spacing;
+  // A strain's disc holds the same displacements as those of the points in it.
+  field.correlation =
+      std::max(kStepsAlike * field.spacing, field.strain ? field.strain->gauge : 0.0);
   if (const YamlNode* told = section.find("correlation")) {
     field.correlation = read_not_negative(*told, "correlation");
     field.correlation_told = true;
@@ -210,32 +216,60 @@ void read_field_noise(const YamlSection& section, FieldSpec& field) {
 
 }  // namespace
 
+namespace {
+
+FieldTable read_table(const YamlSection& section, const YamlNode& name, const FieldSpec& field) {
+  std::map<std::string, std::string> columns;
+  if (const YamlNode* told = section.find("columns")) columns = read_columns(*told);
+  try {
+    return read_field_table(
+        field.file, field.told, columns,
+        section.has("strain") ? FieldHolds::strains : FieldHolds::displacements);
+  } catch (const InputError& error) {
+    throw told_at(name.place, error);
+  }
+}
+
+void refuse_strain_keys(const YamlSection& section) {
+  for (const char* key : {"strain_unit", "gauge", "axes"})
+    if (const YamlNode* node = section.find(key))
+      throw InputError(node->place, fmt::format("`{}` is of a field of strains", key),
+                       "add `strain: green`, or remove it");
+}
+
+}  // namespace
+
 MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Capture& capture,
                         const CaptureFolder& folder) {
-  const YamlSection section(
-      node, "a measured field" + of,
-      {"field", "sigma", "correlation", "unit", "scale", "frame", "columns", "tolerance"});
+  const YamlSection section(node, "a measured field" + of,
+                            {"field", "strain", "sigma", "correlation", "unit", "scale",
+                             "strain_unit", "gauge", "axes", "frame", "columns", "tolerance"});
   auto field = std::make_shared<FieldSpec>();
   const YamlNode& name = section.need("field", "write `field: u.csv`");
   field->file = read_file_path(name, "field" + of, folder);
   field->told = (folder.given / name.text).string();
-  std::map<std::string, std::string> columns;
-  if (const YamlNode* told = section.find("columns")) columns = read_columns(*told);
-  FieldTable table;
-  try {
-    table = read_field_table(field->file, field->told, columns);
-  } catch (const InputError& error) {
-    throw told_at(name.place, error);
-  }
+  if (!section.has("strain")) refuse_strain_keys(section);
+  FieldTable table = read_table(section, name, *field);
   const double length = length_of_one(section, capture, table, field->told);
   Frame frame;
   if (const YamlNode* told = section.find("frame")) frame = read_frame(*told);
   field->X = (frame.axes * (length * table.X)).colwise() + frame.origin;
-  if (!(field->X.cwiseAbs().maxCoeff() < 1e15 && table.u.cwiseAbs().maxCoeff() < 1e15))
-    throw InputError({field->told}, "there are places or displacements above 1e15",
-                     "lengths in the unit that is told");
   field->axes = frame.axes;
   field->components = table.has_w ? 3 : 2;
+  Eigen::MatrixXd value = length * table.u.topRows(field->components);
+  if (section.has("strain")) {
+    field->components = table.has_exy ? 3 : 2;
+    value = strain_scale(section, table, field->told) * table.strain.topRows(field->components);
+    field->strain = read_strain(section, table, field->told, length, frame.axes);
+    field->sigma = std::sqrt(field->strain->sigma.squaredNorm() / field->components);
+  } else {
+    field->strain_columns = table.strain_columns;
+  }
+  if (!(field->X.cwiseAbs().maxCoeff() < 1e15 && value.cwiseAbs().maxCoeff() < 1e15))
+    throw InputError({field->told},
+                     fmt::format("there are places or {} above 1e15",
+                                 field->strain ? "strains" : "displacements"),
+                     "lengths in the unit that is told");
   field->lines = std::move(table.lines);
   field->dropped = table.dropped;
   field->unit_told = section.has("unit") || section.has("scale") || !table.unit.empty();
@@ -243,10 +277,10 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
   MeasuredSpec out;
   out.kind = MeasuredSpec::Kind::field;
   out.place = node.place;
-  const Eigen::MatrixXd u = length * table.u.topRows(field->components);
-  out.value = u.reshaped();
-  out.sigma = field->alike.cwiseSqrt().transpose().replicate(field->components, 1).reshaped() *
-              field->sigma;
+  out.value = value.reshaped();
+  const VectorXd sigma =
+      field->strain ? field->strain->sigma : VectorXd::Constant(field->components, field->sigma);
+  out.sigma = (sigma * field->alike.cwiseSqrt().transpose()).reshaped();
   out.field = std::move(field);
   return out;
 }

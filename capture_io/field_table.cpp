@@ -1,7 +1,6 @@
 #include "capture_io/field_table.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -9,8 +8,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string_view>
+#include <tuple>
 
 #include "core/input_error.h"
 #include "core/text_file.h"
@@ -18,32 +19,6 @@
 namespace hookeye {
 
 namespace {
-
-constexpr std::array<const char*, 6> kRoles{"X", "Y", "Z", "U", "V", "W"};
-
-/// What a program calls them; "": it has none. Of two that fit a file the first is taken.
-struct Dialect {
-  std::array<const char*, 6> names;
-  const char* unit;
-};
-constexpr Dialect kDialects[] = {
-    {{"X", "Y", "Z", "U", "V", "W"}, ""},  // VIC-3D, MatchID
-    {{"MODEL_COORDINATES_X", "MODEL_COORDINATES_Y", "MODEL_COORDINATES_Z", "MODEL_DISPLACEMENT_X",
-      "MODEL_DISPLACEMENT_Y", "MODEL_DISPLACEMENT_Z"},
-     ""},  // DICe, stereo
-    {{"COORDINATE_X", "COORDINATE_Y", "", "DISPLACEMENT_X", "DISPLACEMENT_Y", ""}, "px"},  // DICe
-    {{"subset_x", "subset_y", "", "displacement_u", "displacement_v", ""}, "px"},          // pyvale
-    {{"X", "Y", "Z", "Ux", "Uy", "Uz"}, ""},
-    {{"x", "y", "z", "u", "v", "w"}, ""},
-    {{"x", "y", "z", "ux", "uy", "uz"}, ""},
-};
-
-std::string_view trimmed(std::string_view text) {
-  const auto quiet = [](char c) { return std::isspace(static_cast<unsigned char>(c)) || c == '"'; };
-  while (!text.empty() && quiet(text.front())) text.remove_prefix(1);
-  while (!text.empty() && quiet(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// One line after the other, without ends of line.
 class Lines {
@@ -79,37 +54,16 @@ void split(std::string_view line, char separator, std::vector<std::string_view>&
   if (separator == ' ') {
     for (size_t at = 0; (at = line.find_first_not_of(' ', at)) != std::string_view::npos;) {
       const size_t end = std::min(line.find(' ', at), line.size());
-      cells.push_back(trimmed(line.substr(at, end - at)));
+      cells.push_back(bare_cell(line.substr(at, end - at)));
       at = end;
     }
     return;
   }
   for (size_t at = 0; at <= line.size();) {
     const size_t end = std::min(line.find(separator, at), line.size());
-    cells.push_back(trimmed(line.substr(at, end - at)));
+    cells.push_back(bare_cell(line.substr(at, end - at)));
     at = end + 1;
   }
-}
-
-/// "Displacement.U [mm]" is the column U in mm.
-struct Head {
-  std::string name, unit;
-};
-
-Head head_of(std::string_view cell) {
-  Head out;
-  for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')')}) {
-    const size_t at = cell.find(open), end = cell.rfind(close);
-    if (at == std::string_view::npos || end == std::string_view::npos || end < at) continue;
-    out.unit = trimmed(cell.substr(at + 1, end - at - 1));
-    cell = trimmed(cell.substr(0, at));
-    break;
-  }
-  for (const char* group : {"Coordinates.", "Displacement."})
-    if (cell.starts_with(group)) cell.remove_prefix(std::string_view(group).size());
-  out.name = cell;
-  if (out.unit == "pixel" || out.unit == "pixels" || out.unit == "Pixel") out.unit = "px";
-  return out;
 }
 
 /// A number; not finite where the cell tells that there is none; empty: it is text.
@@ -133,88 +87,9 @@ std::optional<double> number_in(std::string_view cell, bool decimal_comma) {
   return value;
 }
 
-/// Where the columns stand; -1: the file has none.
-struct Columns {
-  std::array<int, 6> of_role{-1, -1, -1, -1, -1, -1};
-  int sigma = -1;      ///< below zero: not correlated (VIC-3D, DICe)
-  int flag = -1;       ///< the same (DICe)
-  int converged = -1;  ///< zero: not correlated (pyvale)
-  std::string unit;
-  size_t count = 0;
-};
-
-int find(const std::vector<Head>& heads, std::string_view name) {
-  for (size_t i = 0; i < heads.size(); ++i)
-    if (heads[i].name == name) return static_cast<int>(i);
-  return -1;
-}
-
-std::string listed(const std::vector<std::string_view>& cells) {
-  std::vector<std::string> shown;
-  for (size_t i = 0; i < std::min<size_t>(cells.size(), 20); ++i)
-    shown.emplace_back(cells[i].substr(0, 40));
-  return fmt::format("{}{}", fmt::join(shown, ", "), cells.size() > 20 ? ", ..." : "");
-}
-
-/// By the names that the user gave; the others must be the roles' own.
-void by_told_names(const std::map<std::string, std::string>& told, const Place& place,
-                   const std::vector<std::string_view>& cells, const std::vector<Head>& heads,
-                   Columns& out) {
-  for (size_t role = 0; role < kRoles.size(); ++role) {
-    const auto named = told.find(kRoles[role]);
-    out.of_role[role] = find(heads, named == told.end() ? kRoles[role] : named->second);
-    if (named == told.end()) continue;
-    for (size_t i = 0; i < cells.size() && out.of_role[role] < 0; ++i)
-      if (cells[i] == named->second) out.of_role[role] = static_cast<int>(i);
-    if (out.of_role[role] < 0)
-      throw InputError(place, fmt::format("there is no column `{}`", named->second),
-                       "the file has " + listed(cells));
-  }
-}
-
-Columns columns_in(const std::vector<std::string_view>& cells, const Place& place,
-                   const std::map<std::string, std::string>& told) {
-  std::vector<Head> heads;
-  for (const auto cell : cells) heads.push_back(head_of(cell));
-  Columns out;
-  out.count = cells.size();
-  const auto complete = [&] {
-    return out.of_role[0] >= 0 && out.of_role[1] >= 0 && out.of_role[3] >= 0 && out.of_role[4] >= 0;
-  };
-  if (!told.empty()) {
-    by_told_names(told, place, cells, heads, out);
-  } else {
-    for (const Dialect& dialect : kDialects) {
-      for (size_t role = 0; role < kRoles.size(); ++role)
-        out.of_role[role] = *dialect.names[role] ? find(heads, dialect.names[role]) : -1;
-      out.unit = dialect.unit;
-      if (complete()) break;
-    }
-  }
-  if (!complete())
-    throw InputError(place,
-                     "the columns of points and displacements are not found in " + listed(cells),
-                     "X, Y, U, V and, where they are known, Z and W; or tell the file's own names: "
-                     "`columns: {X: NAME, Y: NAME, U: NAME, V: NAME}`");
-  for (size_t role = 0; role < kRoles.size(); ++role) {
-    if (out.of_role[role] < 0) continue;
-    const Head& head = heads[static_cast<size_t>(out.of_role[role])];
-    if (head.unit.empty()) continue;
-    if (!out.unit.empty() && out.unit != head.unit)
-      throw InputError(
-          place, fmt::format("column `{}` is in {}, others in {}", head.name, head.unit, out.unit),
-          "one unit for all of them");
-    out.unit = head.unit;
-  }
-  for (const char* name : {"sigma", "SIGMA"})
-    if (out.sigma < 0) out.sigma = find(heads, name);
-  out.flag = find(heads, "STATUS_FLAG");
-  out.converged = find(heads, "converged");
-  return out;
-}
-
 /// Whether the file itself says that the row tells nothing.
-bool is_marked(const Columns& columns, const std::vector<std::string_view>& cells, bool comma) {
+bool is_marked(const FieldColumns& columns, const std::vector<std::string_view>& cells,
+               bool comma) {
   for (const int column : {columns.sigma, columns.flag})
     if (column >= 0 && number_in(cells[static_cast<size_t>(column)], comma).value_or(0.0) < 0.0)
       return true;
@@ -224,9 +99,11 @@ bool is_marked(const Columns& columns, const std::vector<std::string_view>& cell
 }
 
 /// By role, 0 where the file has none; not finite where a cell tells no number.
-std::array<double, 6> row_of(const std::vector<std::string_view>& cells, const Columns& columns,
-                             bool comma, const Place& place) {
-  std::array<double, 6> out{};
+using Row = std::array<double, kFieldRoles.size()>;
+
+Row row_of(const std::vector<std::string_view>& cells, const FieldColumns& columns, bool comma,
+           const Place& place) {
+  Row out{};
   for (size_t role = 0; role < out.size(); ++role) {
     if (columns.of_role[role] < 0) continue;
     const auto cell = cells[static_cast<size_t>(columns.of_role[role])];
@@ -238,14 +115,25 @@ std::array<double, 6> row_of(const std::vector<std::string_view>& cells, const C
                        "a number, or nan where the point has none");
     out[role] = *value;
   }
+  for (size_t role = 6; role < out.size(); ++role) out[role] *= columns.fraction;
+  if (columns.gamma) out[8] *= 0.5;
   return out;
+}
+
+/// Whether all is there that the field is read for.
+bool is_whole(const Row& row, FieldHolds holds) {
+  const auto finite = [&](size_t first) {
+    return std::all_of(row.begin() + first, row.begin() + first + 3,
+                       [](double x) { return std::isfinite(x); });
+  };
+  return finite(0) && finite(holds == FieldHolds::strains ? 6 : 3);
 }
 
 /// Skips what stands before the head; faults where there is none.
 void to_head(Lines& lines, const std::string& told, std::vector<std::string_view>& cells,
              char& separator) {
   while (lines.next()) {
-    const auto text = trimmed(lines.line);
+    const auto text = bare_cell(lines.line);
     if (text.empty() || text.starts_with('#') || text.starts_with("***")) continue;
     separator = separator_of(lines.line);
     split(lines.line, separator, cells);
@@ -260,10 +148,50 @@ void to_head(Lines& lines, const std::string& told, std::vector<std::string_view
   throw InputError({told}, "the file is empty", "a table of points with their displacements");
 }
 
+/// Two load cases, or two cameras, in one table.
+void refuse_twice(const FieldTable& table, const std::string& told) {
+  std::vector<Eigen::Index> order(static_cast<size_t>(table.X.cols()));
+  std::iota(order.begin(), order.end(), 0);
+  const auto at = [&](Eigen::Index k) {
+    return std::make_tuple(table.X(0, k), table.X(1, k), table.X(2, k));
+  };
+  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::make_tuple(at(a), a) < std::make_tuple(at(b), b);
+  });
+  for (size_t i = 1; i < order.size(); ++i)
+    if (at(order[i - 1]) == at(order[i])) {
+      const auto line = [&](size_t of) { return table.lines[static_cast<size_t>(order[of])]; };
+      const Eigen::Vector3d X = table.X.col(order[i]);
+      throw InputError({told, line(i)},
+                       fmt::format("the point ({:g}, {:g}, {:g}) stands in line {} already", X.x(),
+                                   X.y(), X.z(), line(i - 1)),
+                       "one row a point; a file for each load case and each camera pair");
+    }
+}
+
+FieldTable table_of(const std::vector<Row>& rows, const FieldColumns& columns) {
+  FieldTable out;
+  out.unit = columns.unit, out.measure = columns.measure, out.strain_unit = columns.strain_unit;
+  out.strain_columns = columns.strains;
+  out.has_z = columns.has(2), out.has_u = columns.has(3) && columns.has(4);
+  out.has_w = columns.has(5), out.has_exy = columns.has(8);
+  out.X.resize(3, static_cast<Eigen::Index>(rows.size()));
+  out.u.resize(3, out.X.cols());
+  out.strain.resize(3, out.X.cols());
+  for (Eigen::Index k = 0; k < out.X.cols(); ++k)
+    for (int i = 0; i < 3; ++i) {
+      const Row& row = rows[static_cast<size_t>(k)];
+      out.X(i, k) = row[static_cast<size_t>(i)];
+      out.u(i, k) = row[static_cast<size_t>(i) + 3];
+      out.strain(i, k) = row[static_cast<size_t>(i) + 6];
+    }
+  return out;
+}
+
 }  // namespace
 
 FieldTable read_field_table(const std::filesystem::path& file, const std::string& told,
-                            const std::map<std::string, std::string>& names) {
+                            const std::map<std::string, std::string>& names, FieldHolds holds) {
   const std::string text = read_text(file);
   if (const size_t zero = text.find('\0'); zero != std::string::npos)
     throw InputError(
@@ -273,15 +201,13 @@ FieldTable read_field_table(const std::filesystem::path& file, const std::string
   std::vector<std::string_view> cells;
   char separator = ',';
   to_head(lines, told, cells, separator);
-  const Columns columns = columns_in(cells, {told, lines.number}, names);
-  FieldTable out;
-  out.unit = columns.unit;
-  out.has_z = columns.of_role[2] >= 0;
-  out.has_w = columns.of_role[5] >= 0;
+  const FieldColumns columns = field_columns(cells, {told, lines.number}, names, holds);
   const bool comma = separator == ';' || separator == '\t';
-  std::vector<std::array<double, 6>> rows;
+  std::vector<Row> rows;
+  std::vector<int> at;
+  int dropped = 0;
   while (lines.next()) {
-    if (trimmed(lines.line).empty()) continue;
+    if (bare_cell(lines.line).empty()) continue;
     split(lines.line, separator, cells);
     if (cells.size() == columns.count + 1 && cells.back().empty()) cells.pop_back();
     if (cells.size() != columns.count)
@@ -289,26 +215,21 @@ FieldTable read_field_table(const std::filesystem::path& file, const std::string
           {told, lines.number},
           fmt::format("the row has {} cells, the head {}", cells.size(), columns.count),
           "one cell for every column");
-    const std::array<double, 6> row = row_of(cells, columns, comma, {told, lines.number});
-    const bool whole =
-        std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); });
-    if (!whole || is_marked(columns, cells, comma)) {
-      ++out.dropped;
+    const Row row = row_of(cells, columns, comma, {told, lines.number});
+    if (!is_whole(row, holds) || is_marked(columns, cells, comma)) {
+      ++dropped;
       continue;
     }
     rows.push_back(row);
-    out.lines.push_back(lines.number);
+    at.push_back(lines.number);
   }
   if (rows.empty())
-    throw InputError({told}, fmt::format("no point is left ({} rows dropped)", out.dropped),
-                     "rows with numbers for the place and the displacement of a point");
-  out.X.resize(3, static_cast<Eigen::Index>(rows.size()));
-  out.u.resize(3, out.X.cols());
-  for (Eigen::Index k = 0; k < out.X.cols(); ++k)
-    for (int i = 0; i < 3; ++i) {
-      out.X(i, k) = rows[static_cast<size_t>(k)][static_cast<size_t>(i)];
-      out.u(i, k) = rows[static_cast<size_t>(k)][static_cast<size_t>(i) + 3];
-    }
+    throw InputError({told}, fmt::format("no point is left ({} rows dropped)", dropped),
+                     fmt::format("rows with numbers for the place and the {} of a point",
+                                 holds == FieldHolds::strains ? "strains" : "displacement"));
+  FieldTable out = table_of(rows, columns);
+  out.lines = std::move(at), out.dropped = dropped;
+  refuse_twice(out, told);
   return out;
 }
 

@@ -24,6 +24,10 @@ const MeasuredKind& kind_of(const MeasuredSpec& measured) {
   return kKinds[static_cast<size_t>(measured.kind)];
 }
 
+bool is_strain_field(const MeasuredSpec& measured) {
+  return measured.field && measured.field->strain;
+}
+
 bool is_reaction(const MeasuredSpec& measured) {
   const std::string unit = kind_of(measured).unit;
   return unit == "force" || unit == "moment";
@@ -34,6 +38,7 @@ bool is_on_body(const MeasuredSpec& measured) {
 }
 
 std::string unit_of(const MeasuredSpec& measured, const Units& units) {
+  if (is_strain_field(measured)) return "";
   const std::string unit = kind_of(measured).unit;
   return unit == "force"                     ? units.force
          : unit == "moment"                  ? units.force + " " + units.length

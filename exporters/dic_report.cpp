@@ -175,8 +175,9 @@ CASE-VIEW.csv   one row a point of the body that the camera sees, or of a measur
   x, y, z       where it is at rest, in the body's frame [{}]
   u, v, w       displacement of the model
   exx, eyy, exy Green-Lagrange strain of the model in the plane of the surface; exy is half of the
-                engineering shear. x is the picture's right (of a field its x) laid into the surface,
-                or what --along told, y is left of x seen from outside
+                engineering shear. x is the picture's right laid into the surface, or what --along
+                told, y is left of x seen from outside. Of a measured field both are along its own
+                axes, where these lie in the surface; a field of strains has them over its gauge
   e1, e2, angle principal strains; of e1 from x towards y, in degrees
   von_mises     2/sqrt(3) sqrt(e1^2 + e1 e2 + e2^2)
   u_photo, ..   the same of the photos: model, and the motion that removes the residual. Empty: the

@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "capture_io/strain_field.h"
 #include "estimation/model/field_points.h"
 #include "exporters/seen_motion.h"
 #include "meshing/extent.h"
@@ -188,24 +189,79 @@ SeenPoints seen_by(const SeenPoints& grid, const CasePhoto& own, const std::vect
   return out;
 }
 
+/// What is measured of strains, as Green-Lagrange ones. Small strains are taken for stretches
+/// without a turn. Empty: there is no shear.
+std::optional<SurfaceStrain> as_green(StrainMeasure measure, const VectorXd& e) {
+  if (e.size() < 3) return {};
+  Eigen::Matrix2d E, C;
+  E << e[0], e[2], e[2], e[1];
+  switch (measure) {
+    case StrainMeasure::green:
+      return SurfaceStrain{e[0], e[1], e[2]};
+    case StrainMeasure::hencky: {
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(E);
+      C = eigen.eigenvectors() * (2.0 * eigen.eigenvalues()).array().exp().matrix().asDiagonal() *
+          eigen.eigenvectors().transpose();
+      break;
+    }
+    case StrainMeasure::engineering: {
+      const double x = 1.0 + e[0], y = 1.0 + e[1], shear = x * y * std::sin(2.0 * e[2]);
+      C << x * x, shear, shear, y * y;
+      break;
+    }
+    default:
+      C = (Eigen::Matrix2d::Identity() + E) * (Eigen::Matrix2d::Identity() + E);
+  }
+  return SurfaceStrain{0.5 * (C(0, 0) - 1.0), 0.5 * (C(1, 1) - 1.0), 0.5 * C(0, 1)};
+}
+
+/// Of a field of strains: the model's over the field's gauge, and the measured ones.
+void set_strains(const Model& model, const MeasuredSpec& told, const StrainPoints& points,
+                 const VectorXd& q, SeenPoints& out) {
+  FieldSpec green = *told.field;
+  auto strain = std::make_shared<StrainSpec>(*green.strain);
+  strain->measure = StrainMeasure::green;
+  green.strain = strain;
+  const PointStrainer strainer(model.scene->body->mesh, green, points, model.placement.linear());
+  const int c = told.field->components;
+  for (int i = 0; i < out.size(); ++i) {
+    const Vector3d e = strainer.at(i, q, nullptr, {}).e;
+    out.strain[static_cast<size_t>(i)] = {e[0], e[1], e[2]};
+    out.strain_seen[static_cast<size_t>(i)] =
+        as_green(told.field->strain->measure, told.value.segment(c * i, c));
+  }
+}
+
+/// Tangents of a field of displacements: along its own axes where these lie in the surface.
+Tangents tangents_in(const FieldSpec& field, const Vector3d& normal, const SeenOptions& options) {
+  if (!options.along)
+    if (const auto own = tangents_along(normal, field.axes.leftCols<2>())) return *own;
+  return tangents_of(normal, options.along.value_or(field.axes.col(0)));
+}
+
 SeenPoints seen_in_field(const Model& model, const MeasuredSpec& told,
                          const MeasuredEvaluation& measured, const VectorXd& q,
                          const BoundaryLocator& locator, const SeenOptions& options) {
   const TetMesh& mesh = model.scene->body->mesh;
   const BoundaryFaces faces(mesh);
   const FieldSpec& field = *told.field;
+  const FieldPoints points = field_points(mesh, field);
   SeenPoints out;
   out.view = std::filesystem::path(field.told).stem().string();
   out.camera = false, out.spacing = field.spacing;
-  out.X = field_points(mesh, field).rest;
+  out.X = points.rest;
   for (Eigen::Index i = 0; i < out.X.cols(); ++i) {
     SurfacePoint point;
     locator.locate(field.X.col(i), &point);
     out.points.push_back(point);
-    out.tangents.push_back(
-        tangents_of(faces.normal(point), options.along.value_or(field.axes.col(0))));
+    out.tangents.push_back(points.strain ? points.strain->tangents[static_cast<size_t>(i)]
+                                         : tangents_in(field, faces.normal(point), options));
   }
   set_model(mesh, q, out);
+  if (points.strain) {
+    set_strains(model, told, *points.strain, q, out);
+    return out;
+  }
   const Eigen::Matrix3d turn = model.placement.linear();
   const int c = field.components;
   for (int i = 0; i < out.size(); ++i) {

@@ -2,15 +2,11 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <array>
 #include <optional>
-#include <vector>
 
-#include "meshing/tet_mesh.h"
+#include "estimation/model/boundary_faces.h"
 
 namespace hookeye {
-
-using Tangents = Eigen::Matrix<double, 3, 2>;  ///< two unit vectors in the surface at rest
 
 /// Green-Lagrange strain in the plane of the surface: E = 1/2 (T^T F^T F T - 1).
 struct SurfaceStrain {
@@ -27,19 +23,6 @@ SurfaceStrain strain_of(const Tangents& A);
 /// The same in other tangents of the same plane: `turn` = old tangents^T new ones.
 SurfaceStrain turned(const SurfaceStrain& strain, const Eigen::Matrix2d& turn);
 
-/// Which faces of the elements are the boundary's.
-class BoundaryFaces {
- public:
-  explicit BoundaryFaces(const TetMesh& mesh);
-  /// Of the boundary faces of its element the one that the point lies on: the corner opposite.
-  int opposite(const SurfacePoint& point) const;
-  /// Outward normal there, unit.
-  Vector3d normal(const SurfacePoint& point) const;
-
- private:
-  const TetMesh& mesh_;
-  std::vector<std::array<bool, 4>> opposite_;  ///< by element and corner
-};
 /// The first is `along` laid into the surface (where that is normal to it: another axis), the
 /// second the normal crossed with it.
 Tangents tangents_of(const Vector3d& normal, const Vector3d& along);

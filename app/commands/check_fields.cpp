@@ -1,7 +1,9 @@
 #include "app/commands/check_fields.h"
 
+#include <algorithm>
 #include <functional>
 
+#include "capture_io/strain_field.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/model/field_points.h"
 #include "runs/text.h"
@@ -24,6 +26,15 @@ double rough_of(const MeasuredSpec& measured) {
   return rough_field(*measured.field, measured.value.cwiseQuotient(measured.sigma)).chi();
 }
 
+double gap_of(const TetMesh& mesh, const FieldSpec& field) {
+  const BoundaryLocator locator(mesh);
+  double out = 0.0;
+  SurfacePoint point;
+  for (Eigen::Index k = 0; k < field.X.cols(); ++k)
+    out = std::max(out, locator.locate(field.X.col(k), &point));
+  return out;
+}
+
 }  // namespace
 
 Json describe_fields(const Scene& scene) {
@@ -34,6 +45,7 @@ Json describe_fields(const Scene& scene) {
                    {"file", field.told},
                    {"points", field.X.cols()},
                    {"dropped", field.dropped},
+                   {"holds", field.strain ? "strains" : "displacements"},
                    {"components", field.components},
                    {"spacing", field.spacing},
                    {"correlation", field.correlation},
@@ -41,26 +53,52 @@ Json describe_fields(const Scene& scene) {
                    {"sigma", field.sigma},
                    {"rough", rough > 0.0 ? Json(rough * field.sigma) : Json()},
                    {"largest", measured.value.cwiseAbs().maxCoeff()},
-                   {"gap", field_points(scene.body->mesh, field).gap.maxCoeff()}});
+                   {"gap", gap_of(scene.body->mesh, field)}});
+    if (field.strain)
+      out.back().update({{"strain", name_of(field.strain->measure)},
+                         {"gauge", field.strain->gauge},
+                         {"sigmas", std::vector<double>(field.strain->sigma.begin(),
+                                                        field.strain->sigma.end())}});
   });
   return out;
 }
 
 void say_fields(const Scene& scene, const Json& fields, const Session& session) {
-  if (fields.empty()) return;
-  std::vector<std::vector<std::string>> rows{{"example", "field", "points", "dropped", "alike",
-                                              "numbers", "sigma", "rough", "largest", "gap"}};
-  const auto short_number = [](const Json& value) {
-    return value.is_null() ? "-" : fmt::format("{:.3g}", value.get<double>());
+  const std::string& length = scene.capture.units.length;
+  const std::vector<std::string> heads{"example", "field", "points", "dropped", "alike",
+                                       "numbers", "sigma", "rough",  "largest", "gap"};
+  std::vector<std::vector<std::string>> moved{heads}, strained{heads};
+  strained[0].insert(strained[0].begin() + 2, {"measure", "gauge"});
+  const auto short_number = [](const Json& value, double in = 1.0) {
+    return value.is_null() ? "-" : fmt::format("{:.3g}", in * value.get<double>());
   };
-  for (const auto& one : fields)
-    rows.push_back(
-        {one["example"], std::filesystem::path(one["file"].get<std::string>()).filename().string(),
-         std::to_string(one["points"].get<long>()), std::to_string(one["dropped"].get<long>()),
-         short_number(one["correlation"]), fmt::format("{:.0f}", one["numbers"].get<double>()),
-         short_number(one["sigma"]), short_number(one["rough"]), short_number(one["largest"]),
-         short_number(one["gap"])});
-  session.say("\nmeasured fields [{}]\n{}", scene.capture.units.length, table(rows));
+  for (const auto& one : fields) {
+    const bool strains = one["holds"] == "strains";
+    const double in = strains ? 1e3 : 1.0;
+    std::vector<std::string> row{
+        one["example"],
+        std::filesystem::path(one["file"].get<std::string>()).filename().string(),
+        std::to_string(one["points"].get<long>()),
+        std::to_string(one["dropped"].get<long>()),
+        short_number(one["correlation"]),
+        fmt::format("{:.0f}", one["numbers"].get<double>()),
+        short_number(one["sigma"], in),
+        short_number(one["rough"], in),
+        short_number(one["largest"], in),
+        short_number(one["gap"])};
+    if (strains)
+      row.insert(row.begin() + 2, {one["strain"].get<std::string>(), short_number(one["gauge"])});
+    (strains ? strained : moved).push_back(std::move(row));
+  }
+  if (moved.size() > 1) session.say("\nmeasured fields [{}]\n{}", length, table(moved));
+  if (strained.size() > 1)
+    session.say("\nmeasured strains [millistrain; alike, gauge and gap in {}]\n{}", length,
+                table(strained));
+  for_each_field(scene, [&](const auto&, const auto&, const auto& field) {
+    if (!field.strain_columns.empty())
+      session.say("{} holds strains too ({}): an entry with `strain: green` would read them",
+                  field.told, field.strain_columns);
+  });
 }
 
 void warn_of_fields(const Scene& scene, Session& session) {
@@ -77,17 +115,25 @@ void warn_of_fields(const Scene& scene, Session& session) {
           fmt::format("{}{} of {} rows of {} are dropped: they have no number, or the file "
                       "marks them as lost",
                       at, field.dropped, rows, field.told));
+    if (field.strain && !field.strain->gauge_told)
+      session.warn(
+          fmt::format("{}the strains of {} are taken pointwise: tell over which length "
+                      "the program smoothed, `gauge: LENGTH` (0: none)",
+                      at, field.told));
     const double rough = rough_of(measured);
+    const std::string size = field.strain
+                                 ? fmt::format("{:.2g} millistrain", 1e3 * rough * field.sigma)
+                                 : fmt::format("{:.2g} {}", rough * field.sigma, length);
     if (rough > 0.0 && rough < 0.5)
-      session.warn(fmt::format(
-          "{}the field is rough by {:.2g} {} only, and `sigma` is {:g}: told too large it hides "
-          "what is missing",
-          at, rough * field.sigma, length, field.sigma));
+      session.warn(
+          fmt::format("{}the field is rough by {} only, and `sigma` is {:g}: told too "
+                      "large it hides what is missing",
+                      at, size, field.sigma));
     else if (rough > 2.0 && is_rest(example))
-      session.warn(fmt::format(
-          "{}at rest the field is rough by {:.2g} {}, and `sigma` is {:g}: told too small it "
-          "promises too much; rows that are outliers may do it too",
-          at, rough * field.sigma, length, field.sigma));
+      session.warn(
+          fmt::format("{}at rest the field is rough by {}, and `sigma` is {:g}: told too "
+                      "small it promises too much; rows that are outliers may do it too",
+                      at, size, field.sigma));
   });
 }
 

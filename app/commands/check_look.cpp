@@ -131,6 +131,7 @@ figure { margin: 0 } img { width: 100%; display: block } figcaption { font-size:
 Json describe_field_motion(const Scene& scene, const FieldMotion& field) {
   return {{"example", scene.capture.examples[static_cast<size_t>(field.example)].name},
           {"file", field.file},
+          {"holds", field.strain ? "strains" : "displacements"},
           {"seen", field.seen},
           {"expected", field.expected},
           {"cosine", field.cosine},
@@ -159,14 +160,24 @@ void say_field_motions(const Scene& scene, const Inspection& inspection, const S
   std::vector<std::vector<std::string>> rows{{"field", "example", "moves [" + length + "]",
                                               "expected", "cosine", "without rigid", "expected",
                                               "cosine", ""}};
-  for (const FieldMotion& field : inspection.fields)
-    rows.push_back({std::filesystem::path(field.file).filename().string(),
-                    scene.capture.examples[static_cast<size_t>(field.example)].name,
-                    text(field.seen, "{:.3g}"), text(field.expected, "{:.3g}"),
-                    text(field.cosine, "{:.3f}"), text(field.seen_bent, "{:.3g}"),
-                    text(field.expected_bent, "{:.3g}"), text(field.cosine_bent, "{:.3f}"),
-                    times_text(field.seen, field.expected)});
+  std::vector<std::vector<std::string>> strains{
+      {"strain field", "example", "rms [millistrain]", "expected", "cosine", ""}};
+  for (const FieldMotion& field : inspection.fields) {
+    const std::string file = std::filesystem::path(field.file).filename().string();
+    const std::string& example = scene.capture.examples[static_cast<size_t>(field.example)].name;
+    const std::string times = times_text(field.seen, field.expected);
+    if (field.strain)
+      strains.push_back({file, example, text(1e3 * field.seen, "{:.3g}"),
+                         text(1e3 * field.expected, "{:.3g}"), text(field.cosine, "{:.3f}"),
+                         times});
+    else
+      rows.push_back({file, example, text(field.seen, "{:.3g}"), text(field.expected, "{:.3g}"),
+                      text(field.cosine, "{:.3f}"), text(field.seen_bent, "{:.3g}"),
+                      text(field.expected_bent, "{:.3g}"), text(field.cosine_bent, "{:.3f}"),
+                      times});
+  }
   if (rows.size() > 1) session.say("\n{}", table(rows));
+  if (strains.size() > 1) session.say("\n{}", table(strains));
 }
 
 }  // namespace

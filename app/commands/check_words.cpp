@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/describe.h"
+#include "capture_io/strain_field.h"
 
 namespace hookeye {
 
@@ -37,9 +38,14 @@ std::string load_text(const LoadSpec& load, const Units& units) {
 }
 
 std::string measured_text(const MeasuredSpec& measured) {
-  if (measured.field)
-    return fmt::format("field of {} points{}", measured.field->X.cols(),
-                       measured.field->components == 2 ? " (in plane)" : "");
+  if (measured.field) {
+    const FieldSpec& field = *measured.field;
+    if (field.strain)
+      return fmt::format("field of {} strains at {} points{}", name_of(field.strain->measure),
+                         field.X.cols(), field.components == 2 ? " (exx, eyy)" : "");
+    return fmt::format("field of {} points{}", field.X.cols(),
+                       field.components == 2 ? " (in plane)" : "");
+  }
   if (measured.kind == MeasuredSpec::Kind::strain_of)
     return fmt::format("strain from {} to {}", vector_text(measured.point),
                        vector_text(measured.direction));

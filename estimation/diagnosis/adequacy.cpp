@@ -70,7 +70,7 @@ MotionLeft moved_in_field(const MeasuredSpec& spec, const MeasuredEvaluation& fi
   double bias2 = 0.0;
   if (mesh_step.size() > 0 && field.J.cols() == mesh_step.size())
     bias2 = (field.J * mesh_step).squaredNorm();
-  // |r|^2 that one length of displacement all over would bring.
+  // |r|^2 that one length of displacement (or a strain of 1) all over would bring.
   const double information = numbers / (told.components * told.sigma * told.sigma);
   const double noise = std::sqrt(noise2 * chi2_quantile(1.0 - chance, smooth.numbers));
   return {field.example,
@@ -129,6 +129,11 @@ const MotionLeft* most_moved(const std::vector<MotionLeft>& motions) {
 
 std::string in_words(const MotionLeft& motion, const Scene& scene) {
   const ExampleSpec& example = scene.capture.examples[motion.example];
+  if (motion.field && is_strain_field(example.measured[motion.photo]))
+    return fmt::format(
+        "the strain field of '{}' still shows the body strained smoothly otherwise, by {:.2g} "
+        "millistrain where noise and mesh leave {:.2g} at most",
+        example.name, 1e3 * motion.px, 1e3 * motion.most_px);
   if (motion.field)
     return fmt::format(
         "the field of '{}' still shows the body moved smoothly, by {:.2g} {} where noise and mesh "

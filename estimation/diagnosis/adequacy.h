@@ -16,7 +16,7 @@ struct MotionLeft {
   bool held_out = false;
   double px = 0.0;       ///< root mean square over the photo; of a silhouette, across its rim
   double most_px = 0.0;  ///< what chance, the renderer and the mesh may leave
-  bool field = false;    ///< then px and most_px are lengths, over the field
+  bool field = false;    ///< then px and most_px are lengths (or strains), over the field
   double times() const { return px / most_px; }
 };
 

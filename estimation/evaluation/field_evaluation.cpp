@@ -9,8 +9,35 @@
 
 namespace hookeye {
 
+namespace {
+
+/// The same of strains.
+SensorPrediction predicted_strains(const FieldSpec& field, const FieldPoints& points,
+                                   const Sensed& seen, Eigen::Index first, Eigen::Index count) {
+  const int components = field.components;
+  SensorPrediction out;
+  out.value.resize(components * count);
+  if (seen.columns) out.J.resize(components * count, seen.S.cols());
+  std::vector<std::pair<Eigen::Index, Eigen::Matrix3d>> turning;
+  for (Eigen::Index j = 0; seen.columns && j < seen.S.cols(); ++j)
+    if (const auto turn = seen.columns->d_placement.col(j); !turn.isZero(0.0))
+      turning.emplace_back(j, Eigen::Map<const Eigen::Matrix3d>(turn.data()));
+  const PointStrainer strainer(seen.scene.body->mesh, field, *points.strain,
+                               seen.model.placement.linear());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const PointStrain at =
+        strainer.at(first + k, seen.equilibrium.q, seen.columns ? &seen.S : nullptr, turning);
+    out.value.segment(components * k, components) = at.e.head(components);
+    if (seen.columns) out.J.middleRows(components * k, components) = at.J.topRows(components);
+  }
+  return out;
+}
+
+}  // namespace
+
 SensorPrediction predicted_field(const MeasuredSpec& measured, const FieldPoints& points,
                                  const Sensed& seen, Eigen::Index first, Eigen::Index count) {
+  if (points.strain) return predicted_strains(*measured.field, points, seen, first, count);
   const int components = measured.field->components;
   const auto along = measured.field->axes.leftCols(components).transpose();
   const Eigen::Matrix3d& turn = seen.model.placement.linear();

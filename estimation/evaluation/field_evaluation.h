@@ -8,7 +8,8 @@
 
 namespace hookeye {
 
-/// Predictions of points [first, first + count) of a field, along its axes, and their derivatives.
+/// Predictions of points [first, first + count) of a field, displacements along its axes or strains
+/// along theirs, and their derivatives.
 SensorPrediction predicted_field(const MeasuredSpec& measured, const FieldPoints& points,
                                  const Sensed& seen, Eigen::Index first, Eigen::Index count);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimation/model/field_points.h"
+#include "estimation/model/strain_measure.h"
 #include "meshing/extent.h"
 
 namespace hookeye::inspection {
@@ -41,8 +42,21 @@ double cosine_of(const VectorXd& a, const VectorXd& b) {
   return size > 0.0 ? a.dot(b) / size : 0.0;
 }
 
+FieldMotion strain_of(const MeasuredSpec& measured, const TetMesh& mesh, const VectorXd& u) {
+  const VectorXd expected = strains_to_first_order(*measured.field, mesh, u);
+  FieldMotion out;
+  out.strain = true;
+  out.file = measured.field->told;
+  out.place = measured.place;
+  out.seen = out.seen_bent = length_of(measured.value, *measured.field);
+  out.expected = out.expected_bent = length_of(expected, *measured.field);
+  out.cosine = out.cosine_bent = cosine_of(measured.value, expected);
+  return out;
+}
+
 FieldMotion motion_of(const MeasuredSpec& measured, const TetMesh& mesh, const VectorXd& u) {
   const FieldSpec& field = *measured.field;
+  if (field.strain) return strain_of(measured, mesh, u);
   const Matrix3Xd nodal = u.reshaped(3, mesh.nodes());
   const Matrix3Xd at_points = (field_points(mesh, field).N * nodal.transpose()).transpose();
   const VectorXd expected = components_of(field, at_points);
@@ -64,6 +78,22 @@ FieldMotion motion_of(const MeasuredSpec& measured, const TetMesh& mesh, const V
 }
 
 }  // namespace
+
+VectorXd strains_to_first_order(const FieldSpec& field, const TetMesh& mesh, const VectorXd& u) {
+  const BoundaryLocator locator(mesh);
+  const StrainPoints points = strain_points(mesh, field, locator);
+  const Matrix3Xd nodal = u.reshaped(3, mesh.nodes());
+  const std::array<Matrix3Xd, 2> G{(points.D[0] * nodal.transpose()).transpose(),
+                                   (points.D[1] * nodal.transpose()).transpose()};
+  Matrix3Xd out(3, field.X.cols());
+  for (Eigen::Index k = 0; k < out.cols(); ++k) {
+    const Tangents& T = points.tangents[static_cast<size_t>(k)];
+    Tangents A = T;
+    for (int j = 0; j < 2; ++j) A.col(j) += G[static_cast<size_t>(j)].col(k);
+    out.col(k) = strain_by(StrainMeasure::small, A, T).e;
+  }
+  return out.topRows(field.components).reshaped();
+}
 
 std::vector<FieldMotion> field_motions(Sight& sight, int e) {
   std::vector<FieldMotion> out;

@@ -11,4 +11,7 @@ namespace hookeye::inspection {
 /// Of every field of example `e`, to first order. Empty: it has none, or there is no first guess.
 std::vector<FieldMotion> field_motions(Sight& sight, int e);
 
+/// Small strains of a field's points where the mesh's nodes move by u (3n), in its components.
+VectorXd strains_to_first_order(const FieldSpec& field, const TetMesh& mesh, const VectorXd& u);
+
 }  // namespace hookeye::inspection

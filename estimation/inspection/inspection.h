@@ -58,7 +58,7 @@ struct GuessLook {
 };
 
 /// A measured field against the first guess to first order, at its points and in its components.
-/// Lengths are rms over the points [length].
+/// Lengths are rms over the points [length; of strains 1].
 struct FieldMotion {
   int example = 0;
   std::string file;
@@ -67,6 +67,7 @@ struct FieldMotion {
   double cosine = 0;  ///< between the two; 1: the same direction everywhere
   /// The same once the best rigid motion is out of each: what the body is bent and stretched by.
   double seen_bent = 0, expected_bent = 0, cosine_bent = 0;
+  bool strain = false;  ///< strains: no rigid motion is in them
 };
 
 struct Inspection {

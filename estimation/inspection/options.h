@@ -82,6 +82,14 @@ struct InspectionOptions {
                               ///< a weight has a sure sign: the capture may leave the weight out
   double weight_moved = 0.3;  ///< of it changes between load cases: soft bodies strain by as much
 
+  // Fields of strains, read another way.
+  int strain_points = 400;         ///< of a field are looked at
+  double steps_about = 1.6;        ///< from point to point: the eight next ones of a square grid
+  double left_by_reading = 0.5;    ///< of what is left of the strains as told, at most
+  double sure_reading = 0.9;       ///< least cosine to what the other reading says
+  double sigmas_of_reading = 1.0;  ///< rms that is left as told, at least: noise has no reading
+  double close_unit = 1.3;         ///< of units, which are a thousand or a hundred times each other
+
   // How far it moves, against the first guess to first order.
   double most_times_by_force = 30.0;  ///< a modulus that is told ten times wrong is found by a fit;
                                       ///< measured: 0.65 to 2.0

@@ -49,6 +49,8 @@ FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field) {
   out.N.resize(field.X.cols(), mesh.nodes());
   out.N.setFromTriplets(entries.begin(), entries.end());
   out.rest = (out.N * mesh.X.transpose()).transpose();
+  if (field.strain)
+    out.strain = std::make_shared<const StrainPoints>(strain_points(mesh, field, locator));
   return out;
 }
 
@@ -71,7 +73,10 @@ void check_fields(const Scene& scene, const ExampleSpec& example) {
       off += gap > most;
       if (gap > farthest) farthest = gap, at = k;
     }
-    if (off == 0) continue;
+    if (off == 0) {
+      if (field.strain) strain_tangents(mesh, field, locator);
+      continue;
+    }
     const Vector3d X = field.X.col(at);
     throw InputError(
         {field.told, field.lines[static_cast<size_t>(at)]},

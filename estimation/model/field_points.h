@@ -2,16 +2,19 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <memory>
 
 #include "estimation/model/model.h"
+#include "estimation/model/strain_points.h"
 
 namespace hookeye {
 
 struct FieldPoints {
   /// Shape functions at the points, projected to the surface: points x nodes.
   Eigen::SparseMatrix<double, Eigen::RowMajor> N;
-  Matrix3Xd rest;  ///< N applied to the mesh at rest
-  VectorXd gap;    ///< distance of the told point from there [length]
+  Matrix3Xd rest;                              ///< N applied to the mesh at rest
+  VectorXd gap;                                ///< distance of the told point from there [length]
+  std::shared_ptr<const StrainPoints> strain;  ///< of a field of strains
 };
 FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field);
 
@@ -19,7 +22,8 @@ FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field);
 double field_tolerance(const TetMesh& mesh, const FieldSpec& field);
 
 /// Throws InputError with file and line for the point that lies farthest off the surface, if that
-/// is beyond the tolerance; hints at a wrong unit where that would bring the points onto it.
+/// is beyond the tolerance; hints at a wrong unit where that would bring the points onto it. So do
+/// axes of strains that do not lie in the surface.
 void check_fields(const Scene& scene, const ExampleSpec& example);
 
 }  // namespace hookeye

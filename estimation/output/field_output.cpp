@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "capture_io/strain_field.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/model/field_points.h"
 
@@ -24,7 +25,8 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
                      {"chi", std::sqrt(one.r.squaredNorm() / one.size())},
                      {"rms", std::sqrt(apart.squaredNorm() / static_cast<double>(apart.size()))},
                      {"largest", apart.cwiseAbs().maxCoeff()},
-                     {"unit", scene.capture.units.length},
+                     {"holds", told.field->strain ? "strains" : "displacements"},
+                     {"unit", told.field->strain ? "strain" : scene.capture.units.length},
                      {"sigma", told.field->sigma},
                      {"rough", rough.count > 0.0 ? json(rough.chi()) : json()},
                      {"components", told.field->components},
@@ -32,6 +34,8 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
                      {"dropped", told.field->dropped},
                      {"numbers", one.numbers},
                      {"correlation", told.field->correlation}});
+      if (const auto& strain = told.field->strain)
+        all.back().update({{"strain", name_of(strain->measure)}, {"gauge", strain->gauge}});
     }
   return all;
 }
@@ -39,29 +43,39 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
 NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example) {
   const TetMesh& mesh = scene.body->mesh;
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(1, mesh.nodes());
-  NodalField out{Eigen::MatrixXd::Zero(3, mesh.nodes()), none, none};
+  const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(3, mesh.nodes());
+  NodalField out{zero, zero, none, none};
+  Eigen::MatrixXd moved = none, strained = none;  // shares by kind
   for (const auto& one : example.measured) {
     const MeasuredSpec& told = scene.capture.examples[example.example].measured[one.index];
     if (!told.field) continue;
-    const FieldPoints points = field_points(mesh, *told.field);
+    const FieldSpec& field = *told.field;
+    const FieldPoints points = field_points(mesh, field);
     const VectorXd apart = one.predicted - told.value;
-    const int components = told.field->components;
+    const VectorXd over = apart.cwiseQuotient(told.sigma);
+    const int components = field.components;
+    (field.strain ? out.has_strains : out.has_motions) = true;
     for (Eigen::Index k = 0; k < points.N.rows(); ++k) {
       const VectorXd here = apart.segment(components * k, components);
+      const double rms =
+          field.alike[k] * over.segment(components * k, components).squaredNorm() / components;
       for (decltype(points.N)::InnerIterator it(points.N, k); it; ++it) {
         const double share = std::abs(it.value());
-        out.residual.col(it.col()) += share * told.field->axes.leftCols(components) * here;
-        out.rms(0, it.col()) +=
-            share * here.squaredNorm() / (components * std::pow(told.field->sigma, 2));
-        out.share(0, it.col()) += share;
+        if (field.strain)
+          out.strain.col(it.col()).head(components) += share * here;
+        else
+          out.residual.col(it.col()) += share * field.axes.leftCols(components) * here;
+        (field.strain ? strained : moved)(0, it.col()) += share;
+        out.rms(0, it.col()) += share * rms;
       }
     }
   }
-  for (Eigen::Index n = 0; n < mesh.nodes(); ++n)
-    if (out.share(0, n) > 0.0) {
-      out.residual.col(n) /= out.share(0, n);
-      out.rms(0, n) = std::sqrt(out.rms(0, n) / out.share(0, n));
-    }
+  out.share = moved + strained;
+  for (Eigen::Index n = 0; n < mesh.nodes(); ++n) {
+    if (moved(0, n) > 0.0) out.residual.col(n) /= moved(0, n);
+    if (strained(0, n) > 0.0) out.strain.col(n) /= strained(0, n);
+    if (out.share(0, n) > 0.0) out.rms(0, n) = std::sqrt(out.rms(0, n) / out.share(0, n));
+  }
   return out;
 }
 

@@ -323,7 +323,8 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
                                   {"von_mises", state.von_mises.transpose(), false},
                                   {"J", state.J.transpose(), false}};
   if (field.share.sum() > 0.0) {
-    arrays.push_back({"field_residual", field.residual, true});
+    if (field.has_motions) arrays.push_back({"field_residual", field.residual, true});
+    if (field.has_strains) arrays.push_back({"strain_residual", field.strain, true});
     arrays.push_back({"field_points", field.share, true});
   }
   for (const auto& [name, values] : fitted_fields(form, model))

@@ -80,14 +80,21 @@ void put(const fs::path& file, const std::string& text) { std::ofstream(file) <<
 std::string entry(const FieldBlock& block, const std::string& example, const Face& face) {
   std::string out = fmt::format("    - {{field: {}_{}.csv, sigma: {}{}", example, face.name,
                                 block.told > 0.0 ? block.told : block.sigma, block.keys);
+  if (!block.strain.empty())
+    out += fmt::format(", strain: {}, axes: [[{}, {}, 0], [0, 0, 1]]", block.strain,
+                       face.across.x(), face.across.y());
   if (block.in_plane)
     out += fmt::format(", frame: {{origin: [{}, {}, 0], x: [{}, {}, 0], y: [0, 0, 1]}}",
                        face.corner.x(), face.corner.y(), face.across.x(), face.across.y());
   return out + "}\n";
 }
 
-void write_table(const fs::path& file, const Face& face, bool in_plane, const Matrix3Xd& u) {
-  std::string text = in_plane ? "X [mm],Y [mm],U [mm],V [mm]\n" : "X,Y,Z,U,V,W\n";
+void write_table(const fs::path& file, const Face& face, const FieldBlock& block,
+                 const Matrix3Xd& u) {
+  const bool in_plane = block.in_plane;
+  std::string text = !block.strain.empty() ? "X,Y,Z,exx,eyy,exy\n"
+                     : in_plane            ? "X [mm],Y [mm],U [mm],V [mm]\n"
+                                           : "X,Y,Z,U,V,W\n";
   for (int i = 0; i < kAcross; ++i)
     for (int j = 0; j < kUp; ++j) {
       const Vector3d X = point(face, i, j), d = u.col(i * kUp + j);
@@ -124,7 +131,7 @@ void write_unmoved(const FieldBlock& block, const fs::path& folder) {
         fmt::format("  {}:\n    supports: [{{region: base, fix: [x, y, z]}}]\n{}    measured:\n",
                     load.name, load.text);
     for (const Face& face : kFaces) {
-      write_table(folder / fmt::format("{}_{}.csv", load.name, face.name), face, block.in_plane,
+      write_table(folder / fmt::format("{}_{}.csv", load.name, face.name), face, block,
                   Matrix3Xd::Zero(3, kAcross * kUp));
       yaml += entry(block, load.name, face);
     }
@@ -156,7 +163,7 @@ void FieldBlock::write(const fs::path& folder) const {
   for (const auto& example : seen.examples) {
     const std::string name = scene->capture.examples[static_cast<size_t>(example.example)].name;
     for (size_t f = 0; f < std::size(kFaces) && (rest || name != "rest"); ++f)
-      write_table(folder / fmt::format("{}_{}.csv", name, kFaces[f].name), kFaces[f], in_plane,
+      write_table(folder / fmt::format("{}_{}.csv", name, kFaces[f].name), kFaces[f], *this,
                   displacements(*this, example.measured[f].predicted, engine));
   }
 }

@@ -1,4 +1,5 @@
-// A block whose displacements under a few loads are told as fields, without a camera or a photo.
+// A block whose displacements (or strains) under a few loads are told as fields, without a camera
+// or a photo.
 #pragma once
 
 #include <memory>
@@ -19,6 +20,7 @@ struct FieldBlock {
   bool rest = true;                     ///< a field of the body at rest
   bool in_plane = false;                ///< files without Z and W, each face in a frame of its own
   unsigned seed = 1;
+  std::string strain = {};  ///< the fields hold strains by this measure; sigma is of them
 
   /// Writes capture.yaml, block.obj and the fields of two faces of every example.
   void write(const std::filesystem::path& folder) const;

@@ -1,4 +1,5 @@
-// How points of the surface went, along the field's axes. Fits condense it (field_evaluation.h).
+// How points of the surface went, along the field's axes, or how it is strained there. Fits
+// condense it (field_evaluation.h).
 #include "estimation/evaluation/field_evaluation.h"
 
 namespace hookeye {

@@ -83,6 +83,23 @@ void say_of_forces(const Sight& sight, const std::vector<Times>& off, size_t ask
   }
 }
 
+void say_of_strains(const Sight& sight, const FieldMotion& field, Warnings& warnings) {
+  const InspectionOptions& options = sight.options();
+  const double times = field.seen / field.expected;
+  const double most = moved_by_forces(sight.example(field.example)) ? options.most_times_by_force
+                                                                    : options.most_times_moved;
+  if (std::abs(std::log(times)) <= std::log(most)) return;
+  warnings.say(field.place,
+               fmt::format("the strains of {} are {:.3g} millistrain (rms), {} the first guess "
+                           "({:.2g})",
+                           field.file, 1e3 * field.seen, more_or_less(times), 1e3 * field.expected),
+               fmt::format("the field's `strain_unit` (percent, millistrain, microstrain; without "
+                           "it, fractions), or loads and moduli in another unit: forces in {}, "
+                           "stresses in {}, motions in {}",
+                           sight.scene().capture.units.force, sight.scene().capture.units.stress(),
+                           sight.scene().capture.units.length));
+}
+
 /// Fields of displacements against the first guess: their size, and whether it is the whole body
 /// that moves otherwise.
 void ask_of_fields(Sight& sight, Warnings& warnings) {
@@ -98,6 +115,10 @@ void ask_of_fields(Sight& sight, Warnings& warnings) {
       if (field.expected == 0.0 || field.seen == 0.0) continue;
       const double times = field.seen / field.expected;
       const double bent = field.expected_bent > 0.0 ? field.seen_bent / field.expected_bent : 0.0;
+      if (field.strain) {
+        say_of_strains(sight, field, warnings);
+        continue;
+      }
       const std::string seen =
           fmt::format("the points of {} move by {:.3g} {}, {} the first guess ({:.2g} {})",
                       field.file, field.seen, length, more_or_less(times), field.expected, length);

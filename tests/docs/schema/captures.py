@@ -90,7 +90,10 @@ def full_capture():
                     {"strain_of": [[20, 10, 10], [20, 10, 30]], "value": 0.01, "sigma": 2e-5},
                     {"field": "u.csv", "sigma": 0.01, "correlation": 2, "scale": 1, "tolerance": 100,
                      "frame": {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 1, 0]},
-                     "columns": {"X": "A", "Y": "B", "Z": "C", "U": "D", "V": "E", "W": "F"}}]}},
+                     "columns": {"X": "A", "Y": "B", "Z": "C", "U": "D", "V": "E", "W": "F"}},
+                    {"field": "u.csv", "strain": "hencky", "sigma": [0.01, 0.01, 0.02], "gauge": 1.5,
+                     "axes": [[0, 1, 0], [0, 0, 1]], "strain_unit": "percent", "unit": "mm", "tolerance": 100,
+                     "columns": {"X": "A", "Y": "B", "Z": "C", "EXX": "D", "EYY": "E", "GXY": "F"}}]}},
     }
 
 
