@@ -47,6 +47,25 @@ std::vector<Piece> pieces_of(const std::string& text) {
   return out;
 }
 
+/// Bytes of a file that were there.
+size_t take_from(int handle, char* to, size_t size, size_t at) {
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t n = ::pread(handle, to + done, size - done, static_cast<off_t>(at + done));
+    if (n == 0 || (n < 0 && errno != EINTR)) break;
+    if (n > 0) done += static_cast<size_t>(n);
+  }
+  return done;
+}
+
+/// Of a file from `at` on.
+std::string rest_of(int handle, size_t at) {
+  const off_t end = ::lseek(handle, 0, SEEK_END);
+  std::string text(end > static_cast<off_t>(at) ? static_cast<size_t>(end) - at : 0, '\0');
+  text.resize(take_from(handle, text.data(), text.size(), at));
+  return text;
+}
+
 }  // namespace
 
 struct Journal::Impl {
@@ -65,8 +84,7 @@ struct Journal::Impl {
     std::error_code none;
     if (!fs::is_regular_file(file, none)) return;
     open(O_RDWR);
-    std::string text(static_cast<size_t>(::lseek(handle, 0, SEEK_END)), '\0');
-    text.resize(take(text.data(), text.size(), 0));
+    const std::string text = rest_of(handle, 0);
     auto all = pieces_of(text);
     if (all.empty() || text.compare(all[0].at, all[0].size, made_for) != 0) return;
     end = all.back().at + all.back().size + 1;
@@ -76,17 +94,6 @@ struct Journal::Impl {
   void open(int flags) {
     handle = ::open(file.c_str(), flags | O_CLOEXEC, 0644);
     if (handle < 0) throw cannot_write(file.string(), std::strerror(errno));
-  }
-
-  /// Bytes that were there.
-  size_t take(char* to, size_t size, size_t at) const {
-    size_t done = 0;
-    while (done < size) {
-      const ssize_t n = ::pread(handle, to + done, size - done, static_cast<off_t>(at + done));
-      if (n == 0 || (n < 0 && errno != EINTR)) break;
-      if (n > 0) done += static_cast<size_t>(n);
-    }
-    return done;
   }
 
   /// Throws where the file does not stand under its name any more.
@@ -136,7 +143,7 @@ size_t Journal::size() const { return impl_->records.size(); }
 std::string Journal::read(size_t record) const {
   const Piece& piece = impl_->records.at(record);
   std::string out(piece.size, '\0');
-  const bool whole = impl_->take(out.data(), piece.size, piece.at) == piece.size;
+  const bool whole = take_from(impl_->handle, out.data(), piece.size, piece.at) == piece.size;
   if (whole && fingerprint_of(out) == piece.mark) return out;
   impl_->demand_file();
   throw InputError({impl_->file.string()}, "the file was changed while it was used",
@@ -152,6 +159,63 @@ size_t Journal::add(const std::string& record) {
   }
   impl_->put(record);
   return size() - 1;
+}
+
+struct JournalReader::Impl {
+  fs::path file;
+  std::string made_for;
+  std::vector<Piece> records;
+  size_t end = 0;  ///< of the last whole record
+  int handle = -1;
+  bool strange = false;
+
+  ~Impl() {
+    if (handle >= 0) ::close(handle);
+  }
+};
+
+JournalReader::JournalReader(fs::path file, std::string made_for)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->file = std::move(file);
+  impl_->made_for = std::move(made_for);
+}
+JournalReader::~JournalReader() = default;
+JournalReader::JournalReader(JournalReader&&) noexcept = default;
+
+// Opened each time: a network file system asks its server then how long the file is by now.
+void JournalReader::look() {
+  const int handle = ::open(impl_->file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (handle < 0) return;  // what was read stays open
+  if (impl_->handle >= 0) ::close(impl_->handle);
+  impl_->handle = handle;
+  const std::string text = rest_of(handle, impl_->end);
+  std::vector<Piece> all = pieces_of(text);
+  if (all.empty()) return;
+  const size_t whole = all.back().at + all.back().size + 1;
+  auto first = all.begin();
+  if (impl_->end == 0) {
+    impl_->strange = text.compare(first->at, first->size, impl_->made_for) != 0;
+    if (impl_->strange) return;
+    ++first;
+  }
+  for (; first != all.end(); ++first) {
+    impl_->records.push_back(*first);
+    impl_->records.back().at += impl_->end;
+  }
+  impl_->end += whole;
+}
+
+bool JournalReader::strange() const { return impl_->strange; }
+
+size_t JournalReader::size() const { return impl_->records.size(); }
+
+std::optional<std::string> JournalReader::read(size_t record) const {
+  const Piece& piece = impl_->records.at(record);
+  std::string out(piece.size, '\0');
+  if (take_from(impl_->handle, out.data(), piece.size, piece.at) != piece.size ||
+      fingerprint_of(out) != piece.mark)
+    return {};
+  return out;
 }
 
 }  // namespace hookeye

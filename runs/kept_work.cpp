@@ -13,7 +13,17 @@
 namespace hookeye {
 namespace {
 
-/// Another program, another capture, or other effects beside its own come to other answers.
+/// To know it is not worth a command's end: a full disk or a folder that has gone is silent.
+void append_work(const Run& run, const CommandWork& work) {
+  try {
+    run.append_line(kWorkFile, work_line(work));
+  } catch (const std::exception& error) {
+    spdlog::debug("{}", error.what());
+  }
+}
+
+}  // namespace
+
 std::string made_for(const Run& run) {
   nlohmann::json out = {{"hookeye", versions()},
                         {"program", fingerprint_of(read_text(own_file()))},
@@ -24,39 +34,8 @@ std::string made_for(const Run& run) {
   return out.dump();
 }
 
-WorkTable since(const WorkTable& before) {
-  WorkTable out = worked();
-  out.wall_s -= before.wall_s;
-  for (int s = 0; s < kWorkStages; ++s)
-    for (int p = 0; p < kWorkParts; ++p) out.cpu_s[s][p] -= before.cpu_s[s][p];
-  return out;
-}
-
-nlohmann::json to_json(const CommandWork& work) {
-  nlohmann::json cpu = nlohmann::json::object();
-  for (int s = 0; s < kWorkStages; ++s)
-    for (int p = 0; p < kWorkParts; ++p)
-      if (work.table.cpu_s[s][p] > 0.0)
-        cpu[name_of(static_cast<WorkStage>(s))][name_of(static_cast<WorkPart>(p))] =
-            work.table.cpu_s[s][p];
-  return {{"first_step", work.first_step},
-          {"steps", work.steps},
-          {"wall_s", work.table.wall_s},
-          {"cpu_s", std::move(cpu)}};
-}
-
-/// To know it is not worth a command's end: a full disk or a folder that has gone is silent.
-void append_work(const Run& run, const CommandWork& work) {
-  try {
-    run.append_line(kWorkFile, to_json(work).dump());
-  } catch (const std::exception& error) {
-    spdlog::debug("{}", error.what());
-  }
-}
-
-}  // namespace
-
-KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel)
+KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel,
+                   std::shared_ptr<SharedWork> others)
     : run_(run), bench_(bench), cancel_(cancel), first_step_(run.steps().size()) {
   auto archive = std::make_shared<Archive>(std::make_unique<Journal>(run.archive(), made_for(run)));
   from_before_ = !archive->empty();
@@ -64,6 +43,7 @@ KeptWork::KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel
     constexpr const char* kWords[] = {"known", "anew", "kept"};
     spdlog::debug("{}: {}", question.kind, kWords[static_cast<int>(event)]);
   };
+  if (others) archive->share(std::move(others), true);
   bench_.workspace.keep_in(std::move(archive));
 }
 
@@ -71,7 +51,8 @@ KeptWork::~KeptWork() {
   for (const auto& [kind, tally] : bench_.workspace.archive()->tallies())
     spdlog::debug("{}: {} anew, {} known", kind, tally.kept, tally.found);
   bench_.workspace.keep_in(nullptr);
-  if (!run_.steps().empty()) append_work(run_, {first_step_, run_.steps().size(), since(before_)});
+  if (!run_.steps().empty())
+    append_work(run_, {first_step_, run_.steps().size(), worked_since(before_), false});
   if (!run_.steps().empty() || (cancel_ && *cancel_)) return;
   std::error_code ignored;
   std::filesystem::remove(run_.archive(), ignored);

@@ -9,13 +9,21 @@
 
 namespace hookeye {
 
+class SharedWork;
+
+/// What answers hold for, as a text: another program, another capture, other options, or other
+/// effects beside the program's own come to others. Of `run` as it is.
+std::string made_for(const Run& run);
+
 /// While it lives, what the bench works out is kept in RUN/archive as it comes, and what is there
 /// is not worked out again: a command that was stopped, whatever stopped it, takes up where it was.
 /// The run is open for writing, and outlives it.
 class KeptWork {
  public:
   /// `cancel`: set where the user stopped the work; may be null.
-  KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel);
+  /// `others` answer, too; may be null.
+  KeptWork(const Run& run, Bench& bench, const std::atomic<bool>* cancel,
+           std::shared_ptr<SharedWork> others = nullptr);
   KeptWork(const KeptWork&) = delete;
   KeptWork& operator=(const KeptWork&) = delete;
   /// Of a run without a step nothing stays, unless the user stopped it. Else a line of

@@ -178,14 +178,29 @@ int begin(Run& run, const DiscoverOptions& options, bool known) {
   return last;
 }
 
-Discovery search_from(int from, bool known, Run& run, Bench& bench, const SearchRequest& wanted) {
-  DiscoverOptions options = wanted.options;
+}  // namespace
+
+Discovery search_anew(const Run& run, Bench& bench, int from, DiscoverOptions options,
+                      const DiscoverEvents& events) {
   for (int i = 0; i <= from; ++i) {
     const nlohmann::json& step = run.timeline().at("steps").at(static_cast<size_t>(i));
     if (auto tied = tied_in(step, *bench.scene->limits); tied.size() > 1)
       options.tie = std::move(tied);
     options.past.push_back(contested_in(step));
   }
+  const ModelForm form = base_form(bench.scene);
+  return value_or_fail(
+      from < 0 ? discover(bench.workspace, form, form.initial(), options, events)
+               : discover_from(bench.workspace,
+                               step_of(run, bench, static_cast<size_t>(from), options.fit), options,
+                               events));
+}
+
+namespace {
+
+Discovery search_from(int from, bool known, Run& run, Bench& bench, const SearchRequest& wanted) {
+  if (wanted.begun) wanted.begun(from);
+  DiscoverOptions options = wanted.options;
   DecisionLog log(run);
   options.fit.decided = [&log](const Decision& decision) {
     log(decision);
@@ -194,13 +209,7 @@ Discovery search_from(int from, bool known, Run& run, Bench& bench, const Search
                    decision.accepted ? "is added" : "is not added", decision.why,
                    number_in_words(decision));
   };
-  const DiscoverEvents on = events(run, bench, log, from, known, wanted);
-  const ModelForm form = base_form(bench.scene);
-  return value_or_fail(
-      from < 0 ? discover(bench.workspace, form, form.initial(), options, on)
-               : discover_from(bench.workspace,
-                               step_of(run, bench, static_cast<size_t>(from), options.fit), options,
-                               on));
+  return search_anew(run, bench, from, options, events(run, bench, log, from, known, wanted));
 }
 
 /// `known`: something of it was worked out before.

@@ -13,7 +13,13 @@ struct SearchRequest {
   std::string command;                    ///< by whose order, for run.json
   Warn warn;                              ///< may be empty
   std::function<void(const Step&)> step;  ///< told every step that stands in the run; may be empty
+  std::function<void(int from)> begun;    ///< told the step that it begins from; may be empty
 };
+
+/// The search itself, from a step of the run, or with -1 from the capture's own model: the same
+/// way for whoever works on it. Writes nothing. Throws Interrupted or Failed.
+Discovery search_anew(const Run& run, Bench& bench, int from, DiscoverOptions options,
+                      const DiscoverEvents& events);
 
 /// Writes steps and verdict. `known`: something of it was worked out before (KeptWork). Throws
 /// Interrupted or Failed; what is finished stays.

@@ -6,6 +6,29 @@
 
 namespace hookeye {
 
+WorkTable worked_since(const WorkTable& before) {
+  WorkTable out = worked();
+  out.wall_s -= before.wall_s;
+  for (int s = 0; s < kWorkStages; ++s)
+    for (int p = 0; p < kWorkParts; ++p) out.cpu_s[s][p] -= before.cpu_s[s][p];
+  return out;
+}
+
+std::string work_line(const CommandWork& work) {
+  nlohmann::json cpu = nlohmann::json::object();
+  for (int s = 0; s < kWorkStages; ++s)
+    for (int p = 0; p < kWorkParts; ++p)
+      if (work.table.cpu_s[s][p] > 0.0)
+        cpu[name_of(static_cast<WorkStage>(s))][name_of(static_cast<WorkPart>(p))] =
+            work.table.cpu_s[s][p];
+  nlohmann::json out = {{"first_step", work.first_step},
+                        {"steps", work.steps},
+                        {"wall_s", work.table.wall_s},
+                        {"cpu_s", std::move(cpu)}};
+  if (work.by_worker) out["worker"] = true;
+  return out.dump();
+}
+
 std::vector<CommandWork> work_of(const std::filesystem::path& run) {
   std::vector<CommandWork> out;
   std::ifstream file(run / kWorkFile);
@@ -14,7 +37,7 @@ std::vector<CommandWork> work_of(const std::filesystem::path& run) {
     const auto told = parse_json(line, damage);
     if (!told || !told->is_object()) continue;
     try {
-      CommandWork work{told->at("first_step"), told->at("steps"), {}};
+      CommandWork work{told->at("first_step"), told->at("steps"), {}, told->value("worker", false)};
       work.table.wall_s = told->at("wall_s");
       for (int s = 0; s < kWorkStages; ++s)
         for (int p = 0; p < kWorkParts; ++p)
@@ -42,6 +65,7 @@ nlohmann::ordered_json work_json(const std::vector<CommandWork>& all) {
                    {"steps", work.steps},
                    {"wall_s", work.table.wall_s},
                    {"cpu_s", std::move(cpu)}});
+    if (work.by_worker) out.back()["worker"] = true;
   }
   return out;
 }

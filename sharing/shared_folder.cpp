@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 class FolderOnDisk final : public SharedFolder {
  public:
-  explicit FolderOnDisk(fs::path path) : path_(std::move(path)) {}
+  FolderOnDisk(fs::path path, bool lasting) : path_(std::move(path)), lasting_(lasting) {}
 
   std::vector<std::string> names(const std::string& folder) override {
     std::vector<std::string> out;
@@ -48,7 +48,7 @@ class FolderOnDisk final : public SharedFolder {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(target.c_str(), "we"),
                                                                  std::fclose);
     if (!stream || std::fwrite(text.data(), 1, text.size(), stream.get()) != text.size() ||
-        std::fflush(stream.get()) != 0 || ::fsync(::fileno(stream.get())) != 0)
+        std::fflush(stream.get()) != 0 || (lasting_ && ::fsync(::fileno(stream.get())) != 0))
       throw cannot_write(target.string(), std::strerror(errno));
   }
   bool rename(const std::string& from, const std::string& to) override {
@@ -76,12 +76,13 @@ class FolderOnDisk final : public SharedFolder {
 
  private:
   fs::path path_;
+  bool lasting_;
 };
 
 }  // namespace
 
-std::shared_ptr<SharedFolder> folder_on_disk(const fs::path& folder) {
-  return std::make_shared<FolderOnDisk>(folder);
+std::shared_ptr<SharedFolder> folder_on_disk(const fs::path& folder, bool lasting) {
+  return std::make_shared<FolderOnDisk>(folder, lasting);
 }
 
 }  // namespace hookeye

@@ -38,7 +38,9 @@ class SharedFolder {
   virtual double seconds() const = 0;
 };
 
-/// On a disk, which may be another machine's.
-std::shared_ptr<SharedFolder> folder_on_disk(const std::filesystem::path& folder);
+/// On a disk, which may be another machine's. `lasting`: what write_openly() has written outlives a
+/// power cut. A search that is begun again needs none of it, and asks for hundreds a minute.
+std::shared_ptr<SharedFolder> folder_on_disk(const std::filesystem::path& folder,
+                                             bool lasting = true);
 
 }  // namespace hookeye

@@ -31,11 +31,12 @@ void add_manual(CLI::App& app, CommandBody& chosen);
 void add_place(CLI::App& app, CommandBody& chosen);
 void add_edit(CLI::App& app, CommandBody& chosen);
 void add_batch(CLI::App& app, CommandBody& chosen);
+void add_worker(CLI::App& app, CommandBody& chosen);
 
 inline constexpr AddCommand kCommands[] = {
     add_check,   add_mesh,     add_simulate, add_render,    add_fit,    add_compare, add_diagnose,
     add_add,     add_discover, add_explain,  add_plan,      add_synth,  add_report,  add_studio,
     add_effects, add_import,   add_new,      add_calibrate, add_export, add_profile, add_doctor,
-    add_manual,  add_place,    add_edit,     add_batch};
+    add_manual,  add_place,    add_edit,     add_batch,     add_worker};
 
 }  // namespace hookeye

@@ -3,11 +3,14 @@
 
 #include "app/commands/commands.h"
 #include "app/commands/limit_options.h"
+#include "app/commands/local_workers.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
+#include "app/validators.h"
 #include "runs/add_step.h"
 #include "runs/kept_work.h"
 #include "runs/search.h"
+#include "runs/search_worker.h"
 
 namespace hookeye {
 namespace {
@@ -15,6 +18,7 @@ namespace {
 struct DiscoverArguments {
   std::string capture, run;
   std::vector<std::string> without, set;
+  int workers = 0;
 };
 
 void run_discover(const DiscoverArguments& arguments, Session& session) {
@@ -23,13 +27,18 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
                              limits_for(arguments.run, told_limits(arguments.set)));
   Run run = create_run(arguments.run, bench.scene->capture.file);
   keep_limits(run, *bench.scene->limits);
-  const KeptWork kept(run, bench, &interrupted());
+  OpenSearch open(run, threads_here(), arguments.without, &interrupted());
+  LocalWorkers workers(run.folder(), arguments.workers, session);
+  const KeptWork kept(run, bench, &interrupted(), open.shared());
   SearchRequest wanted;
+  wanted.begun = [&](int from) { open.begun(from); };
   wanted.options = discover_options();
   wanted.options.diagnosis.without = arguments.without;
   wanted.command = invocation();
   wanted.warn = warn_to(session);
   const Discovery found = discover_into(run, bench, wanted, kept.from_before());
+  open.end();
+  workers.end();
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
   say_answer(run, session);
@@ -64,6 +73,10 @@ void add_discover(CLI::App& app, CommandBody& chosen) {
   command->add_option("CAPTURE", arguments->capture, "Capture folder or its yaml")->required();
   command->add_option("-o,--out", arguments->run, "Run folder")->required();
   command->add_option("--without", arguments->without, "Effects to leave out of the catalogue");
+  command
+      ->add_option("--workers", arguments->workers,
+                   "Processes that help, on this machine; the threads are shared out")
+      ->check(counting_number());
   add_limit_options(*command, arguments->set);
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_discover(*arguments, session); };

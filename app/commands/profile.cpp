@@ -37,6 +37,7 @@ std::string work_table(const WorkTable& work) {
 
 /// What the command did to the run.
 std::string told(const CommandWork& work) {
+  if (work.by_worker) return "a worker (`hookeye worker`)";
   if (work.steps == work.first_step) return fmt::format("a command on step {}", work.steps - 1);
   if (work.steps == work.first_step + 1)
     return fmt::format("the command of step {}", work.first_step);

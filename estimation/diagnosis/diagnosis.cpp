@@ -331,7 +331,7 @@ Result<Diagnosis> diagnose(Workspace& workspace, const Fitted& fitted,
       {workspace, fitted.form, fitted.p, options.cancel,
        [&] { return question_of_diagnosis(fitted, options); }},
       [&] { return diagnose_anew(workspace, fitted, options); },
-      [](const Diagnosis& diagnosis) { return to_json(diagnosis); },
+      [](const Diagnosis& diagnosis) { return to_archive(diagnosis); },
       [&](const nlohmann::json& known) -> std::optional<Diagnosis> {
         try {
           return diagnosis_from_json(known, realised(fitted), "archive");

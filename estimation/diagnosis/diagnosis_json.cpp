@@ -17,6 +17,9 @@ using nlohmann::json;
 
 namespace {
 
+/// Of an archive alone: an interval is cut at bounds, and rounds.
+constexpr const char* kStandardError = "standard_error";
+
 json effect_json(const EffectScore& score) {
   json out = {{"effect", score.effect}, {"testable", score.testable}};
   if (!score.why_not.empty()) out["why_not"] = score.why_not;
@@ -139,6 +142,23 @@ json to_json(const Diagnosis& diagnosis) {
 
 namespace {
 
+void tell_errors(const EffectScore& score, json& out) {
+  const VectorXd& error = score.standard_error;
+  out[kStandardError] = std::vector<double>(error.begin(), error.end());
+  if (score.other_form) tell_errors(*score.other_form, out.at("other_form"));
+}
+
+}  // namespace
+
+json to_archive(const Diagnosis& diagnosis) {
+  json out = to_json(diagnosis);
+  for (size_t i = 0; i < diagnosis.effects.size(); ++i)
+    if (diagnosis.effects[i].best) tell_errors(diagnosis.effects[i], out.at("effects").at(i));
+  return out;
+}
+
+namespace {
+
 EffectScore score_from_json(const json& one, const Model& model) {
   EffectScore score;
   score.effect = one.at("effect");
@@ -160,6 +180,8 @@ EffectScore score_from_json(const json& one, const Model& model) {
     score.values[i] = predicted[i].at("value");
     score.standard_error[i] = (predicted[i].at("high").get<double>() - score.values[i]) / kNormal95;
   }
+  if (const auto error = one.find(kStandardError); error != one.end())
+    for (int i = 0; i < score.dof; ++i) score.standard_error[i] = error->at(i);
   const auto step = one.value("fitted_move", std::vector<double>{});
   score.base_step = VectorXd::Map(step.data(), static_cast<Eigen::Index>(step.size()));
   score.explains = one.at("explains");

@@ -13,6 +13,8 @@ namespace hookeye {
 
 nlohmann::json to_json(const Floor& floor);
 nlohmann::json to_json(const Diagnosis& diagnosis);
+/// The same with all digits, so that what is read back is what was written.
+nlohmann::json to_archive(const Diagnosis& diagnosis);
 /// Which guard keeps a tested effect from being named (nameable), with its figures; "": it is named
 /// or was not tested.
 std::string not_named_because(const EffectScore& score, const Diagnosis& diagnosis);

@@ -71,6 +71,12 @@ Workspace::Place place_from(const json& states, Workspace::Place before) {
   return before;
 }
 
+std::string mark_of(const Workspace::Place& place) {
+  std::string marks;
+  for (const VectorXd& q : place.q) marks += fingerprint_of_numbers(q);
+  return fingerprint_of(marks);
+}
+
 Workspace::Place place_in(const Workspace& workspace, const std::shared_ptr<const Scene>& scene) {
   Workspace::Place place = workspace.place();
   if (place.scene == scene) return place;

@@ -47,10 +47,28 @@ Workspace::Place place_in(const Workspace& workspace, const std::shared_ptr<cons
 inline Workspace::Place place_after(const Workspace::Place& before, const auto&) { return before; }
 Workspace::Place place_after(Workspace::Place before, const Fitted& fitted);
 
+/// Mark of the equilibria in it.
+std::string mark_of(const Workspace::Place& place);
+
+/// A question while it is worked out: whatever ends that, the next one may take it up.
+class AtWork {
+ public:
+  AtWork(Archive* archive, const std::optional<Question>& question)
+      : archive_(archive), question_(question) {}
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() {
+    if (archive_) archive_->leave(*question_);
+  }
+
+ private:
+  Archive* archive_;
+  const std::optional<Question>& question_;
+};
+
 /// The answer of the workspace's archive; else that of `work`, which the archive keeps unless it
 /// was cancelled, or found no memory. `read` may return nothing: then it is worked out. Whichever
-/// it was, the workspace is left at the same bits; the answer may differ in a last digit by the
-/// order of sums.
+/// it was, answer and workspace are the same bits.
 template <class T, class Work, class Write, class Read>
 Result<T> archived(const WorkedOut& asked, const Work& work, const Write& write, const Read& read) {
   Archive* archive = asked.workspace.archive();
@@ -62,11 +80,15 @@ Result<T> archived(const WorkedOut& asked, const Work& work, const Write& write,
   };
   std::optional<Question> question;
   nlohmann::json known;
-  if (archive && archive->find(question.emplace(asked.question()), known)) {
-    if (auto failure = failure_from(known)) return leave(no_result(*std::move(failure)));
-    if (std::optional<Result<T>> result = read(known)) return leave(std::move(*result));
-    asked.workspace.start_from(place);
+  if (archive) {
+    question.emplace(asked.question()).from = mark_of(place);
+    if (archive->find(*question, known, asked.cancel)) {
+      if (auto failure = failure_from(known)) return leave(no_result(*std::move(failure)));
+      if (std::optional<Result<T>> result = read(known)) return leave(std::move(*result));
+      asked.workspace.start_from(place);
+    }
   }
+  const AtWork turn(archive, question);
   Result<T> result = work();
   const bool answered = result || result.error().kind == NumericalFailure::Kind::numbers;
   if (archive && answered && !(asked.cancel && *asked.cancel))

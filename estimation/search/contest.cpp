@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "estimation/diagnosis/diagnosis_sums.h"
+#include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/fit/evidence.h"
 #include "estimation/search/mesh_first.h"
@@ -130,6 +131,29 @@ std::vector<Raced> raced(const std::vector<Racer>& racers) {
 
 namespace {
 
+/// Nothing can do better than the floor; once it is reached only a tie is of use.
+bool of_no_use(const Racer& racer, const Racer& first, const std::vector<Refit>& refits,
+               const Floor& floor) {
+  return !refits.empty() && on_floor(refits.front().fitted, floor) && !racer.may_tie_with(first);
+}
+
+/// The racers from `next` on, with what they have to come to by now. The first of all tells that to
+/// the others.
+void refit_ahead(Workspace& workspace, const std::vector<Racer>& racers, size_t next,
+                 const std::vector<Refit>& refits, const Floor& floor, const FitOptions& fit) {
+  if (refits.empty()) return;
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(fit);
+  for (size_t i = next; i < racers.size(); ++i) {
+    const Racer& racer = racers[i];
+    if (of_no_use(racer, racers.front(), refits, floor)) continue;
+    tasks.push_back(ahead_task("refit", racer.form, racer.trial.p,
+                               [&, own] { (void)refit(workspace, racer, own); }));
+    tasks.back().about.numbers.push_back(own.aim_chi);
+  }
+  work_ahead(workspace, fit.cancel, tasks);
+}
+
 /// Whoever leads by evidence and could not be screened (its first step led nowhere) is fitted from
 /// coarse to fine all the same.
 Result<void> refit_unscreened(Workspace& workspace, const Step& step, const Diagnosis& entered,
@@ -175,10 +199,10 @@ Result<Contest> refit_leaders(Workspace& workspace, const Step& step,
       return failure_of(ran);
   out.racers = racers;
   keep_leaders(racers, entered, step.diagnosis.floor.limits->search.leaders, options.fit.decided);
-  for (const Racer& racer : racers) {
-    // Nothing can do better than the floor; once it is reached only a tie is of use.
-    if (!refits.empty() && on_floor(refits.front().fitted, step.diagnosis.floor) &&
-        !racer.may_tie_with(racers.front())) {
+  const Workspace::Place here = workspace.place();
+  for (size_t i = 0; i < racers.size(); ++i) {
+    const Racer& racer = racers[i];
+    if (of_no_use(racer, racers.front(), refits, step.diagnosis.floor)) {
       tell(options.fit.decided,
            {Asked::refitted,
             racer.effect,
@@ -193,6 +217,8 @@ Result<Contest> refit_leaders(Workspace& workspace, const Step& step,
       const double chi = rival.fitted.evaluation.chi(false);
       fit.aim_chi = fit.aim_chi == 0.0 ? chi : std::min(fit.aim_chi, chi);
     }
+    workspace.start_from(here);
+    refit_ahead(workspace, racers, i, refits, step.diagnosis.floor, fit);
     auto result = announced(events, racer.effect, [&] { return refit(workspace, racer, fit); });
     if (!result) {
       if (cancelled(result.error())) return failure_of(result);

@@ -79,7 +79,7 @@ class Search {
     events.refitted = [this, told = events.refitted](const std::string& effect,
                                                      const Result<Fitted>& result) {
       if (told) told(effect, result);
-      if (result) shadow_.refitted(*result);
+      if (result && options_.scored) shadow_.refitted(*result);
     };
     return events;
   }
@@ -108,10 +108,13 @@ class Search {
     step.diagnosis = *std::move(diagnosis);
     reach_for_mesh(step.fitted, step.diagnosis);
     out_.floor = step.diagnosis.floor;
+    // Whoever writes the step down evaluates it, and what is asked next begins here all the same.
+    const Workspace::Place here = workspace_.place();
     if (events_.step) events_.step(step);
     for (const Decision& one : naming_decisions(step.diagnosis)) tell(options_.fit.decided, one);
     drop_pictures(step.fitted);
-    shadow_.follow(step);
+    if (options_.scored) shadow_.follow(step);
+    workspace_.start_from(here);
     return {};
   }
 

@@ -37,6 +37,8 @@ struct DiscoverOptions {
   /// Of the steps up to the one that discover_from() starts at, that one with them.
   std::vector<std::string> tie;
   std::vector<Contested> past;
+  /// Every refit is scored beside (shadow.h); decides nothing.
+  bool scored = true;
 };
 
 /// One step of a run.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
 
 namespace hookeye {
@@ -47,6 +48,27 @@ Result<std::optional<Pair>> on_finer_mesh(Workspace& workspace, const Step& step
   return std::nullopt;
 }
 
+/// Two refits' effects in one model.
+struct Both {
+  size_t i, k;
+  ModelForm form;
+  VectorXd start;
+};
+
+std::vector<Both> pairs_of(const std::vector<Refit>& refits) {
+  std::vector<Both> out;
+  for (size_t i = 0; i < refits.size(); ++i)
+    for (size_t k = i + 1; k < refits.size(); ++k) {
+      if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
+      ModelForm form = refits[i].fitted.form;
+      form.ingredients.push_back(refits[k].fitted.form.ingredients.back());
+      VectorXd p(form.size());
+      p << refits[i].fitted.p, refits[k].fitted.p.tail(p.size() - refits[i].fitted.p.size());
+      out.push_back({i, k, std::move(form), std::move(p)});
+    }
+  return out;
+}
+
 }  // namespace
 
 Result<std::optional<Pair>> refit_pairs(Workspace& workspace, const Step& step,
@@ -55,27 +77,30 @@ Result<std::optional<Pair>> refit_pairs(Workspace& workspace, const Step& step,
   std::optional<Pair> best;
   const auto& refits = contest.refits;
   const Yardstick yardstick{&contest.reference, &step.diagnosis.floor, contest.measured_noise2};
-  for (size_t i = 0; i < refits.size(); ++i)
-    for (size_t k = i + 1; k < refits.size(); ++k) {
-      if (numerical(refits[i].effect) || numerical(refits[k].effect)) continue;
-      const auto& added = refits[k].fitted.form.ingredients.back();
-      ModelForm form = refits[i].fitted.form;
-      form.ingredients.push_back(added);
-      VectorXd p(form.size());
-      p << refits[i].fitted.p, refits[k].fitted.p.tail(p.size() - refits[i].fitted.p.size());
-      FitOptions warm = options.fit;
-      warm.coarse_to_fine = false;
-      auto result = announced(events, refits[i].effect + " and " + refits[k].effect,
-                              [&] { return fit(workspace, form, p, warm); });
-      if (!result) {
-        if (cancelled(result.error())) return failure_of(result);
-        continue;
-      }
-      auto& fitted = *result;
-      const double score = refit_score(fitted, yardstick);
-      if (!best || score > best->second.score)
-        best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
+  const std::vector<Both> pairs = pairs_of(refits);
+  FitOptions warm = options.fit;
+  warm.coarse_to_fine = false;
+  const Workspace::Place here = workspace.place();
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(warm);
+  for (const Both& both : pairs)
+    tasks.push_back(ahead_task("pair", both.form, both.start,
+                               [&] { (void)fit(workspace, both.form, both.start, own); }));
+  work_ahead(workspace, options.fit.cancel, tasks);
+  for (const auto& [i, k, form, start] : pairs) {
+    workspace.start_from(here);
+    auto result =
+        announced(events, refits[i].effect + " and " + refits[k].effect,
+                  [&, &form = form, &start = start] { return fit(workspace, form, start, warm); });
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
+      continue;
     }
+    auto& fitted = *result;
+    const double score = refit_score(fitted, yardstick);
+    if (!best || score > best->second.score)
+      best = Pair{refits[i], {refits[k].effect, std::move(fitted), score}};
+  }
   return best;
 }
 

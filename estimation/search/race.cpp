@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/extension.h"
 
@@ -214,12 +215,70 @@ Result<Racer> enter(Workspace& workspace, const Fitted& current, const EffectSco
   return best;
 }
 
+namespace {
+
+/// What enters a race, its first steps ahead. With the `first`, who runs ahead, it shows whether
+/// the others need not run; before, all are taken to.
+void enter_ahead(Workspace& workspace, const Fitted& current, const Diagnosis& diagnosis,
+                 const TrialScale& scale, const FitOptions& options, const Racer* first) {
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(options);
+  for (const EffectScore& score : diagnosis.effects) {
+    if (!nameable(score, diagnosis) || (first && no_rival(score, diagnosis, *first, scale)))
+      continue;
+    const bool leads = tasks.empty() && !first && &score != &diagnosis.effects.back();
+    tasks.push_back(ahead_task("enter " + score.effect, current.form, current.p, [&, own, leads] {
+      auto entered = enter(workspace, current, score, scale, own);
+      if (entered && leads) run_ahead(workspace, *entered, scale, own);
+    }));
+  }
+  work_ahead(workspace, options.cancel, tasks, !first);
+}
+
+/// The same of steps of racers; those that have had theirs are left out.
+void step_ahead(Workspace& workspace, const std::vector<const Racer*>& racers,
+                const TrialScale& scale, const FitOptions& options) {
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(options);
+  for (const Racer* racer : racers)
+    if (!racer->next)
+      tasks.push_back(ahead_task("step", racer->form, racer->trial.p, [&, own, racer] {
+        (void)try_step(workspace, racer->form, racer->trial.p, scale, own);
+      }));
+  work_ahead(workspace, options.cancel, tasks);
+}
+
+/// Why the racer at this place has no second step. Empty: it has one. What the evidence puts first
+/// is refitted whatever comes: one step from afar may mislead.
+std::optional<Decision> without_second_step(const std::vector<Racer>& racers, size_t i,
+                                            const Racer& first, const Diagnosis& diagnosis) {
+  const std::string& effect = racers[i].effect;
+  if (effect == diagnosis.effects.front().effect) return {};
+  const SearchLimits& limits = first.limits();
+  if (static_cast<int>(i) >= limits.second_round)
+    return Decision{Asked::screened,
+                    effect,
+                    false,
+                    {double(i + 1), double(limits.second_round), "search.second_round"},
+                    "other effects got farther in their first step: no second one"};
+  if (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect))
+    return Decision{Asked::screened,
+                    effect,
+                    false,
+                    {racers[i].chi(), limits.out_of_reach * first.chi(), "search.out_of_reach"},
+                    "after one step too far behind " + first.effect + ": no second one"};
+  return {};
+}
+
+}  // namespace
+
 Result<std::vector<Racer>> race(Workspace& workspace, const Fitted& current,
                                 const Diagnosis& diagnosis, const FitOptions& options,
                                 const std::function<void(const Racer&)>& tried) {
   std::vector<Racer> racers;
   const auto scale = trial_scale(workspace, current.form, current.p, options);
   if (!scale) return failure_of(scale);
+  enter_ahead(workspace, current, diagnosis, *scale, options, nullptr);
   for (const EffectScore& score : diagnosis.effects) {
     if (!nameable(score, diagnosis)) continue;
     if (!racers.empty() && no_rival(score, diagnosis, racers.front(), *scale)) {
@@ -245,28 +304,18 @@ Result<std::vector<Racer>> race(Workspace& workspace, const Fitted& current,
     if (racers.size() > 1 || &score == &diagnosis.effects.back()) continue;
     if (auto ran = run_ahead(workspace, racers.front(), *scale, options); !ran)
       return failure_of(ran);
+    enter_ahead(workspace, current, diagnosis, *scale, options, &racers.front());
   }
   sort_by_success(racers);
   const Racer first = racers.empty() ? Racer() : racers.front();
-  for (size_t i = 0; i < racers.size() && (racers.size() > 1 || first.next); ++i) {
-    // What the evidence puts first is refitted whatever comes: one step from afar may mislead.
-    const std::string& effect = racers[i].effect;
-    const bool late = static_cast<int>(i) >= first.limits().second_round;
-    if (effect != diagnosis.effects.front().effect &&
-        (late || (racers[i].out_of_reach_of(first) && !ties_with_first(diagnosis, effect)))) {
-      tell(options.decided,
-           late ? Decision{Asked::screened,
-                           effect,
-                           false,
-                           {double(i + 1), double(first.limits().second_round),
-                            "search.second_round"},
-                           "other effects got farther in their first step: no second one"}
-                : Decision{Asked::screened,
-                           effect,
-                           false,
-                           {racers[i].chi(), first.limits().out_of_reach * first.chi(),
-                            "search.out_of_reach"},
-                           "after one step too far behind " + first.effect + ": no second one"});
+  const size_t run = racers.size() > 1 || first.next ? racers.size() : 0;
+  std::vector<const Racer*> further;
+  for (size_t i = 0; i < run; ++i)
+    if (!without_second_step(racers, i, first, diagnosis)) further.push_back(&racers[i]);
+  step_ahead(workspace, further, *scale, options);
+  for (size_t i = 0; i < run; ++i) {
+    if (auto stays = without_second_step(racers, i, first, diagnosis)) {
+      tell(options.decided, *std::move(stays));
       continue;
     }
     if (auto ran = run_on(workspace, racers[i], *scale, options, tried); !ran)
@@ -283,10 +332,16 @@ Result<std::vector<Racer>> race_beside(Workspace& workspace, const Fitted& befor
   std::vector<Racer> beside;
   const auto scale = trial_scale(workspace, before.form, before.p, options);
   if (!scale) return failure_of(scale);
+  std::vector<Racer> joined;
   for (const Racer& alone : racers) {
     const auto& own = alone.form.ingredients.back();
     if (alone.effect == won.effect || numerical(alone.effect) || sensors_alone(*own)) continue;
-    Racer racer = joined_by(alone, before, won);
+    joined.push_back(joined_by(alone, before, won));
+  }
+  std::vector<const Racer*> all;
+  for (const Racer& racer : joined) all.push_back(&racer);
+  step_ahead(workspace, all, *scale, options);
+  for (Racer& racer : joined) {
     auto result = try_step(workspace, racer.form, racer.trial.p, *scale, options);
     if (!result) {
       if (cancelled(result.error())) return failure_of(result);
@@ -299,6 +354,9 @@ Result<std::vector<Racer>> race_beside(Workspace& workspace, const Fitted& befor
   }
   sort_by_success(beside);
   const auto second = static_cast<size_t>(before.form.scene->limits->search.second_round);
+  all.clear();
+  for (size_t i = 0; i < std::min(beside.size(), second); ++i) all.push_back(&beside[i]);
+  step_ahead(workspace, all, *scale, options);
   for (size_t i = 0; i < std::min(beside.size(), second); ++i) {
     if (auto ran = run_on(workspace, beside[i], *scale, options, tried); !ran)
       return failure_of(ran);

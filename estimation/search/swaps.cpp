@@ -1,11 +1,14 @@
 #include "estimation/search/swaps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "core/distributions.h"
 #include "estimation/effects/catalogue.h"
+#include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/extension.h"
 #include "estimation/search/refit_score.h"
@@ -61,16 +64,34 @@ std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, si
   return {};
 }
 
+/// The model without each of these, ahead.
+void fit_without_ahead(Workspace& workspace, const Fitted& fitted, const std::vector<size_t>& each,
+                       const FitOptions& options) {
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(options);
+  for (const size_t i : each)
+    tasks.push_back(ahead_task(fmt::format("without {}", i), fitted.form, fitted.p,
+                               [&, own, i] { (void)fit_without(workspace, fitted, i, own); }));
+  work_ahead(workspace, options.cancel, tasks);
+}
+
 }  // namespace
 
 std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const Floor& floor,
                               size_t first_effect, const DiscoverOptions& options) {
   const Yardstick yardstick{&current, &floor, measured_noise2(current)};
   const double full = refit_score(current, yardstick);
+  std::vector<size_t> each;
   for (size_t i = first_effect; i + 1 < current.form.ingredients.size(); ++i) {
     const Ingredient& one = *current.form.ingredients[i];
-    if (remeshed_by(one) || stands(current, current.form.layout()[i].first, one.parameters()))
-      continue;
+    if (!remeshed_by(one) && !stands(current, current.form.layout()[i].first, one.parameters()))
+      each.push_back(i);
+  }
+  const Workspace::Place here = workspace.place();
+  fit_without_ahead(workspace, current, each, options.fit);
+  for (const size_t i : each) {
+    const Ingredient& one = *current.form.ingredients[i];
+    workspace.start_from(here);
     auto lighter = fit_without(workspace, current, i, options.fit);
     if (!lighter) continue;
     const double score = refit_score(*lighter, yardstick), tie = floor.limits->diagnosis.tie;
@@ -89,6 +110,7 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
                                       const DiscoverOptions& options) {
   const auto& all = fitted.form.ingredients;
   if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
+  std::vector<size_t> each;
   for (size_t i = first_effect; i < all.size(); ++i) {
     const auto own = all[i]->parameters();
     const Eigen::Index offset = fitted.form.layout()[i].first;
@@ -97,7 +119,12 @@ std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted
       const auto at = offset + static_cast<Eigen::Index>(k);
       null = null && fitted.low[at] <= own[k].value && own[k].value <= fitted.high[at];
     }
-    if (!null) continue;
+    if (null) each.push_back(i);
+  }
+  const Workspace::Place here = workspace.place();
+  fit_without_ahead(workspace, fitted, each, options.fit);
+  for (const size_t i : each) {
+    workspace.start_from(here);
     auto lighter = fit_without(workspace, fitted, i, options.fit);
     if (lighter && tell(options.fit.decided,
                         {Asked::dropped,
@@ -177,6 +204,26 @@ std::optional<Refit> in_its_place(Workspace& workspace, const Without& without,
                       [&] { return add_effect(workspace, without.fitted, score, options.fit); });
 }
 
+/// What swap_for_better() asks of each effect that may leave, ahead.
+void swap_ahead(Workspace& workspace, const Fitted& fitted, const std::vector<size_t>& each,
+                const RefusedSwaps& refused, const DiscoverOptions& options) {
+  std::vector<AheadTask> tasks;
+  DiscoverOptions own = options;
+  own.fit = untold(options.fit);
+  own.diagnosis.progress = nullptr;
+  for (const size_t i : each)
+    tasks.push_back(ahead_task(fmt::format("swap {}", i), fitted.form, fitted.p, [&, own, i] {
+      const Ingredient& dropped = *fitted.form.ingredients[i];
+      const auto lighter =
+          diagnosed(workspace, dropped, fit_without(workspace, fitted, i, own.fit), own);
+      if (!lighter) return;
+      for (const EffectScore* score : doubles_of(dropped, lighter->diagnosis))
+        if (!refused.contains(question(fitted.form, dropped, score->effect)))
+          (void)add_effect(workspace, lighter->fitted, *score, own.fit);
+    }));
+  work_ahead(workspace, options.fit.cancel, tasks);
+}
+
 }  // namespace
 
 Step swapped_step(Swap swap) {
@@ -189,10 +236,15 @@ std::optional<Swap> swap_for_better(Workspace& workspace, const Fitted& fitted, 
   std::optional<Swap> best;
   if (fitted.form.ingredients.size() < first_effect + 2 || at_floor(fitted, floor)) return best;
   double enough = floor.limits->diagnosis.nameable;
-  for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i) {
+  std::vector<size_t> each;
+  for (size_t i = first_effect; i < fitted.form.ingredients.size(); ++i)
+    if (may_leave(*fitted.form.ingredients[i])) each.push_back(i);
+  const Workspace::Place here = workspace.place();
+  swap_ahead(workspace, fitted, each, refused, options);
+  for (const size_t i : each) {
     if (best && at_floor(best->in.fitted, floor)) break;
     const Ingredient& dropped = *fitted.form.ingredients[i];
-    if (!may_leave(dropped)) continue;
+    workspace.start_from(here);
     const auto lighter =
         diagnosed(workspace, dropped, fit_without(workspace, fitted, i, options.fit), options);
     if (!lighter) continue;
@@ -248,12 +300,25 @@ std::vector<Refit> refit_in_reach(Workspace& workspace, const Without& without, 
   if (!racers || !now) return out;
   const Racer stands{
       effects.front(), last.form, Trial{last.p, now->chi, now->chi_validate, now->floor}, {}};
+  std::vector<const Racer*> near;
   for (const Racer& racer : *racers) {
     const Racer& first = racers->front();
     const bool behind = ties_alone ? !racer.may_tie_with(first) : racer.out_of_reach_of(first);
-    if (racer.effect == effects.front() || (behind && !ties_with_first(asked, racer.effect)) ||
-        falls_short(workspace, racer, stands, *now, options.fit))
-      continue;
+    if (racer.effect != effects.front() && (!behind || ties_with_first(asked, racer.effect)))
+      near.push_back(&racer);
+  }
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(options.fit);
+  for (const Racer* racer : near)
+    tasks.push_back(ahead_task("in reach", racer->form, racer->trial.p, [&, racer] {
+      if (!falls_short(workspace, *racer, stands, *now, own)) (void)refit(workspace, *racer, own);
+    }));
+  const Workspace::Place here = workspace.place();
+  work_ahead(workspace, options.fit.cancel, tasks);
+  for (const Racer* one : near) {
+    const Racer& racer = *one;
+    workspace.start_from(here);
+    if (falls_short(workspace, racer, stands, *now, options.fit)) continue;
     auto refitted = told_of_swap(racer.effect, effects.front(), events,
                                  [&] { return refit(workspace, racer, options.fit); });
     if (refitted) out.push_back(std::move(*refitted));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "estimation/effects/catalogue.h"
+#include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/extension.h"
 #include "estimation/search/kept_stiffness.h"
@@ -168,6 +169,98 @@ Result<Fitted> plainest(Workspace& workspace, Fitted wide, size_t at, const Floo
 
 }  // namespace
 
+namespace {
+
+/// One of the further forms: how it is called, where it begins, and whether its screening counts.
+struct Wider {
+  NextForm further;
+  std::string words;
+  Reformed first;
+};
+
+/// Those that were not tried.
+std::vector<Wider> wider_forms(const Fitted& narrow, size_t at, std::set<std::string>& tried) {
+  std::vector<Wider> out;
+  for (const auto& further : further_forms(narrow, at)) {
+    const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
+    if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second) continue;
+    const auto& way = further.by_way_of;
+    out.push_back({further, key_of(*further.form).words(),
+                   reformed(narrow, at, way ? NextForm{way, further.values} : further)});
+  }
+  return out;
+}
+
+/// Those from `next` on; `options` has what they have to come to by now.
+void widen_ahead(Workspace& workspace, const Fitted& narrow, size_t at,
+                 const std::vector<Wider>& forms, size_t next, const TrialScale& scale,
+                 const FitOptions& options) {
+  std::vector<AheadTask> tasks;
+  const FitOptions own = untold(options);
+  for (size_t i = next; i < forms.size(); ++i) {
+    const Wider& one = forms[i];
+    tasks.push_back(ahead_task("widen to " + one.words, one.first.form, one.first.start, [&, own] {
+      if (one.further.same_claim || !gets_nowhere(workspace, one.first, scale, own))
+        (void)fit_further(workspace, narrow, at, one.further, one.first, own);
+    }));
+    tasks.back().about.numbers.push_back(own.aim_chi);
+  }
+  work_ahead(workspace, options.cancel, tasks);
+}
+
+/// One round of widened(): the best of the forms that were not tried, `narrow` where none is
+/// better.
+Result<Fitted> best_form(Workspace& workspace, const Fitted& narrow, size_t at, const Floor& floor,
+                         const FitOptions& options, const DiscoverEvents& events,
+                         std::set<std::string>& tried, bool& better,
+                         std::optional<Fitted>* left_much) {
+  const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
+  if (!scale) return failure_of(scale);
+  Fitted best = narrow;
+  const std::vector<Wider> forms = wider_forms(narrow, at, tried);
+  const Workspace::Place here = workspace.place();
+  for (size_t i = 0; i < forms.size(); ++i) {
+    const auto& [further, words, first] = forms[i];
+    if (better && on_floor(best, floor)) break;
+    FitOptions farther = options;
+    farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
+    workspace.start_from(here);
+    widen_ahead(workspace, narrow, at, forms, i, *scale, farther);
+    if (!further.same_claim && gets_nowhere(workspace, first, *scale, options)) {
+      tell(options.decided,
+           {Asked::widened,
+            words,
+            false,
+            {std::numeric_limits<double>::quiet_NaN(),
+             narrow.form.scene->limits->search.widening_stalls, "search.widening_stalls"},
+            "its screening on half-size photos stalls with most of the excess misfit"});
+      continue;
+    }
+    auto result = announced(events, words, [&, &further = further, &first = first] {
+      return fit_further(workspace, narrow, at, further, first, farther);
+    });
+    if (!result) {
+      if (cancelled(result.error())) return failure_of(result);
+      tell(options.decided, {Asked::widened, words, false, {}, result.error().reason});
+      continue;
+    }
+    Fitted& wide = *result;
+    if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) {
+      if (left_much && worth_its_parameters(wide, best, floor) &&
+          (!*left_much || score_above(wide, **left_much, floor) > 0.0)) {
+        drop_pictures(wide);
+        *left_much = std::move(wide);
+      }
+      continue;
+    }
+    best = std::move(wide);
+    better = true;
+  }
+  return best;
+}
+
+}  // namespace
+
 Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
                        const FitOptions& options, const DiscoverEvents& events,
                        std::optional<Fitted>* left_much) {
@@ -175,50 +268,9 @@ Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Flo
   std::set<std::string> tried = {first};
   for (bool better = true; better && !on_floor(narrow, floor);) {
     better = false;
-    const auto scale = trial_scale(workspace, narrow.form, narrow.p, options);
-    if (!scale) return failure_of(scale);
-    Fitted best = narrow;
-    for (const auto& further : further_forms(narrow, at)) {
-      const bool again = further.form->variant() == narrow.form.ingredients[at]->variant();
-      if (!tried.insert(further.form->variant() + (again ? ", from elsewhere" : "")).second)
-        continue;
-      if (better && on_floor(best, floor)) break;
-      const std::string words = key_of(*further.form).words();
-      const auto& way = further.by_way_of;
-      const Reformed first = reformed(narrow, at, way ? NextForm{way, further.values} : further);
-      if (!further.same_claim && gets_nowhere(workspace, first, *scale, options)) {
-        tell(options.decided,
-             {Asked::widened,
-              words,
-              false,
-              {std::numeric_limits<double>::quiet_NaN(),
-               narrow.form.scene->limits->search.widening_stalls, "search.widening_stalls"},
-              "its screening on half-size photos stalls with most of the excess misfit"});
-        continue;
-      }
-      FitOptions farther = options;
-      farther.aim_chi = best.evaluation.chi(false);  // one that does not get there is no better
-      auto result = announced(events, words, [&] {
-        return fit_further(workspace, narrow, at, further, first, farther);
-      });
-      if (!result) {
-        if (cancelled(result.error())) return failure_of(result);
-        tell(options.decided, {Asked::widened, words, false, {}, result.error().reason});
-        continue;
-      }
-      Fitted& wide = *result;
-      if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) {
-        if (left_much && worth_its_parameters(wide, best, floor) &&
-            (!*left_much || score_above(wide, **left_much, floor) > 0.0)) {
-          drop_pictures(wide);
-          *left_much = std::move(wide);
-        }
-        continue;
-      }
-      best = std::move(wide);
-      better = true;
-    }
-    narrow = std::move(best);
+    auto best = best_form(workspace, narrow, at, floor, options, events, tried, better, left_much);
+    if (!best) return failure_of(best);
+    narrow = *std::move(best);
   }
   if (narrow.form.ingredients[at]->variant() == first && !on_floor(narrow, floor)) return narrow;
   return plainest(workspace, std::move(narrow), at, floor, options, events);
