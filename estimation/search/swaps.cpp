@@ -218,7 +218,7 @@ void swap_ahead(Workspace& workspace, const Fitted& fitted, const std::vector<si
           diagnosed(workspace, dropped, fit_without(workspace, fitted, i, own.fit), own);
       if (!lighter) return;
       for (const EffectScore* score : doubles_of(dropped, lighter->diagnosis))
-        if (!refused.contains(question(fitted.form, dropped, score->effect)))
+        if (!refused.contains({ModelKey(fitted.form), key_of(dropped), score->effect}))
           (void)add_effect(workspace, lighter->fitted, *score, own.fit);
     }));
   work_ahead(workspace, options.fit.cancel, tasks);
@@ -380,29 +380,6 @@ std::optional<TieAsked> ask_tie_again(Workspace& workspace, const Fitted& last,
   else if (!out.tie.empty())
     out.tie.insert(out.tie.begin(), tie.front());
   return out;
-}
-
-std::optional<std::pair<const Refit*, Swap>> swap_behind_refit(
-    Workspace& workspace, const std::vector<Refit>& refits, const Floor& floor, size_t first_effect,
-    RefusedSwaps& refused, const DiscoverOptions& options, const DiscoverEvents& events) {
-  if (std::any_of(refits.begin(), refits.end(),
-                  [&](const Refit& refit) { return at_floor(refit.fitted, floor); }))
-    return {};
-  const auto found = std::find_if(refits.begin(), refits.end(), [&](const Refit& refit) {
-    return spoils_held_out(refit.fitted, floor);
-  });
-  if (found == refits.end()) return {};
-  auto swap =
-      swap_for_better(workspace, found->fitted, floor, first_effect, refused, options, events);
-  if (!swap) return {};
-  const Yardstick yardstick{&swap->in.fitted, &floor, measured_noise2(swap->in.fitted)};
-  swap->in.score = refit_score(swap->in.fitted, yardstick);
-  if (std::any_of(refits.begin(), refits.end(), [&](const Refit& refit) {
-        return refit_score(refit.fitted, yardstick) >
-               swap->in.score - floor.limits->diagnosis.nameable;
-      }))
-    return {};
-  return std::pair{&*found, std::move(*swap)};
 }
 
 }  // namespace hookeye
