@@ -183,6 +183,8 @@ void keep_to(const Company& company, CLI::App& app) {
       app.remove_subcommand(command);
       continue;
     }
+    if (CLI::Option* others = command->get_option_no_throw("--workers"))
+      command->remove_option(others);
     if (!company.own_folder) continue;
     for (const char* folder : {"--out", "RUN"})
       if (CLI::Option* option = command->get_option_no_throw(folder))

@@ -7,6 +7,7 @@
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
 #include "app/validators.h"
+#include "estimation/evaluation/load_case_share.h"
 #include "runs/add_step.h"
 #include "runs/kept_work.h"
 #include "runs/search.h"
@@ -27,17 +28,19 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
                              limits_for(arguments.run, told_limits(arguments.set)));
   Run run = create_run(arguments.run, bench.scene->capture.file);
   keep_limits(run, *bench.scene->limits);
-  OpenSearch open(run, threads_here(), arguments.without, &interrupted());
+  // Processes that share load cases must ask the same: none may hear of an answer alone.
+  std::optional<OpenSearch> open;
+  if (!load_case_share()) open.emplace(run, threads_here(), arguments.without, &interrupted());
   LocalWorkers workers(run.folder(), arguments.workers, session);
-  const KeptWork kept(run, bench, &interrupted(), open.shared());
+  const KeptWork kept(run, bench, &interrupted(), open ? open->shared() : nullptr);
   SearchRequest wanted;
-  wanted.begun = [&](int from) { open.begun(from); };
+  if (open) wanted.begun = [&](int from) { open->begun(from); };
   wanted.options = discover_options();
   wanted.options.diagnosis.without = arguments.without;
   wanted.command = invocation();
   wanted.warn = warn_to(session);
   const Discovery found = discover_into(run, bench, wanted, kept.from_before());
-  open.end();
+  if (open) open->end();
   workers.end();
   session.document = run.timeline();
   const auto& steps = run.timeline().at("steps");
