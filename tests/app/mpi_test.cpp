@@ -83,6 +83,18 @@ TEST_F(Mpi, SolvesAndDiagnosesTogether) {
   EXPECT_EQ(numbers("together"), numbers("alone"));
 }
 
+/// Photos whose texture is another load case's hang on its equilibrium, too.
+TEST_F(Mpi, ATextureFromPhotosIsSeenByAll) {
+  const std::regex texture("texture: \\{[^}]*\\}");
+  const std::string told = read(folder_ / "capture/capture.yaml");
+  ASSERT_TRUE(std::regex_search(told, texture)) << told;
+  write("capture/capture.yaml", std::regex_replace(told, texture, "texture: {from: rest}"));
+  ASSERT_EQ(hookeye("--threads 1 fit capture -o alone").status, 0);
+  const Result fitted = shared(3, "fit capture -o together");
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_EQ(numbers("together"), numbers("alone"));
+}
+
 TEST_F(Mpi, BadInputIsToldOnce) {
   const Result result = shared(3, "fit nowhere -o run");
   EXPECT_EQ(result.status, 2) << result.err;
