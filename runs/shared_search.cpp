@@ -64,7 +64,8 @@ struct SharedSearch::Impl {
   std::set<std::string> held;            ///< keys that are this process' turn
   std::map<std::string, double> missed;  ///< [s] since when a key was somebody else's
   bool broken = false;                   ///< nothing can be shared here any more
-  int waits = 0;                         ///< in a row
+  int waits = 0;                         ///< in a row, for one answer
+  std::string waited_for;
 
   std::mutex mutex;
   std::condition_variable woken;
@@ -189,6 +190,8 @@ const std::vector<std::unique_ptr<JournalReader>>& SharedSearch::journals() {
 
 bool SharedSearch::claim(const std::string& key) {
   if (impl_->broken) return true;
+  if (impl_->waited_for != key) impl_->waits = 0;
+  impl_->waited_for = key;
   try {
     if (!impl_->claim(key)) return false;
   } catch (const InputError& error) {  // no room, no hard links, no folder
@@ -200,7 +203,6 @@ bool SharedSearch::claim(const std::string& key) {
   }
   impl_->held.insert(key);
   impl_->missed.erase(key);
-  impl_->waits = 0;
   return true;
 }
 
