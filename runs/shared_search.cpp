@@ -162,6 +162,7 @@ SharedSearch::SharedSearch(fs::path folder, fs::path archive, Options options) {
   std::vector<std::string> folders = Tickets::folders();
   folders.emplace_back("answers");
   for (const std::string& name : folders) {
+    if (!archive.empty()) break;  // whoever began the search made them
     fs::create_directories(folder / name, failed);
     if (failed) throw cannot_write(folder.string(), failed.message());
   }
