@@ -150,20 +150,17 @@ void log_work(const fs::path& run, size_t steps, const WorkTable& before) {
       << std::flush;
 }
 
-/// One search, from where it began. False: it was begun anew meanwhile.
-bool help(const WorkerRequest& wanted, const SearchNotice& notice, WorkerEnd& out) {
+bool over(const fs::path& folder) {
+  const auto notice = notice_in(folder);
+  return !notice || notice->ended;
+}
+
+/// The way of the search, as far as it gets.
+void take_the_way(const WorkerRequest& wanted, const Run& run, const SearchNotice& notice,
+                  const std::shared_ptr<SharedSearch>& shared, WorkerEnd& out, bool& anew) {
   const WorkTable before = worked();
-  const Run run = open_run(wanted.run, false);
-  demand_same(notice, run);
-  if (notice.processor != processor_mark() && wanted.warn)
-    wanted.warn(
-        "this machine's processor is of another kind than that of the search: last digits of "
-        "what is worked out here may differ from what would come out there");
   Bench bench = open_capture(
       run.capture(), [](const std::string&) {}, limits_of(run.timeline()));
-  const auto shared =
-      std::make_shared<SharedSearch>(workers_folder(run.folder()), run.archive(),
-                                     SharedSearch::Options{made_for(run), wanted.threads});
   const auto archive =
       std::make_shared<Archive>(std::make_unique<Journal>(shared->own_journal(), made_for(run)));
   archive->share(shared, false);
@@ -173,18 +170,39 @@ bool help(const WorkerRequest& wanted, const SearchNotice& notice, WorkerEnd& ou
   options.fit.cancel = options.diagnosis.cancel = &watch.stopped();
   options.diagnosis.without = notice.without;
   options.scored = false;
-  out.began = true;
   out.why = "the search is at its end";
   try {
     search_anew(run, bench, *notice.from, options, {});
   } catch (const Interrupted&) {
     out.why = watch.why();
-  } catch (const Failed& failed) {
+  } catch (const Failed&) {
     out.why = watch.stopped() ? watch.why() : "the search ends without an answer";
   }
   for (const auto& [kind, tally] : archive->tallies()) out.answers += tally.kept;
   log_work(run.folder(), run.steps().size(), before);
-  return !watch.changed();
+  anew = watch.changed();
+}
+
+/// One search, from where it began. False: it was begun anew meanwhile.
+bool help(const WorkerRequest& wanted, const SearchNotice& notice, WorkerEnd& out) {
+  const Run run = open_run(wanted.run, false);
+  demand_same(notice, run);
+  if (notice.processor != processor_mark() && wanted.warn)
+    wanted.warn(
+        "this machine's processor is of another kind than that of the search: last digits of "
+        "what is worked out here may differ from what would come out there");
+  const fs::path folder = workers_folder(run.folder());
+  bool anew = false;
+  out.began = true;
+  try {
+    const auto shared = std::make_shared<SharedSearch>(
+        folder, run.archive(), SharedSearch::Options{made_for(run), wanted.threads});
+    take_the_way(wanted, run, notice, shared, out, anew);
+  } catch (const InputError&) {  // the last one who left took the folder along
+    if (!over(folder)) throw;
+    out.why = "the search has ended";
+  }
+  return !anew;
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ struct SharedSearch::Impl {
   std::set<std::string> held;            ///< keys that are this process' turn
   std::map<std::string, double> missed;  ///< [s] since when a key was somebody else's
   bool broken = false;                   ///< nothing can be shared here any more
-  int waits = 0;                         ///< in a row
+  int waits = 0;                         ///< in a row, for one answer
+  std::string waited_for;
 
   std::mutex mutex;
   std::condition_variable woken;
@@ -161,6 +162,7 @@ SharedSearch::SharedSearch(fs::path folder, fs::path archive, Options options) {
   std::vector<std::string> folders = Tickets::folders();
   folders.emplace_back("answers");
   for (const std::string& name : folders) {
+    if (!archive.empty()) break;  // whoever began the search made them
     fs::create_directories(folder / name, failed);
     if (failed) throw cannot_write(folder.string(), failed.message());
   }
@@ -189,6 +191,8 @@ const std::vector<std::unique_ptr<JournalReader>>& SharedSearch::journals() {
 
 bool SharedSearch::claim(const std::string& key) {
   if (impl_->broken) return true;
+  if (impl_->waited_for != key) impl_->waits = 0;
+  impl_->waited_for = key;
   try {
     if (!impl_->claim(key)) return false;
   } catch (const InputError& error) {  // no room, no hard links, no folder
@@ -200,7 +204,6 @@ bool SharedSearch::claim(const std::string& key) {
   }
   impl_->held.insert(key);
   impl_->missed.erase(key);
-  impl_->waits = 0;
   return true;
 }
 

@@ -41,8 +41,8 @@ class SharedSearch final : public SharedWork {
     BeatTimes times = {};
   };
   /// A process in the folder, as long as it lives. `archive`: the journal that is not in it, of the
-  /// process that began the search; empty: this is that one. Throws InputError where the folder
-  /// cannot be written.
+  /// process that began the search; empty: this is that one, and makes the folder. Throws
+  /// InputError where it cannot be written.
   SharedSearch(std::filesystem::path folder, std::filesystem::path archive, Options options);
   ~SharedSearch() override;
   SharedSearch(const SharedSearch&) = delete;

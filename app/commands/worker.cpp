@@ -37,8 +37,8 @@ void run_worker(const WorkerArguments& arguments, Session& session) {
 }  // namespace
 
 void add_worker(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "worker", "Helps a search (discover) that runs here or on a machine that shares its folder");
+  CLI::App* command =
+      app.add_subcommand("worker", "Work on a running search, here or where its folder is shared");
   const auto arguments = std::make_shared<WorkerArguments>();
   command->add_option("RUN", arguments->run, "Run folder of the search")->required();
   command

@@ -130,6 +130,37 @@ TEST_F(JournalTest, AKillLeavesWholeRecords) {
   EXPECT_GT(Journal(file(), "this").size(), 0U);
 }
 
+TEST_F(JournalTest, AnotherProcessReadsOn) {
+  JournalReader reader(file(), "this"), other(file(), "that");
+  reader.look();
+  EXPECT_EQ(reader.size(), 0U) << "there is no file yet";
+  Journal journal(file(), "this");
+  for (size_t i = 0; i < kRecords.size(); ++i) {
+    journal.add(kRecords[i]);
+    reader.look();
+    ASSERT_EQ(reader.size(), i + 1);
+    EXPECT_EQ(reader.read(i), kRecords[i]);
+  }
+  EXPECT_FALSE(reader.strange());
+  other.look();
+  EXPECT_TRUE(other.strange());
+  EXPECT_EQ(other.size(), 0U);
+  // A record that comes in two halves.
+  const std::string text = read_text(file());
+  journal.add("the last one");
+  const std::string whole = read_text(file());
+  write_text(file(), whole.substr(0, text.size() + 20));
+  reader.look();
+  EXPECT_EQ(reader.size(), kRecords.size());
+  write_text(file(), whole);
+  reader.look();
+  ASSERT_EQ(reader.size(), kRecords.size() + 1);
+  EXPECT_EQ(reader.read(kRecords.size()), "the last one");
+  write_text(file(), "begun anew");
+  reader.look();
+  EXPECT_EQ(reader.read(0), std::nullopt);
+}
+
 TEST_F(JournalTest, SaysThatItCannotBeWritten) {
   Journal journal(folder_ / "gone" / "archive", "this");
   EXPECT_THROW(journal.add("one"), InputError);
