@@ -16,7 +16,8 @@ Model realise_model(const std::string& file, const std::shared_ptr<const Scene>&
 
 /// Solves every example of the model, several at a time, with a progress bar. `done` gets each
 /// state on the thread that found it, and may keep what it needs: the state itself, with its
-/// factor, is dropped afterwards. Returns the failure of each example that has no equilibrium.
+/// factor, is dropped afterwards. (Where load cases are shared, it gets them one by one in the end,
+/// without tangent and factor.) Returns the failure of each example that has no equilibrium.
 std::vector<Result<void>> solve_examples(
     const Model& model, const std::string& title,
     const std::function<void(int example, const Equilibrium& state)>& done);

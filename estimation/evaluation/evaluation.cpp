@@ -7,114 +7,24 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 
 #include "estimation/evaluation/all_pixels.h"
 #include "estimation/evaluation/columns.h"
 #include "estimation/evaluation/field_evaluation.h"
+#include "estimation/evaluation/load_case_share.h"
 #include "estimation/evaluation/photo_evaluation.h"
 #include "estimation/evaluation/sensor.h"
 
 namespace hookeye {
-
-double PhotoEvaluation::chi() const { return count > 0 ? std::sqrt(r2 / count) : 0.0; }
-
-const ExampleEvaluation* Evaluation::find(int example) const {
-  for (const auto& one : examples)
-    if (one.example == example) return &one;
-  return nullptr;
-}
-
-namespace {
-
-double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out,
-                 double PhotoEvaluation::*r2) {
-  double sum = 0.0, count = 0.0;
-  for (const auto& example : examples)
-    if (example.held_out == held_out)
-      for (const auto& photo : example.photos) sum += photo.*r2, count += photo.count;
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
-
-/// Root mean square of what is measured: of fields, or of all else.
-double root_mean(const std::vector<ExampleEvaluation>& examples, bool held_out, bool fields) {
-  double sum = 0.0, count = 0.0;
-  for (const auto& example : examples)
-    if (example.held_out == held_out)
-      for (const auto& measured : example.measured)
-        if (measured.is_field() == fields)
-          sum += measured.r.squaredNorm(), count += measured.size();
-  return count > 0.0 ? std::sqrt(sum / count) : 0.0;
-}
-
-}  // namespace
-
-Evaluation::Seen Evaluation::seen() const {
-  Seen out = Seen::sensors;
-  for (const auto& example : examples) {
-    if (!example.photos.empty()) return Seen::photos;
-    for (const auto& measured : example.measured)
-      if (measured.is_field()) out = Seen::fields;
-  }
-  return out;
-}
-
-double Evaluation::measured_chi(bool held_out) const {
-  return root_mean(examples, held_out, false);
-}
-
-double Evaluation::field_chi(bool held_out) const { return root_mean(examples, held_out, true); }
-
-double Evaluation::chi(bool held_out) const {
-  const Seen what = seen();
-  if (what == Seen::photos) return root_mean(examples, held_out, &PhotoEvaluation::r2);
-  return root_mean(examples, held_out, what == Seen::fields);
-}
-
-double Evaluation::linear_chi(bool held_out) const {
-  if (seen() != Seen::photos) return chi(held_out);
-  return root_mean(examples, held_out, &PhotoEvaluation::linear_r2);
-}
-
-double Evaluation::rms_px(bool held_out) const {
-  double sum = 0.0, n = 0.0;
-  for (const auto& example : examples)
-    if (example.held_out == held_out)
-      for (const auto& photo : example.photos) {
-        const double cells = static_cast<double>(photo.flow.cells.size());
-        sum += cells * std::pow(photo.flow.rms_px(), 2);
-        n += cells;
-      }
-  return n > 0.0 ? std::sqrt(sum / n) : 0.0;
-}
-
-double Evaluation::motion_px() const {
-  double sum = 0.0, n = 0.0;
-  for (const auto& example : examples)
-    for (const auto& photo : example.photos) {
-      sum += photo.count * photo.motion_px * photo.motion_px;
-      n += photo.count;
-    }
-  return n > 0.0 ? std::sqrt(sum / n) : 0.0;
-}
 
 Camera camera_at_level(const Camera& camera, int level) {
   Camera coarse = camera.resized(std::pow(0.5, level));
   coarse.width >>= level;
   coarse.height >>= level;
   return coarse;
-}
-
-std::vector<FlowStatistics> photo_statistics(const std::vector<PhotoEvaluation>& photos) {
-  std::vector<FlowStatistics> out;
-  for (size_t begin = 0, end = 0; begin < photos.size(); begin = end) {
-    std::vector<const FlowField*> channels;
-    for (; end < photos.size() && photos[end].photo == photos[begin].photo; ++end)
-      channels.push_back(&photos[end].flow);
-    for (FlowStatistics& one : flow_statistics(channels)) out.push_back(one);
-  }
-  return out;
 }
 
 void keep_freed_memory() {
@@ -156,6 +66,9 @@ struct Workspace::Impl {
   Linear linear;               ///< of the last evaluation with derivatives, without candidates
   std::vector<PhotoComparer> comparers;  ///< one per example
   std::vector<FieldComparer> fields;     ///< one per example
+  LoadCaseShare* share = load_case_share();
+  std::vector<double> seconds;  ///< shared: by example, of its last evaluation
+  std::vector<int> owner;       ///< shared: the process that works it out
 
   explicit Impl(std::shared_ptr<const Scene> s) : scene(std::move(s)) {
     for (size_t e = 0; e < scene->capture.examples.size(); ++e) {
@@ -163,6 +76,42 @@ struct Workspace::Impl {
       last.emplace_back();
       comparers.emplace_back(scene, static_cast<int>(e));
       fields.emplace_back();
+    }
+    seconds.resize(scene->capture.examples.size());
+    deal();
+  }
+
+  /// Asked where solvers start anew: till then an example stays with its process, as the factor
+  /// that its solver keeps shows in the last digits.
+  void deal() {
+    if (!share) return;
+    const std::vector<int> before = std::move(owner);
+    owner = dealt_again(seconds, share->processes(), before);
+    for (size_t e = 0; e < before.size(); ++e)
+      if (before[e] == share->self() && owner[e] != before[e])
+        comparers[e] = PhotoComparer(scene, static_cast<int>(e));  // its photos' memory
+  }
+  bool own(int e) const { return !share || owner[e] == share->self(); }
+
+  /// What each process has worked out of `examples` reaches all.
+  void exchange(const std::vector<int>& examples, std::vector<ExampleEvaluation>& solved,
+                std::vector<Result<void>>& failures) {
+    if (!share) return;
+    std::vector<LoadCaseShare::Result> results;
+    std::vector<LoadCaseShare::Result*> all;
+    std::vector<int> owners;
+    results.reserve(examples.size());
+    for (int e : examples) {
+      results.push_back({std::move(solved[e]), failures[e], seconds[e]});
+      all.push_back(&results.back());
+      owners.push_back(owner[e]);
+    }
+    share->exchange(owners, std::move(all));
+    for (size_t i = 0; i < examples.size(); ++i) {
+      const int e = examples[i];
+      solved[e] = std::move(results[i].evaluation);
+      failures[e] = std::move(results[i].ended);
+      seconds[e] = results[i].seconds;
     }
   }
 
@@ -263,6 +212,21 @@ std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model
   return all;
 }
 
+/// Adds what passes while it lives.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+  ~Stopwatch() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// It has served its turn, and models that are kept would keep it: 16 MB of 10,000 nodes a load
 /// case.
 void drop_tangent(ExampleEvaluation& example) {
@@ -295,6 +259,7 @@ void Workspace::start_from(const Place& place) {
   for (EquilibriumSolver& solver : impl_->solvers) solver.forget();
   impl_->last = place.q;
   impl_->linear = {};
+  impl_->deal();
 }
 
 Result<Evaluation> Workspace::evaluate(
@@ -315,10 +280,14 @@ Result<Evaluation> Workspace::evaluate(
   std::vector<int> to_solve = wanted;
   if (reference >= 0 && std::find(wanted.begin(), wanted.end(), reference) == wanted.end())
     to_solve.push_back(reference);
+  std::vector<int> own = wanted, own_to_solve = to_solve;  // all look at the reference
+  std::erase_if(own, [&](int e) { return !impl_->own(e); });
+  std::erase_if(own_to_solve, [&](int e) { return !impl_->own(e) && e != reference; });
   auto cancelled = [&] { return options.cancel && options.cancel->load(); };
+  for (int e : to_solve) impl_->seconds[e] = 0.0;
   std::atomic<int> done = 0;
   std::atomic<bool> failed = false;
-  const int all = static_cast<int>(to_solve.size() + wanted.size());
+  const int all = static_cast<int>(own_to_solve.size() + own.size());
   auto advance = [&] {
     const int now = ++done;
     if (options.progress) options.progress(now, all);
@@ -327,6 +296,7 @@ Result<Evaluation> Workspace::evaluate(
   const std::function<bool()> pointless = [&] { return failed || cancelled(); };
   const auto solve = [&](int e) {
     if (pointless()) return;
+    const Stopwatch watch(impl_->seconds[e]);
     failures[e] = impl_->solve(model, columns ? &*columns : nullptr, e, options,
                                impl_->linear.at(form, p, e), pointless, solved[e], derivative[e]);
     if (!candidates.empty()) impl_->solvers[e].forget();
@@ -343,6 +313,7 @@ Result<Evaluation> Workspace::evaluate(
   }
   const auto compare = [&](int e, const ReferenceState& reference_state) {
     if (pointless()) return;
+    const Stopwatch watch(impl_->seconds[e]);
     solved[e].example = e;
     solved[e].held_out = capture.examples[e].validate;
     const ExampleColumns* d = columns ? &derivative[e] : nullptr;
@@ -364,18 +335,20 @@ Result<Evaluation> Workspace::evaluate(
   // All look at the reference state. Without one every example goes on to its photos by itself, and
   // no core waits for the slowest equilibrium.
   if (reference < 0) {
-    for_each(wanted, [&](int e) {
+    for_each(own, [&](int e) {
       solve(e);
       compare(e, {});
     });
   } else {
-    for_each(to_solve, solve);
+    for_each(own_to_solve, solve);
     const ReferenceState state{reference, &solved[reference],
                                columns ? &derivative[reference] : nullptr};
-    for_each(wanted, [&](int e) { compare(e, state); });
+    for_each(own, [&](int e) { compare(e, state); });
   }
   if (cancelled()) return stopped();
   if (reference >= 0) drop_tangent(solved[reference]);
+  impl_->exchange(wanted, solved, failures);
+  for (int e : wanted) failed = failed || !failures[e];
   impl_->settle(to_solve, solved, failed);
   for (int e : to_solve)
     if (!failures[e]) return failure_of(failures[e]);

@@ -36,6 +36,7 @@ struct PhotoComparer::Impl {
 PhotoComparer::PhotoComparer(std::shared_ptr<const Scene> scene, int example)
     : impl_(std::make_unique<Impl>(std::move(scene), example)) {}
 PhotoComparer::PhotoComparer(PhotoComparer&&) noexcept = default;
+PhotoComparer& PhotoComparer::operator=(PhotoComparer&&) noexcept = default;
 PhotoComparer::~PhotoComparer() = default;
 
 Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const VectorXd* q_reference,

@@ -23,6 +23,7 @@ class PhotoComparer {
  public:
   PhotoComparer(std::shared_ptr<const Scene> scene, int example);
   PhotoComparer(PhotoComparer&&) noexcept;
+  PhotoComparer& operator=(PhotoComparer&&) noexcept;
   ~PhotoComparer();
 
   std::vector<PhotoEvaluation> compare(const Model& model, const ExampleEvaluation& example,

@@ -1,0 +1,116 @@
+// hookeye-mpi: load cases shared among processes change no bit of the answer.
+#include <gmock/gmock.h>
+
+#include <regex>
+
+#include "app/fitted_run.h"
+
+namespace hookeye::test {
+namespace {
+
+using testing::HasSubstr;
+
+class Mpi : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    write("recipe.yaml", kSmallRecipe);
+    const Result made = hookeye("synth recipe.yaml -o capture");
+    ASSERT_EQ(made.status, 0) << made.err;
+  }
+
+  /// Of Open MPI: more processes than cores, as root, without what containers forbid.
+  static std::string mpirun(int processes) {
+    return "env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+           "OMPI_MCA_btl_vader_single_copy_mechanism=none '" HOOKEYE_MPIRUN
+           "' --oversubscribe -n " +
+           std::to_string(processes) + " ";
+  }
+  Result shell(const std::string& command) const {
+    const std::string whole =
+        "cd '" + folder_.string() + "' && " + command + " >out.txt 2>err.txt </dev/null";
+    const int status = std::system(whole.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"),
+            read(folder_ / "err.txt")};
+  }
+  Result shared(int processes, const std::string& arguments) const {
+    return shell(mpirun(processes) + "'" HOOKEYE_MPI_PROGRAM "' --threads 1 " + arguments);
+  }
+  void write_search(const std::string& run, int processes) const {
+    const Result found = processes == 0 ? hookeye("--threads 1 discover capture -o " + run)
+                                        : shared(processes, "discover capture -o " + run);
+    ASSERT_EQ(found.status, 0) << found.out << found.err;
+  }
+  /// Files of a run that hold its numbers, by name; what they tell of time and place is struck.
+  std::map<std::string, std::string> numbers(const std::string& run) const {
+    static const std::regex passing(
+        R"re("(time|seconds|cpu_s|cpu|wall|started|ended|command|version)": *("[^"]*"|[-0-9.e+]+))re");
+    std::map<std::string, std::string> out;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / run)) {
+      const std::string name = entry.path().filename();
+      if (name == "model.yaml" || name == "metrics.json" || name == "decisions.jsonl" ||
+          name == "diagnosis.json")
+        out[fs::relative(entry.path(), folder_ / run)] =
+            std::regex_replace(read(entry.path()), passing, "");
+    }
+    return out;
+  }
+};
+
+TEST_F(Mpi, AnyNumberOfProcessesFindTheSameBits) {
+  write_search("alone", 0);
+  const auto expected = numbers("alone");
+  ASSERT_GT(expected.size(), 5U);
+  for (const int processes : {2, 3}) {
+    const std::string run = "by_" + std::to_string(processes);
+    write_search(run, processes);
+    EXPECT_EQ(numbers(run), expected) << processes;
+  }
+}
+
+TEST_F(Mpi, SolvesAndDiagnosesTogether) {
+  for (const std::string verb : {"fit capture -o ", "simulate capture -o "}) {
+    ASSERT_EQ(hookeye("--threads 1 " + verb + "alone").status, 0);
+    const Result result = shared(2, verb + "together");
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("2 processes share the load cases, each on 1 core"));
+  }
+  EXPECT_EQ(read(folder_ / "together/deformed/pull.vtu"),
+            read(folder_ / "alone/deformed/pull.vtu"));
+  ASSERT_EQ(hookeye("--threads 1 diagnose alone").status, 0);
+  const Result diagnosed = shared(2, "diagnose together");
+  ASSERT_EQ(diagnosed.status, 0) << diagnosed.err;
+  EXPECT_EQ(numbers("together"), numbers("alone"));
+}
+
+TEST_F(Mpi, BadInputIsToldOnce) {
+  const Result result = shared(3, "fit nowhere -o run");
+  EXPECT_EQ(result.status, 2) << result.err;
+  const size_t first = result.err.find("nowhere");
+  ASSERT_NE(first, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("is not there", result.err.find("is not there") + 1), std::string::npos)
+      << result.err;
+  const Result other = shared(2, "check capture");
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("there is no command `check`"));
+}
+
+/// One that is killed ends all, with a message, and the search goes on from what was finished.
+TEST_F(Mpi, ADeadProcessEndsTheOthersAndTheRunGoesOn) {
+  write_search("alone", 0);
+  const Result killed = shell(
+      mpirun(2) +
+      "sh -c 'if [ \"$OMPI_COMM_WORLD_RANK\" = 1 ]; then (while ! ls "
+      "killed/steps/00-base/model.yaml >/dev/null 2>&1; do sleep 0.05; done; kill -9 $$) & fi; "
+      "exec \"" HOOKEYE_MPI_PROGRAM "\" --threads 1 discover capture -o killed'");
+  EXPECT_NE(killed.status, 0);
+  EXPECT_THAT(killed.err, HasSubstr("signal 9"));
+  ASSERT_TRUE(fs::exists(folder_ / "killed/steps/00-base/model.yaml"));
+  EXPECT_FALSE(json::parse(read(folder_ / "killed/run.json")).contains("verdict"));
+  write_search("killed", 2);
+  EXPECT_EQ(json::parse(read(folder_ / "killed/run.json")).at("verdict"),
+            json::parse(read(folder_ / "alone/run.json")).at("verdict"));
+}
+
+}  // namespace
+}  // namespace hookeye::test
