@@ -48,8 +48,9 @@ Json describe_fields(const Scene& scene) {
 
 void say_fields(const Scene& scene, const Json& fields, const Session& session) {
   if (fields.empty()) return;
-  std::vector<std::vector<std::string>> rows{{"example", "field", "points", "dropped", "alike",
-                                              "numbers", "sigma", "rough", "largest", "gap"}};
+  std::vector<std::vector<std::string>> rows{{"example", "field", "points", "dropped", "along",
+                                              "alike", "numbers", "sigma", "rough", "largest",
+                                              "gap"}};
   const auto short_number = [](const Json& value) {
     return value.is_null() ? "-" : fmt::format("{:.3g}", value.get<double>());
   };
@@ -57,9 +58,9 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
     rows.push_back(
         {one["example"], std::filesystem::path(one["file"].get<std::string>()).filename().string(),
          std::to_string(one["points"].get<long>()), std::to_string(one["dropped"].get<long>()),
-         short_number(one["correlation"]), fmt::format("{:.0f}", one["numbers"].get<double>()),
-         short_number(one["sigma"]), short_number(one["rough"]), short_number(one["largest"]),
-         short_number(one["gap"])});
+         one["components"] == 3 ? "x y z" : "x y", short_number(one["correlation"]),
+         fmt::format("{:.0f}", one["numbers"].get<double>()), short_number(one["sigma"]),
+         short_number(one["rough"]), short_number(one["largest"]), short_number(one["gap"])});
   session.say("\nmeasured fields [{}]\n{}", scene.capture.units.length, table(rows));
 }
 
