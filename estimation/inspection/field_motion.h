@@ -11,4 +11,12 @@ namespace hookeye::inspection {
 /// Of every field of example `e`, to first order. Empty: it has none, or there is no first guess.
 std::vector<FieldMotion> field_motions(Sight& sight, int e);
 
+/// What the first guess of an example would show at a field's points: components point by point, to
+/// first order and in equilibrium (empty: there is none).
+struct ComparedField {
+  VectorXd first_order, in_equilibrium;
+};
+std::vector<ComparedField> field_beside(Sight& sight, const MeasuredSpec& measured,
+                                        const std::vector<int>& examples);
+
 }  // namespace hookeye::inspection
