@@ -173,18 +173,20 @@ void by_told_names(const std::map<std::string, std::string>& told, const Place& 
 }
 
 /// Pixels are not taken where the file has lengths but for one or two columns.
-void refuse_partial(const std::vector<Head>& heads, const Place& place) {
+void refuse_partial(const std::vector<std::string_view>& cells, const std::vector<Head>& heads,
+                    const Place& place) {
   for (const Dialect& dialect : kDialects) {
     if (*dialect.unit) continue;
     std::vector<std::string> there, missing;
     for (const char* name : dialect.names)
       (find(heads, name) >= 0 ? there : missing).push_back(name);
     if (there.size() < 4) continue;
-    throw InputError(place,
-                     fmt::format("of {} the file lacks {}", fmt::join(dialect.names, ", "),
-                                 fmt::join(missing, ", ")),
-                     "export them too; or name the columns that hold, `columns: {X: NAME, Y: NAME, "
-                     "U: NAME, V: NAME}`");
+    throw InputError(
+        place,
+        fmt::format("of {} the file lacks {}; it has {}", fmt::join(dialect.names, ", "),
+                    fmt::join(missing, ", "), listed(cells)),
+        "export all of them; or tell the file's own names: `columns: {X: NAME, Y: "
+        "NAME, U: NAME, V: NAME}`");
   }
 }
 
@@ -206,7 +208,7 @@ Columns columns_in(const std::vector<std::string_view>& cells, const Place& plac
       out.unit = dialect.unit;
       if (complete()) break;
     }
-    if (!complete() || out.unit == "px") refuse_partial(heads, place);
+    if (!complete() || out.unit == "px") refuse_partial(cells, heads, place);
   }
   if (!complete())
     throw InputError(place,
