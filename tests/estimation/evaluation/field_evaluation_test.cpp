@@ -174,7 +174,7 @@ TEST(FieldEvaluation, WhatIsWrongIsToldWithFileAndLine) {
                                   "X, Y, Z, U, speed, W\n"));
   const std::string through_frame =
       refusal(FieldBlock{}, "capture.yaml", "sigma: 0.01}",
-              "sigma: 0.01, unit: m, frame: {origin: [0, 0, 1], x: [1, 0, 0], y: [0, 1, 0]}}");
+              "sigma: 0.01, unit: m, frame: {origin: [0, 0, 5000], x: [1, 0, 0], y: [0, 1, 0]}}");
   EXPECT_THAT(through_frame, testing::HasSubstr("the points reach over"));
   EXPECT_THAT(through_frame, testing::HasSubstr("tell the field's `unit` or `scale`"));
   EXPECT_THAT(refusal(FieldBlock{.keys = ", unit: mm"}, "bend_flank.csv", "X,", "X [cm],"),
