@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "calibration/board_options.h"
 #include "calibration/detection.h"
@@ -26,20 +27,28 @@ std::vector<Detection> find_boards(const Board& board, const PhotoList& list,
   return found;
 }
 
+/// What photos without the board show instead; "": nothing that is known.
+std::string seen_instead_in(const std::vector<size_t>& without, const Board& board,
+                            const PhotoList& list) {
+  constexpr size_t kMostLooks = 3;
+  for (size_t i = 0; i < std::min(kMostLooks, without.size()); ++i) {
+    const BoardPhoto& photo = list.photos[without[i * (without.size() - 1) / kMostLooks]];
+    const std::string other = seen_instead(read_image(photo.file), board, photo.file.string());
+    if (!other.empty()) return other;
+  }
+  return {};
+}
+
 /// What is most often wrong where no photo shows the board, with what a few of them show instead.
 [[noreturn]] void refuse_unseen(const Board& board, const PhotoList& list,
                                 const std::vector<Detection>& found) {
-  std::string right =
-      "told as it is printed (squares are counted, not corners), flat, sharp, whole, with a "
-      "white rim";
-  constexpr size_t kMostLooks = 3;
-  for (size_t i = 0; i < std::min(kMostLooks, found.size()); ++i) {
-    const BoardPhoto& photo = list.photos[i * (found.size() - 1) / kMostLooks];
-    const std::string other = seen_instead(read_image(photo.file), board, photo.file.string());
-    if (other.empty()) continue;
-    right = other;
-    break;
-  }
+  std::vector<size_t> all(found.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  std::string right = seen_instead_in(all, board, list);
+  if (right.empty())
+    right =
+        "told as it is printed (squares are counted, not corners), flat, sharp, whole, with a "
+        "white rim";
   throw InputError({list.photos.front().file.string()},
                    fmt::format("no {} was found in any of {} photos; in this one: {}",
                                board.title(), found.size(), found.front().why),
@@ -53,12 +62,20 @@ void refuse_without_boards(const Board& board, const std::vector<CameraPhotos>& 
   if (std::ranges::all_of(count, [](size_t n) { return n == 0; }))
     refuse_unseen(board, list, found);
   constexpr size_t kFewest = 3;
-  for (size_t c = 0; c < cameras.size(); ++c)
-    if (count[c] < kFewest)
-      throw InputError({"camera " + cameras[c].name},
-                       fmt::format("the board was found in {} of its photos, {} are the least",
-                                   count[c], kFewest),
-                       "ten photos or more that show the board, tilted and all over the picture");
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    if (count[c] >= kFewest) continue;
+    // A board of fewer squares may be found in a part of a larger one.
+    std::vector<size_t> without;
+    for (size_t i = 0; i < found.size(); ++i)
+      if (list.photos[i].camera == c && found[i].ids.empty()) without.push_back(i);
+    const std::string other = seen_instead_in(without, board, list);
+    throw InputError(
+        {"camera " + cameras[c].name},
+        fmt::format("the board was found in {} of its photos, {} are the least", count[c], kFewest),
+        !other.empty() ? other
+                       : "ten photos or more that show the board, tilted and all over "
+                         "the picture; squares are counted, not corners");
+  }
 }
 
 /// The instant of the photo that `--frame` names.

@@ -202,9 +202,29 @@ void take_strain_units(const Table& table, FieldColumns& out) {
   }
 }
 
+/// Pixels are not taken where the file has lengths but for one or two columns.
+void refuse_partial(const Table& table) {
+  for (const Dialect& dialect : kDialects) {
+    if (*dialect.unit) continue;
+    std::vector<std::string> there, missing;
+    for (const char* name : dialect.names)
+      (find(table.heads, name) >= 0 ? there : missing).push_back(name);
+    if (there.size() < 4) continue;
+    throw InputError(
+        table.place,
+        fmt::format("of {} the file lacks {}; it has {}", fmt::join(dialect.names, ", "),
+                    fmt::join(missing, ", "), listed(table.cells)),
+        "export all of them; or tell the file's own names: `columns: {X: NAME, Y: "
+        "NAME, U: NAME, V: NAME}`");
+  }
+}
+
 void refuse_missing(const Table& table, FieldHolds holds, const FieldColumns& out) {
   const bool points = out.has(0) && out.has(1);
-  if (holds == FieldHolds::displacements && !(points && out.has(3) && out.has(4)))
+  const bool moves = points && out.has(3) && out.has(4);
+  if (holds == FieldHolds::displacements && table.told.empty() && (!moves || out.unit == "px"))
+    refuse_partial(table);
+  if (holds == FieldHolds::displacements && !moves)
     throw InputError(
         table.place,
         "the columns of points and displacements are not found in " + listed(table.cells),

@@ -114,10 +114,15 @@ void add_file(const fs::path& file, Inventory& out) {
       add_calibration(file, out);
   } else if (ends_with(file, {".csv", ".txt", ".tsv", ".dat", ".asc", ".tra"})) {
     auto table = read_text_table(file);
-    if (table && is_machine_table(*table))
+    if (table && is_machine_table(*table)) {
       out.tables.push_back(std::move(*table));
-    else
+    } else {
       add_calibration(file, out);
+      if (table) out.other_tables.push_back(std::move(*table));
+    }
+  } else if (ends_with(file, {".mp4", ".mov", ".avi", ".mkv", ".m4v", ".mpg", ".mpeg", ".wmv",
+                              ".webm", ".mts"})) {
+    out.videos.push_back(file);
   }
 }
 
@@ -162,6 +167,9 @@ Inventory look_at(const fs::path& folder) {
   say_left(files.boards, "the folder's name says that they are boards, masks or results", out);
   for (const fs::path& one : files.folders) add_calibration(one, out);
   for (const fs::path& file : files.others) add_file(file, out);
+  // What `import` or `calibrate` wrote was asked for, the file that it may be from was not.
+  std::stable_partition(out.calibrations.begin(), out.calibrations.end(),
+                        [](const CalibrationFile& one) { return one.importer == nullptr; });
   return out;
 }
 

@@ -31,7 +31,9 @@ struct Inventory {
   std::vector<PhotoSeries> series;
   std::vector<CalibrationFile> calibrations;
   std::vector<std::filesystem::path> surfaces, volumes;
-  std::vector<TextTable> tables;                ///< of test machines
+  std::vector<TextTable> tables;        ///< of test machines
+  std::vector<TextTable> other_tables;  ///< with names, but without force or travel
+  std::vector<std::filesystem::path> videos;
   std::vector<std::filesystem::path> textures;  ///< pictures called albedo or texture
   std::vector<std::string> said;                ///< what was left out, and why
 };

@@ -32,7 +32,8 @@ size_t rest_of(const Pairing& pairing, const MachineRecord& record, LoadCases& o
     if (load_of(photos[k], record) < load_of(photos[rest], record)) rest = k;
   }
   out.said.push_back(fmt::format(
-      "photo {} is taken as the rest: no photo is from before the machine moved, and this one has "
+      "photo {} is taken as the rest: none is known to be from before the machine moved, and this "
+      "has "
       "the least load ({:.2g} of the largest); the body is taken to be undeformed there",
       photos[rest].number, most > 0 ? load_of(photos[rest], record) / most : 0.0));
   return rest;

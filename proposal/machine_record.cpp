@@ -158,6 +158,24 @@ void drop_gaps(const TextTable& table, const std::vector<size_t>& columns, Machi
   record.lines.resize(n);
 }
 
+/// Where commas stand between the cells and within the numbers, rows fall into more cells than the
+/// head has names, and none of them has a decimal point.
+void check_commas(const TextTable& table) {
+  size_t named = table.names.size();
+  while (named > 0 && table.names[named - 1].empty()) --named;
+  if (table.delimiter != ',' || table.names_line == 0 || table.rows.empty()) return;
+  const auto& row = table.rows.front();
+  if (row.size() <= named || row.back().empty()) return;
+  for (const auto& one : table.rows)
+    for (const std::string& cell : one)
+      if (cell.find('.') != std::string::npos) return;
+  throw InputError({table.file.string(), table.lines.front()},
+                   fmt::format("the row has {} cells, the head {} names: commas stand between the "
+                               "cells and within the numbers",
+                               row.size(), named),
+                   "export with semicolons between the cells, or with decimal points");
+}
+
 /// Time must not go back; a hole in it is told.
 void check_time(MachineRecord& record) {
   const auto& t = record.time;
@@ -208,11 +226,26 @@ void read_photos_column(const TextTable& table, Questions& questions, MachineRec
 }  // namespace
 
 bool is_machine_table(const TextTable& table) {
-  return !columns_of(table, kForce).empty() ||
-         (!columns_of(table, kTravel).empty() && !columns_of(table, kTime).empty());
+  if (!columns_of(table, kForce).empty()) return true;
+  const bool photos = std::any_of(table.names.begin(), table.names.end(), [](const auto& name) {
+    return has_any(lower(name), kPhotoWords);
+  });
+  return !columns_of(table, kTravel).empty() && (photos || !columns_of(table, kTime).empty());
+}
+
+std::string columns_told(const TextTable& table) {
+  const std::string at = table.file.filename().string();
+  if (table.names_line == 0)
+    return fmt::format("{} has no line of names above its numbers (line {})", at,
+                       table.lines.front());
+  std::string names;
+  for (const std::string& name : table.names)
+    if (!name.empty()) names += (names.empty() ? "`" : ", `") + name + "`";
+  return fmt::format("the columns of {} are {} (line {})", at, names, table.names_line);
 }
 
 MachineRecord machine_record(const TextTable& table, Questions& questions) {
+  check_commas(table);
   MachineRecord record;
   record.file = table.file;
   record.lines = table.lines;

@@ -18,6 +18,7 @@ struct Proposal {
   std::string pairing;                     ///< how photos were paired with rows
   std::string cameras;                     ///< where they come from
   LoadCases cases;
+  bool timed = true;              ///< the table has times; else those of `cases` are rows
   std::vector<std::string> said;  ///< what the user is to know
 };
 

@@ -73,10 +73,16 @@ std::string length_unit(const BodyFacts& body, Questions& questions) {
 }
 
 MachineRecord chosen_record(const Inventory& inventory, Questions& questions) {
-  if (inventory.tables.empty())
-    throw InputError({inventory.folder.string()}, "there is no table of a test machine in it",
-                     "a csv or txt with named columns of time and force or travel; loads that no "
-                     "machine recorded are written by hand (docs/capture.md)");
+  if (inventory.tables.empty()) {
+    std::string instead;
+    if (!inventory.other_tables.empty())
+      instead = ": " + columns_told(inventory.other_tables.front());
+    throw InputError({inventory.folder.string()},
+                     "there is no table of a test machine in it" + instead,
+                     "a csv or txt with named columns of a force, or of a travel with a time or a "
+                     "photo's number; loads that no machine recorded are written by hand "
+                     "(docs/capture.md)");
+  }
   std::vector<fs::path> files;
   for (const TextTable& table : inventory.tables) files.push_back(table.file);
   const fs::path file =
@@ -234,11 +240,19 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
   to.insert(to.end(), more.begin(), more.end());
 }
 
+[[noreturn]] void refuse_without_photos(const Inventory& inventory) {
+  std::string right = "photos as CAMERA_0001.tif, or a folder for each camera";
+  if (!inventory.videos.empty())
+    right = fmt::format(
+        "photos out of the video, as by `ffmpeg -i {} cam_%04d.png`; then `--set "
+        "photo_times=START,SECONDS` tells when they were taken",
+        relative_name(inventory.videos.front(), inventory.folder));
+  throw InputError({inventory.folder.string()}, "there are no photos with numbers in it", right);
+}
+
 /// Reads all and asks; the text is made where nothing is left open that has no default.
 Parts gather(const Inventory& inventory, Questions& questions, std::vector<std::string>& said) {
-  if (inventory.series.empty())
-    throw InputError({inventory.folder.string()}, "there are no photos with numbers in it",
-                     "photos as CAMERA_0001.tif, or a folder for each camera");
+  if (inventory.series.empty()) refuse_without_photos(inventory);
   Parts parts;
   parts.body = chosen_body(inventory, questions);
   parts.length = length_unit(parts.body, questions);
@@ -282,6 +296,7 @@ Proposal propose(const Inventory& inventory, const Questions::Answers& answers,
        {&parts.record.said, &parts.cameras.said, &parts.pairing.said, &parts.cases.said, &said})
     append(out.said, *more);
   out.cases = parts.cases;
+  out.timed = !parts.record.time.empty();
   if (out.needed.empty()) out.yaml = capture_text(parts, inventory, file);
   return out;
 }

@@ -53,7 +53,15 @@ Imported read_calibration(const CalibrationFile& calibration, const PhotoSeries&
     out.world = "that of " + calibration.sources.front().filename().string();
     return out;
   }
-  const Imported raw = calibration.importer->read(calibration.sources, {});
+  Imported raw;
+  try {
+    raw = calibration.importer->read(calibration.sources, {});
+  } catch (const InputError& error) {
+    throw InputError(error.place(), error.wrong(),
+                     error.right() +
+                         " (options are those of `hookeye import`; the cameras.yaml that "
+                         "it writes goes before this file)");
+  }
   ImportOptions options;
   const bool unsized_one = std::any_of(raw.cameras.begin(), raw.cameras.end(),
                                        [](const Camera& camera) { return camera.width == 0; });
@@ -195,8 +203,8 @@ void set_scale(std::vector<Camera>& cameras, const BodyFacts& body, const std::s
   out.scale = told;
   if (worst_share(cameras, body, 1) < 0.5)
     out.said.push_back(fmt::format(
-        "not all cameras see the body where the mesh has it: the calibration's world is {}; bring "
-        "the mesh into that frame, or turn the poses (docs/import.md)",
+        "not all cameras see the body where the mesh has it, as the calibration's world is {}: "
+        "`hookeye place` finds where the body lies in it (docs/place.md)",
         world));
 }
 

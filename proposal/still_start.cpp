@@ -37,15 +37,31 @@ double crossing(const std::vector<double>& x, const std::vector<double>& y, size
   return xy == 0 ? x[from] : mx + (level - my) * xx / xy;
 }
 
-/// The still rows by one signal, and when they end; {0, 0}: it moves from the first row on.
+/// The still rows by one signal, and when they end; {0, 0}: none are seen.
 struct Start {
   size_t rows = 0;
   double onset = 0;
 };
+
+/// A table of a row a photo has few rows at rest, and the next is a step away. In a motion that
+/// began at once the first rows lie as far apart as those that follow.
+Start start_of_few(const std::vector<double>& x, const std::vector<double>& y, double range) {
+  size_t moving = 1;
+  while (moving < y.size() && std::abs(y[moving] - y[0]) <= 0.02 * range) ++moving;
+  if (moving < 2 || moving >= y.size()) return {};
+  const auto [low, high] =
+      std::minmax_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(moving));
+  const double step = std::abs(y[moving] - moments(y, moving).mean);
+  if (*high - *low > 0.1 * step) return {};
+  return {moving, x[moving - 1]};
+}
+
 Start start_of(const std::vector<double>& x, const std::vector<double>& y) {
   const auto [low, high] = std::minmax_element(y.begin(), y.end());
   const double range = *high - *low;
-  if (range == 0 || y.size() < 8) return {};
+  if (range == 0) return {};
+  if (const Start few = start_of_few(x, y, range); y.size() < 8 || (few.rows > 0 && few.rows < 4))
+    return few;
   const double base = median_of_first(y, std::clamp<size_t>(y.size() / 50, 3, 50));
   const auto leaves = [&](size_t from, double share) {
     size_t i = from;
@@ -88,7 +104,8 @@ void find_still_start(MachineRecord& record) {
   }
   if (start.rows == 0) {
     record.said.push_back(fmt::format(
-        "{}:{}: the machine moves from the first row on: the load cell's zero cannot be seen",
+        "{}:{}: no rows at rest stand out before the machine moves: the load cell's zero cannot be "
+        "seen, and forces are taken as they stand",
         record.file.string(), record.lines.front()));
     return;
   }

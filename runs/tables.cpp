@@ -334,7 +334,8 @@ std::string choice_table(const json& before, const json& step, double floor, con
   return "\n" +
          wrapped(fmt::format(
              "why {}: normalised residual over the noise floor with each effect that stood out "
-             "(screening: after one or two steps of a refit, on half-size photos, over what those "
+             "(screening: after one or two steps of a refit, of photos at half size, over what "
+             "those "
              "at rest kept of the model before; floor: less than that; -: not screened, as it "
              "promised too little or had no equilibrium; blank: not refitted; behind: in the "
              "refits' penalised log likelihood, below {:.0f} is a tie)",

@@ -3,6 +3,7 @@
 #include "app/commands/check.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "app/commands/check_covariance.h"
 #include "app/commands/check_fields.h"
@@ -134,8 +135,10 @@ void say_capture(const Session& session, const Json& d, const Scene& scene) {
                         scene.body->mesh,
                         capture.body.volume.empty() ? MeshedFrom::surface : MeshedFrom::volume,
                         capture.body.surface.filename().string()));
-  session.say("  surface of {} triangles, as it is photographed\n",
-              scene.body->surface.mesh.triangles.size());
+  const bool photographed =
+      std::ranges::any_of(scene.photos, [](const auto& photos) { return !photos.empty(); });
+  session.say("  surface of {} triangles{}\n", scene.body->surface.mesh.triangles.size(),
+              photographed ? ", as it is photographed" : "");
   session.say("  texture: {}\n  light: {}\n", d["texture"].get<std::string>(),
               d["light"].get<std::string>());
   std::vector<std::vector<std::string>> rows{{"law", "region", "parameters"}};
@@ -190,8 +193,9 @@ void say_examples(const Session& session, const Json& examples) {
   if (rows.size() > 1) session.say("\nphotos (linear intensity, full scale 1)\n{}", table(rows));
   for (const auto& e : examples)
     if (!e["free_rigid_motions"].empty())
-      session.say("\nexample {} leaves free: {}\n", e["name"].get<std::string>(),
-                  joined(e["free_rigid_motions"]));
+      session.say("\n{}",
+                  wrapped(fmt::format("example {} leaves free: {}", e["name"].get<std::string>(),
+                                      joined(e["free_rigid_motions"]))));
 }
 
 Json describe_materials(const Capture& capture) {

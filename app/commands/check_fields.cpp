@@ -35,6 +35,12 @@ double gap_of(const TetMesh& mesh, const FieldSpec& field) {
   return out;
 }
 
+/// What a point tells, by its number of components.
+std::string directions_of(bool strains, int components) {
+  if (strains) return components == 3 ? "exx eyy exy" : "exx eyy";
+  return components == 3 ? "x y z" : "x y";
+}
+
 }  // namespace
 
 Json describe_fields(const Scene& scene) {
@@ -65,7 +71,7 @@ Json describe_fields(const Scene& scene) {
 
 void say_fields(const Scene& scene, const Json& fields, const Session& session) {
   const std::string& length = scene.capture.units.length;
-  const std::vector<std::string> heads{"example", "field", "points", "dropped", "alike",
+  const std::vector<std::string> heads{"example", "field", "points", "dropped", "along", "alike",
                                        "numbers", "sigma", "rough",  "largest", "gap"};
   std::vector<std::vector<std::string>> moved{heads}, strained{heads};
   strained[0].insert(strained[0].begin() + 2, {"measure", "gauge"});
@@ -80,6 +86,7 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
         std::filesystem::path(one["file"].get<std::string>()).filename().string(),
         std::to_string(one["points"].get<long>()),
         std::to_string(one["dropped"].get<long>()),
+        directions_of(strains, one["components"]),
         short_number(one["correlation"]),
         fmt::format("{:.0f}", one["numbers"].get<double>()),
         short_number(one["sigma"], in),

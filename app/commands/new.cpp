@@ -124,9 +124,11 @@ Json describe(const Inventory& inventory, const Proposal& proposal, const fs::pa
         {{"camera", one.camera}, {"scheme", one.scheme}, {"count", one.photos.size()}});
   d["cameras"] = proposal.cameras;
   d["pairing"] = proposal.pairing;
-  const auto photo = [](const std::string& name, const PairedPhoto& at, const char* use) {
-    return Json{{"name", name},      {"photo", at.number},  {"line", at.line}, {"time", at.time},
-                {"force", at.force}, {"travel", at.travel}, {"use", use}};
+  const auto photo = [&](const std::string& name, const PairedPhoto& at, const char* use) {
+    Json one{{"name", name},      {"photo", at.number},  {"line", at.line},
+             {"force", at.force}, {"travel", at.travel}, {"use", use}};
+    if (proposal.timed) one["time"] = at.time;
+    return one;
   };
   d["cases"] = {photo("rest", proposal.cases.rest, "fit")};
   for (const LoadCase& one : proposal.cases.loads)
@@ -152,8 +154,8 @@ void say(const Inventory& inventory, const Proposal& proposal, const Session& se
   rows = {{"load case", "photo", "line", "time s", "force N", "travel mm", "use"}};
   const auto row = [&](const std::string& name, const PairedPhoto& photo, const char* use) {
     rows.push_back({name, std::to_string(photo.number), std::to_string(photo.line),
-                    fmt::format("{:.2f}", photo.time), fmt::format("{:.4g}", photo.force),
-                    fmt::format("{:.4g}", photo.travel), use});
+                    proposal.timed ? fmt::format("{:.2f}", photo.time) : "-",
+                    fmt::format("{:.4g}", photo.force), fmt::format("{:.4g}", photo.travel), use});
   };
   row("rest", proposal.cases.rest, "fit");
   for (const LoadCase& one : proposal.cases.loads)

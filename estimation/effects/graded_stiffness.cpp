@@ -160,7 +160,7 @@ Parameter edge_thickness(const Model& model) {
   const double size = body_size(*model.scene).size;
   return {"stiffness_field.thickness",
           model.scene->capture.units.length,
-          "over which the stiffness changes",
+          "length over which the stiffness changes",
           0.05 * size,
           0.01 * size,
           size,

@@ -54,12 +54,16 @@ FieldMotion strain_of(const MeasuredSpec& measured, const TetMesh& mesh, const V
   return out;
 }
 
+/// Components of the nodes' displacements `u` at the field's points.
+VectorXd shown_by(const FieldSpec& field, const FieldPoints& points, const VectorXd& u) {
+  const Matrix3Xd nodal = u.reshaped(3, u.size() / 3);
+  return components_of(field, (points.N * nodal.transpose()).transpose());
+}
+
 FieldMotion motion_of(const MeasuredSpec& measured, const TetMesh& mesh, const VectorXd& u) {
   const FieldSpec& field = *measured.field;
   if (field.strain) return strain_of(measured, mesh, u);
-  const Matrix3Xd nodal = u.reshaped(3, mesh.nodes());
-  const Matrix3Xd at_points = (field_points(mesh, field).N * nodal.transpose()).transpose();
-  const VectorXd expected = components_of(field, at_points);
+  const VectorXd expected = shown_by(field, field_points(mesh, field), u);
   const VectorXd& seen = measured.value;
   FieldMotion out;
   out.file = field.told;
@@ -93,6 +97,21 @@ VectorXd strains_to_first_order(const FieldSpec& field, const TetMesh& mesh, con
     out.col(k) = strain_by(StrainMeasure::small, A, T).e;
   }
   return out.topRows(field.components).reshaped();
+}
+
+std::vector<ComparedField> field_beside(Sight& sight, const MeasuredSpec& measured,
+                                        const std::vector<int>& examples) {
+  const TetMesh& mesh = sight.coarse()->scene().body->mesh;
+  const FieldSpec& field = *measured.field;
+  const FieldPoints points = field_points(mesh, field);
+  std::vector<ComparedField> out;
+  for (const int e : examples) {
+    const FirstGuess& guess = *sight.guess(e);
+    out.push_back({shown_by(field, points, guess.u), {}});
+    if (guess.q.size() > 0)
+      out.back().in_equilibrium = shown_by(field, points, guess.q - mesh.X.reshaped());
+  }
+  return out;
 }
 
 std::vector<FieldMotion> field_motions(Sight& sight, int e) {

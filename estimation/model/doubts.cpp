@@ -91,6 +91,11 @@ std::string beside_the_picture(const Camera& camera, const Matrix3Xd& X) {
   if (high.x() > -0.5 && high.y() > -0.5 && low.x() < camera.width - 0.5 &&
       low.y() < camera.height - 0.5)
     return "";
+  // Points next to the camera's plane are thrown anywhere.
+  if (std::max({-low.x(), -low.y(), high.x(), high.y()}) >
+      100.0 * std::max(camera.width, camera.height))
+    return fmt::format("which it would show far beside its {} x {} px", camera.width,
+                       camera.height);
   return fmt::format(
       "which it would show at x from {:.0f} to {:.0f}, y from {:.0f} to {:.0f} of {} x {} px",
       low.x(), high.x(), low.y(), high.y(), camera.width, camera.height);
@@ -123,7 +128,8 @@ void look_at_photos(const Scene& scene, Sentences* out) {
     if (where.empty()) continue;
     out->push_back(fmt::format(
         "{}camera {} looks past the body at rest, {}: check its pose, its {}, its units and the "
-        "body's",
+        "body's; where mesh and cameras are in two frames, `hookeye place` finds where the body "
+        "lies",
         told_at(scene.capture, camera), camera.name, where,
         camera.model->central() ? "focal length" : "scale (px per length)"));
   }

@@ -27,8 +27,13 @@ std::string hint_at_unit(const BoundaryLocator& locator, const TetMesh& mesh,
     if (factor * size > 0.1 && farthest(factor) <= field_tolerance(mesh, field))
       return fmt::format(
           "{:g} times their coordinates lie on it: tell the field's `unit` or `scale`", factor);
-  return "coordinates in the capture's frame (else tell `frame:`) and of the body as it was given; "
-         "`tolerance: LENGTH` allows for more";
+  // With `frame:` the origin hides that; how far the points reach does not know it.
+  if (size > 3.0 || size < 0.03)
+    return fmt::format(
+        "the points reach over {:.3g}, the body over {:.3g}: tell the field's `unit` or `scale`",
+        extent(field.X), extent(mesh.X));
+  return "coordinates in the capture's frame (else tell `frame:`, whose z is x cross y) and of the "
+         "body as it was given; `tolerance: LENGTH` allows for more";
 }
 
 }  // namespace

@@ -276,8 +276,8 @@ std::string tested_sentence(const json& timeline, const json& step, double floor
     return out;
   }
   if (!timeline.contains("sentence") || number_in(step, "chi_validate") <= 0.0) return "";
-  return "held-out photos helped to choose the effects: only an example of `use: test` has no part "
-         "in it";
+  return "held-out examples helped to choose the effects: only one of `use: test` has no part in "
+         "it";
 }
 
 json material_in(const json& metrics, const json& diagnosis) {

@@ -332,6 +332,18 @@ TEST(Calibrate, SaysWhatIsInThePhotosInstead) {
   EXPECT_THAT(refused(other, photos), HasSubstr("no chessboard of 8x6 squares"));
 }
 
+TEST(Calibrate, CornersCountedForSquaresAreTold) {
+  std::mt19937 random(9);
+  const TemporaryFolder folder;
+  const DrawnBoard drawn = chessboard(10, 7);
+  const std::vector<Camera> truth{true_camera("a")};
+  const auto poses = spread_poses(truth[0], drawn.board, 2, 330, 20, random);
+  Board told = drawn.board;
+  told.columns = 9, told.rows = 6;
+  EXPECT_THAT(refused(told, photograph(folder, drawn, truth, poses, random)),
+              HasSubstr("--squares 10x7"));
+}
+
 TEST(Calibrate, BothKindsOfEvenCharucoBoardsAreRead) {
   std::mt19937 random(2);
   for (const bool white_first : {false, true}) {

@@ -90,9 +90,15 @@ TEST(FieldTable, OtherNamesAreTold) {
 
 TEST(FieldTable, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(complaint("X,Y,Z,U,W\n1,2,3,4,5\n"),
-            "u.csv:1: the columns of points and displacements are not found in X, Y, Z, U, W\n"
-            "  X, Y, U, V and, where they are known, Z and W; or tell the file's own names: "
-            "`columns: {X: NAME, Y: NAME, U: NAME, V: NAME}`");
+            "u.csv:1: of X, Y, Z, U, V, W the file lacks V; it has X, Y, Z, U, W\n"
+            "  export all of them; or tell the file's own names: `columns: {X: NAME, Y: NAME, U: "
+            "NAME, V: NAME}`");
+  EXPECT_THAT(complaint("COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,"
+                        "MODEL_COORDINATES_Y,MODEL_COORDINATES_Z,MODEL_DISPLACEMENT_X,"
+                        "MODEL_DISPLACEMENT_Y,MODEL_DISPLACEMENT_Z\n1,2,3,4,5,6,7,8,9\n"),
+              testing::HasSubstr("the file lacks MODEL_COORDINATES_X; it has COORDINATE_X"));
+  EXPECT_THAT(complaint("easting,northing,a,b\n1,2,3,4\n"),
+              testing::HasSubstr("u.csv:1: the columns of points and displacements are not found"));
   EXPECT_EQ(complaint("X,Y,U,V\n1,2,3,4\n1,2,abc,4\n"),
             "u.csv:3: `abc` in column 3 is no number\n"
             "  a number, or nan where the point has none");

@@ -49,7 +49,8 @@ examples:
                            order, kMu, kKappa, end,
                            measured.empty() ? "" : "    measured: [" + measured + "]\n"));
   }
-  void write_field(const std::function<Vector3d(const Vector3d&)>& u) const {
+  void write_field(const std::function<Vector3d(const Vector3d&)>& u,
+                   const char* name = "u.csv") const {
     std::string table = "X [mm],Y [mm],Z [mm],U [mm],V [mm],W [mm]\n";
     for (int x = 3; x < 60; x += 3)
       for (int y = 2; y < 20; y += 3) {
@@ -57,7 +58,7 @@ examples:
         table += fmt::format("{},{},{},{:.6f},{:.6f},{:.6f}\n", x, y, thickness_, at.x(), at.y(),
                              at.z());
       }
-    write_text(folder_ / "u.csv", table);
+    write_text(folder_ / name, table);
   }
   Inspection inspect() const { return hookeye::inspect(*load_scene(read_capture(folder_.path()))); }
 
@@ -131,6 +132,42 @@ TEST(ThinBody, AFieldInAnotherUnitIsTold) {
   sheet.write_field([](const Vector3d& X) { return Vector3d(100.0 * pulled(0.1, 1.0, X)); });
   EXPECT_THAT(said(sheet.inspect()), HasSubstr("times as far as the first guess"));
   EXPECT_THAT(said(sheet.inspect()), Not(HasSubstr("rigid")));
+}
+
+TEST(ThinBody, FieldsInOneAnothersPlacesAreTold) {
+  const std::string push =
+      "]\n  push:\n    supports: [{region: left, fix: [x, y, z]}]\n"
+      "    loads: [{region: right, force: [-0.05, 0, 0]}]\n"
+      "    measured: [{field: v.csv, sigma: 0.01}";
+  const Sheet sheet(1.0, 2, "[0.1, 0, 0]", kField + push);
+  const auto write = [&](double first, double second) {
+    sheet.write_field([&](const Vector3d& X) { return pulled(first, 1.0, X); });
+    sheet.write_field([&](const Vector3d& X) { return pulled(second, 1.0, X); }, "v.csv");
+  };
+  write(0.1, -0.05);
+  EXPECT_EQ(said(sheet.inspect()), "");
+  write(-0.05, 0.1);
+  EXPECT_THAT(said(sheet.inspect()),
+              AllOf(HasSubstr("exchanges: "), HasSubstr("u.csv shows the motion of example `push`"),
+                    HasSubstr("v.csv shows the motion of example `load`")));
+}
+
+TEST(ThinBody, AForceInAnotherUnitThanThePrescribedMotionTakesIsTold) {
+  const double force = young() * 20.0 * 0.06 / 60.0;  // N
+  for (const double unit : {1.0, 1e-3}) {
+    const std::string moved = fmt::format(
+        "]\n  moved:\n    supports: [{{region: left, fix: [x, y, z]}}, {{region: right, move: "
+        "{{x: 0.06}}}}]\n    measured: [{{force_on: right, value: [{:.6g}, 0, 0], sigma: 1e-6}}",
+        unit * force);
+    const Sheet sheet(1.0, 2, "[0.1, 0, 0]", kField + moved);
+    sheet.write_field([](const Vector3d& X) { return pulled(0.1, 1.0, X); });
+    if (unit == 1.0)
+      EXPECT_EQ(said(sheet.inspect()), "");
+    else
+      EXPECT_THAT(said(sheet.inspect()), AllOf(HasSubstr("measured_values: "),
+                                               HasSubstr("of about 0.001 times those told"),
+                                               HasSubstr("capture.yaml:17")));
+  }
 }
 
 }  // namespace

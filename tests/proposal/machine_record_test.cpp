@@ -137,7 +137,38 @@ TEST(MachineRecord, ATestThatBeginsAtOnceHasNoZero) {
     const MachineRecord record = record_of(lab, plain_table(ramp(0, rows, 1.5)));
     EXPECT_EQ(record.still_rows, 0u) << rows;
     EXPECT_EQ(record.force_zero, 0) << rows;
-    EXPECT_TRUE(any_says(record.said, "moves from the first row on"));
+    EXPECT_TRUE(any_says(record.said, "no rows at rest stand out"));
+  }
+}
+
+TEST(MachineRecord, ARowAPhotoHasFewRowsAtRest) {
+  const LabFolder lab;
+  const std::string head = "Image,Displacement [mm],Force [N]\n";
+  const auto read = [&](const std::string& rows) {
+    lab.write("test.csv", head + rows);
+    Questions questions({});
+    return machine_record(*read_text_table(lab.path() / "test.csv"), questions);
+  };
+  const MachineRecord three =
+      read("0,0,0.21\n1,0,0.19\n2,0,0.2\n3,2,1.7\n4,4,3.1\n5,6,4.5\n6,8,5.8\n");
+  EXPECT_EQ(three.still_rows, 3u);
+  EXPECT_NEAR(three.force_zero, 0.2, 1e-12);
+  const MachineRecord none = read("0,0,0\n1,1,1\n2,2,2\n3,3,3\n4,4,4\n5,5,5\n6,6,6\n");
+  EXPECT_EQ(none.still_rows, 0u);
+}
+
+TEST(MachineRecord, CommasBetweenAndWithinNumbersAreRefused) {
+  const LabFolder lab;
+  lab.write("test.csv",
+            "Time [s],Travel [mm],Force [N]\n0,0,0,00,0,10\n1,0,1,00,0,20\n2,0,2,00,0,30\n");
+  Questions questions({});
+  try {
+    machine_record(*read_text_table(lab.path() / "test.csv"), questions);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().line, 2);
+    EXPECT_THAT(error.wrong(), HasSubstr("the row has 6 cells, the head 3 names"));
+    EXPECT_THAT(error.right(), HasSubstr("semicolons"));
   }
 }
 

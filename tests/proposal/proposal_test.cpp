@@ -183,8 +183,12 @@ TEST(Proposal, PhotosOfOtherNamesAreAssignedByOrderAndAsked) {
 TEST(Proposal, WhatIsMissingIsNamed) {
   const LabFolder lab;
   EXPECT_THAT(lab.complaint(), HasSubstr("there are no photos with numbers in it"));
+  lab.write("pull.mp4", "");
+  EXPECT_THAT(lab.complaint(), HasSubstr("`ffmpeg -i pull.mp4 cam_%04d.png`"));
   lab.photos({0, 0, 1, 2});
   EXPECT_THAT(lab.complaint(), HasSubstr("there is no table of a test machine in it"));
+  lab.write("machine.csv", "Strain [%],Stress [MPa]\n0,0\n1,0.1\n2,0.2\n");
+  EXPECT_THAT(lab.complaint(), HasSubstr("the columns of machine.csv are `Strain [%]`, `Stress"));
   fill(lab);
   EXPECT_EQ(lab.complaint(), "");
   EXPECT_EQ(lab.complaint({{"helt", "+z"}}),
@@ -195,6 +199,16 @@ TEST(Proposal, WhatIsMissingIsNamed) {
   EXPECT_THAT(lab.complaint({{"pulled", "-z"}}), HasSubstr("another end than the one"));
   std::filesystem::remove(lab.path() / "cam1.yml");
   EXPECT_THAT(lab.complaint(), HasSubstr("photos of 2 cameras and a calibration of 1 camera"));
+}
+
+TEST(Proposal, CamerasThatWereImportedGoBeforeTheirSource) {
+  const LabFolder lab;
+  fill(lab);
+  lab.write("imported/cameras.yaml", "# hookeye import opencv\ncameras: {}\n");
+  const Inventory inventory = look_at(lab.path());
+  ASSERT_EQ(inventory.calibrations.size(), 2u);
+  EXPECT_EQ(inventory.calibrations[0].name(lab.path()), "imported/cameras.yaml");
+  EXPECT_EQ(inventory.calibrations[1].name(lab.path()), "cam0.yml,cam1.yml");
 }
 
 TEST(Proposal, PhotosOfOneCameraAloneAreTold) {

@@ -1,6 +1,7 @@
 // Does a photo show another load case? Each photo's motion is held against what the first guess
 // expects of every load case of its camera. Told are photos that stand in one another's places, and
-// a photo that shows another example's motion.
+// a photo that shows another example's motion. Measured fields are held against the load cases
+// alike.
 #include "estimation/inspection/exchanges.h"
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "estimation/inspection/field_motion.h"
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
 
@@ -185,6 +187,78 @@ void ask_of_single_photos(Sight& sight, Expectations& expected, const PhotoSerie
   }
 }
 
+/// One field of displacements of each example that has so many of them, as those of one camera
+/// pair.
+struct FieldSeries {
+  std::vector<int> examples;
+  std::vector<const MeasuredSpec*> fields;
+};
+
+std::vector<FieldSeries> series_of_fields(Sight& sight) {
+  std::vector<FieldSeries> out;
+  for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
+    const int e = static_cast<int>(i);
+    const FirstGuess* guess = sight.guess(e);
+    if (!guess || guess->u.size() == 0 || guess->u.isZero(0) || moved_by_unknown(sight.example(e)))
+      continue;
+    size_t n = 0;
+    for (const MeasuredSpec& measured : sight.example(e).measured) {
+      if (!measured.field || measured.field->strain) continue;
+      if (out.size() <= n) out.emplace_back();
+      out[n].examples.push_back(e), out[n].fields.push_back(&measured);
+      ++n;
+    }
+  }
+  return out;
+}
+
+MotionSums field_sums(const VectorXd& seen, const VectorXd& expected) {
+  MotionSums sums;
+  sums.seen2 = seen.squaredNorm(), sums.expected2 = expected.squaredNorm();
+  sums.both = seen.dot(expected), sums.count = static_cast<double>(seen.size());
+  return sums;
+}
+
+ComparedWays compared_fields(Sight& sight, const FieldSeries& series) {
+  ComparedWays out;
+  const bool equilibria = std::all_of(series.examples.begin(), series.examples.end(),
+                                      [&](int e) { return sight.guess(e)->q.size() > 0; });
+  out.ways.resize(equilibria ? 2 : 1);
+  for (size_t i = 0; i < series.fields.size(); ++i) {
+    out.scaled.push_back(moved_by_forces(sight.example(series.examples[i])));
+    for (ComparedPlaces& way : out.ways) way.emplace_back();
+    const VectorXd& seen = series.fields[i]->value;
+    for (const ComparedField& beside : field_beside(sight, *series.fields[i], series.examples)) {
+      out.ways[0].back().push_back(field_sums(seen, beside.first_order));
+      if (equilibria) out.ways[1].back().push_back(field_sums(seen, beside.in_equilibrium));
+    }
+  }
+  return out;
+}
+
+/// Fields as photos: each stands in an example, and may show the motion of another.
+void ask_for_exchanged_fields(Sight& sight, Warnings& warnings) {
+  for (const FieldSeries& series : series_of_fields(sight)) {
+    if (series.fields.size() < 2) continue;
+    for (const Exchange& one : exchanges({compared_fields(sight, series)}, sight.options())) {
+      std::string which;
+      for (size_t i = 0; i < one.places.size(); ++i) {
+        const auto here = static_cast<size_t>(one.places[i]);
+        const auto fits = static_cast<size_t>(one.fits[i]);
+        which += fmt::format("{}{} shows the motion of example `{}`", i == 0 ? "" : ", and ",
+                             series.fields[here]->field->told,
+                             sight.example(series.examples[fits]).name);
+        sight.doubt_load(series.examples[here]);
+      }
+      warnings.say(series.fields[static_cast<size_t>(one.places.front())]->place,
+                   fmt::format("{}: of the squares of their motions {:.0f} % are not as the first "
+                               "guess expects them, and {:.2g} % once they are exchanged",
+                               which, 100.0 * one.told, 100.0 * one.exchanged),
+                   "the fields of these examples stand in one another's places");
+    }
+  }
+}
+
 }  // namespace
 
 void ask_exchanges(Sight& sight, Warnings& warnings) {
@@ -194,6 +268,7 @@ void ask_exchanges(Sight& sight, Warnings& warnings) {
       if (moves(one, series, sight.options())) say_exchange(sight, one, series, warnings);
     ask_of_single_photos(sight, expected, series, warnings);
   }
+  if (sight.coarse()) ask_for_exchanged_fields(sight, warnings);
 }
 
 }  // namespace hookeye::inspection

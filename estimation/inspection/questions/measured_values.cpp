@@ -286,12 +286,47 @@ void ask_for_their_signs(Sight& sight, const Readings& series, Warnings& warning
   }
 }
 
+/// How many times what the first guess gives is measured, where that has a direction; 0: it has
+/// not.
+double times_expected(const Reading& one, const InspectionOptions& options) {
+  if (cosine(one.value, one.in_equilibrium) < options.sure_cosine) return 0.0;
+  return one.value.dot(one.in_equilibrium) / one.in_equilibrium.squaredNorm();
+}
+
+/// Forces that a prescribed motion takes tell the modulus, or their unit is another one.
+void ask_for_their_sizes(const Sight& sight, const Readings& series, Warnings& warnings) {
+  const InspectionOptions& options = sight.options();
+  const Reading* largest = nullptr;
+  for (const Reading& one : series) {
+    if (!is_reaction(*one.measured) || moved_by_forces(sight.example(one.example))) continue;
+    if (!(one.in_equilibrium.squaredNorm() > 0.0)) continue;
+    const double times = times_expected(one, options);
+    if (times == 0.0 || std::abs(std::log(times)) <= std::log(options.most_times_by_force)) return;
+    if (!largest || one.value.norm() > largest->value.norm()) largest = &one;
+  }
+  if (!largest) return;
+  const double times = times_expected(*largest, options);
+  const Units& units = sight.scene().capture.units;
+  warnings.say(
+      largest->measured->place,
+      fmt::format("{} of example `{}` is {}, where the first guess gives {} {}, and it is much the "
+                  "same with the others",
+                  sensor_in_words(sight, *largest->measured), sight.example(largest->example).name,
+                  told(largest->value), told(largest->in_equilibrium),
+                  measured_unit(*largest->measured, units)),
+      fmt::format("moduli of about {:.1g} times those told, or the values in another unit: forces "
+                  "are in {}, stresses in {}",
+                  times, units.force, units.stress()));
+}
+
 }  // namespace
 
 void ask_measured_values(Sight& sight, Warnings& warnings) {
   if (!sight.coarse()) return;
-  for (const Readings& series : all_series(sight))
+  for (const Readings& series : all_series(sight)) {
+    ask_for_their_sizes(sight, series, warnings);
     ask_for_their_signs(sight, ask_for_exchanges(sight, series, warnings), warnings);
+  }
 }
 
 }  // namespace hookeye::inspection

@@ -158,19 +158,25 @@ std::string refusal(const FieldBlock& block, const std::string& file, const std:
 
 TEST(FieldEvaluation, WhatIsWrongIsToldWithFileAndLine) {
   const FieldBlock exact{.sigma = 1e-9};
-  EXPECT_EQ(refusal(exact, "pull_front.csv", "\n-9,-8,4,", "\n-9,-15,4,"),
-            "pull_front.csv:3: the point (-9, -15, 4) lies 7 mm off the body's surface, more than "
-            "0.95 (1 of 152 points do)\n"
-            "  coordinates in the capture's frame (else tell `frame:`) and of the body as it was "
-            "given; `tolerance: LENGTH` allows for more");
+  EXPECT_EQ(
+      refusal(exact, "pull_front.csv", "\n-9,-8,4,", "\n-9,-15,4,"),
+      "pull_front.csv:3: the point (-9, -15, 4) lies 7 mm off the body's surface, more than "
+      "0.95 (1 of 152 points do)\n"
+      "  coordinates in the capture's frame (else tell `frame:`, whose z is x cross y) and of "
+      "the body as it was given; `tolerance: LENGTH` allows for more");
   const std::string metres =
       refusal(FieldBlock{}, "capture.yaml", "sigma: 0.01}", "sigma: 0.01, unit: m}");
   EXPECT_THAT(metres, testing::HasSubstr("(152 of 152 points do)"));
   EXPECT_THAT(metres, testing::HasSubstr("0.001 times their coordinates lie on it: tell the "
                                          "field's `unit` or `scale`"));
   EXPECT_THAT(refusal(FieldBlock{}, "bend_flank.csv", "X,Y,Z,U,V,W", "X,Y,Z,U,speed,W"),
-              testing::StartsWith("bend_flank.csv:1: the columns of points and displacements are "
-                                  "not found in X, Y, Z, U, speed, W\n"));
+              testing::StartsWith("bend_flank.csv:1: of X, Y, Z, U, V, W the file lacks V; it has "
+                                  "X, Y, Z, U, speed, W\n"));
+  const std::string through_frame =
+      refusal(FieldBlock{}, "capture.yaml", "sigma: 0.01}",
+              "sigma: 0.01, unit: m, frame: {origin: [0, 0, 5000], x: [1, 0, 0], y: [0, 1, 0]}}");
+  EXPECT_THAT(through_frame, testing::HasSubstr("the points reach over"));
+  EXPECT_THAT(through_frame, testing::HasSubstr("tell the field's `unit` or `scale`"));
   EXPECT_THAT(refusal(FieldBlock{.keys = ", unit: mm"}, "bend_flank.csv", "X,", "X [cm],"),
               testing::AllOf(testing::HasSubstr("capture.yaml:"),
                              testing::HasSubstr("bend_flank.csv tells its columns in cm, the "
