@@ -20,15 +20,15 @@ constexpr std::array<const char*, 9> kFieldRoles{"X", "Y", "Z", "U", "V", "W", "
 /// Where the columns stand; -1: the file has none.
 struct FieldColumns {
   std::array<int, 9> of_role{-1, -1, -1, -1, -1, -1, -1, -1, -1};
-  int sigma = -1;         ///< below zero: not correlated (VIC-3D, DICe)
-  int flag = -1;          ///< the same (DICe)
-  int converged = -1;     ///< zero: not correlated (pyvale)
-  std::string unit;       ///< of lengths
-  std::string measure;    ///< of strains, as strain_field.h names it; "": the head does not tell
+  int sigma = -1;           ///< below zero: not correlated (VIC-3D, DICe)
+  int flag = -1;            ///< the same (DICe)
+  int converged = -1;       ///< zero: not correlated (pyvale)
+  std::string unit;         ///< of lengths
+  std::string measure;      ///< of strains, as strain_field.h names it; "": the head does not tell
   std::string strain_unit;  ///< of strains, as the head has it; "": it does not tell
   double fraction = 1.0;    ///< one of it
-  bool gamma = false;     ///< the shear is twice exy
-  std::string strains;    ///< names of the strains' columns, for messages; "": there are none
+  bool gamma = false;       ///< the shear is twice exy
+  std::string strains;      ///< names of the strains' columns, for messages; "": there are none
   size_t count = 0;
 
   bool has(int role) const { return of_role[static_cast<size_t>(role)] >= 0; }

@@ -19,9 +19,9 @@ struct FieldTable {
   std::vector<int> lines;   ///< by point
   Eigen::Matrix3Xd strain;  ///< exx, eyy, exy as fractions; 0 where the file has none
   bool has_z = false, has_u = false, has_w = false, has_exy = false;
-  std::string unit;     ///< "mm" | "px" ..., as the head of the columns tells; "": it does not
-  std::string strain_unit;     ///< the same of strains
-  std::string measure;  ///< of the strains, as the head tells; "": it does not
+  std::string unit;         ///< "mm" | "px" ..., as the head of the columns tells; "": it does not
+  std::string strain_unit;  ///< the same of strains
+  std::string measure;      ///< of the strains, as the head tells; "": it does not
   std::string strain_columns;  ///< their names, whatever the field is read for; "": there are none
   int dropped = 0;             ///< rows without a number, or that the file marks as not correlated
 };
