@@ -156,6 +156,20 @@ const Slip kSlips[] = {
        c.change("_other\\.png", "_cam1.png");
      },
      "flips", "stands here"},
+    {"CamerasSwappedWhosePhotosAreTheTexture",
+     [](InspectedCapture& c) {
+       c.change("texture: \\{image[^}]*\\}", "texture: {from: rest}");
+       c.change("_cam0\\.png", "_other.png");
+       c.change("_cam1\\.png", "_cam0.png");
+       c.change("_other\\.png", "_cam1.png");
+     },
+     "flips", "does not see the body where its photo of example `rest` shows it"},
+    {"ACameraThatStandsBesideItsPose",
+     [](InspectedCapture& c) {
+       c.change("texture: \\{image[^}]*\\}", "texture: {from: rest}");
+       c.change("cx: 199.5", "cx: 211.5");
+     },
+     "flips", "px off)"},
     {"IntrinsicsOfTwiceTheSize",
      [](InspectedCapture& c) {
        c.change("fx: 2100, fy: 2100, cx: 199.5, cy: 239.5",

@@ -24,10 +24,26 @@ double score(const Agreement& a) {
   return (std::isnan(a.share) ? 0.0 : 2.0 * a.share) + (std::isnan(a.overlap) ? 0.0 : a.overlap);
 }
 
+/// How far patches may be off that are found.
+double most_shift(const Sight& sight, PhotoIndex photo) {
+  const InspectionOptions& options = sight.options();
+  const BodySpec& body = sight.scene().capture.body;
+  if (body.texture == BodySpec::Texture::rest &&
+      photo.first == sight.scene().example_index(body.texture_example))
+    return options.lost_shift_px;
+  const Camera camera = sight.camera(photo);
+  return options.lost_shift * std::hypot(camera.width, camera.height);
+}
+
+bool far_off(const Sight& sight, PhotoIndex photo, const Agreement& a) {
+  return a.share >= sight.options().found_share && a.shift_px > most_shift(sight, photo);
+}
+
 /// A clamp or a table in view lowers the overlap, but says nothing of the camera.
 bool astray(Sight& sight, PhotoIndex photo) {
   const InspectionOptions& options = sight.options();
   const Agreement& a = sight.agreement(photo);
+  if (far_off(sight, photo, a)) return true;
   if (!std::isnan(a.share)) return a.share < options.lost_share;
   if (!sight.small(photo).foreground.told || !(a.overlap < options.lost_overlap)) return false;
   const auto parted = apart(sight, photo);
@@ -47,6 +63,7 @@ std::string numbers(const Agreement& a) {
   if (!std::isnan(a.share))
     text +=
         fmt::format("{}{:.0f} % of its texture found", text.empty() ? "" : ", ", 100.0 * a.share);
+  if (a.shift_px >= 1.0) text += fmt::format(", {:.0f} px off", a.shift_px);
   return text;
 }
 
@@ -102,7 +119,8 @@ std::vector<Explanation> explanations(Sight& sight, PhotoIndex photo) {
     }
   try_swaps(sight, photo, &all);
   for (Explanation& one : all)
-    if (fits(one.agreement, told, sight.options())) out.push_back(std::move(one));
+    if (fits(one.agreement, told, sight.options()) && !far_off(sight, photo, one.agreement))
+      out.push_back(std::move(one));
   std::stable_sort(out.begin(), out.end(), [](const Explanation& a, const Explanation& b) {
     return score(a.agreement) > score(b.agreement);
   });
