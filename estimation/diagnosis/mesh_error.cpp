@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "estimation/effects/catalogue.h"
+#include "estimation/effects/toolbox.h"
 
 namespace hookeye {
 
@@ -41,11 +42,36 @@ double change_of_measured(const Evaluation& evaluation, Eigen::Index at, double 
   return count > 0.0 ? sum / count : 0.0;
 }
 
+/// The force that stands for a share of the refinement is dead: with twice the modulus it moves the
+/// body half as far, while a mesh errs by as much. So the column of a modulus has some of the
+/// share's in it, and the two would be traded for each other: by factors, where a prescribed motion
+/// leaves the photos nothing else of the modulus. By how much of it, for each parameter.
+VectorXd share_in_moduli(const Fitted& fitted, double share) {
+  VectorXd out = VectorXd::Zero(fitted.form.size());
+  if (share == 0.0) return out;
+  const auto log_modulus = [&](const VectorXd& p) {
+    return std::log(initial_shear_modulus(fitted.form.realise(p).energy));
+  };
+  Eigen::Index k = 0;
+  for (const auto& ingredient : fitted.form.ingredients)
+    for (const Parameter& parameter : ingredient->parameters()) {
+      const Eigen::Index own = k++;
+      if (!ingredient->touches().energy) continue;
+      const double h = 1e-5 * std::max(std::abs(fitted.p[own]), 1e-3 * parameter.typical);
+      VectorXd above = fitted.p, below = fitted.p;
+      above[own] += h, below[own] -= h;
+      out[own] = share * (log_modulus(above) - log_modulus(below)) / (2.0 * h);
+    }
+  return out;
+}
+
 /// The share of a refinement that a model has fitted, and sums in which its column is the last of
-/// the base: the others are what it and all candidates are projected against.
+/// the base: the others are what it and all candidates are projected against, without what they
+/// have of the share.
 struct FittedShare {
   Eigen::Index at = 0, last = 0;
-  double next = 0.0;  ///< share that the next refinement would change
+  VectorXd in_moduli;  ///< share_in_moduli()
+  double next = 0.0;   ///< share that the next refinement would change
   Eigen::MatrixXd H;
   ProjectedHypothesis column;
 };
@@ -59,6 +85,11 @@ std::optional<FittedShare> fitted_share(const Fitted& fitted, const Eigen::Matri
       out.last = fitted.form.size() - 1;
       out.next = parameters[0].typical;
       out.H = H;
+      out.in_moduli = share_in_moduli(fitted, fitted.p[out.at]);
+      for (Eigen::Index k = 0; k < out.in_moduli.size(); ++k)
+        out.H.col(k) += out.in_moduli[k] * out.H.col(out.at);
+      for (Eigen::Index k = 0; k < out.in_moduli.size(); ++k)
+        out.H.row(k) += out.in_moduli[k] * out.H.row(out.at);
       out.H.row(out.at).swap(out.H.row(out.last));
       out.H.col(out.at).swap(out.H.col(out.last));
       Hypothesis change;
@@ -119,7 +150,7 @@ VectorXd tell_of_refined_mesh(const Fitted& fitted, const Evaluation& evaluation
   by_share.head(share->last) = -share->column.to_base.col(0);
   std::swap(by_share[share->at], by_share[share->last]);
   VectorXd change = next * by_share;
-  change[share->at] += next;
+  change[share->at] += next + share->in_moduli.dot(change);
   const Eigen::MatrixXd& held_out = sums.seen_held_out.JtJ;
   if (sums.held_count > 0.0)
     out.mesh_fall_held_out =

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "estimation/effects/catalogue.h"
 #include "estimation/effects/toolbox.h"
+#include "estimation/effects_scene.h"
 
 namespace hookeye {
 
@@ -62,6 +64,40 @@ TEST(MeshError, AnEffectImitatesWhatItLooksLike) {
                 out.mesh_fall * std::pow(std::cos(angle), 2), 1e-12)
         << angle;
   }
+}
+
+/// The force that stands for a share of the refinement moves a stiffer body less. That is no reason
+/// to trade the modulus for the share.
+TEST(MeshError, AFinerMeshIsNoModulus) {
+  ModelForm form = test::base();
+  form.ingredients.push_back(
+      find_effect("mesh_resolution")->rebuild(test::base_model(), "edge times 0.7"));
+  ASSERT_TRUE(form.ingredients.back());
+  Fitted fitted;
+  fitted.form = form;
+  fitted.p = form.initial();
+  const Eigen::Index n = fitted.p.size(), share = n - 1;
+  fitted.p[share] = 0.2;
+  fitted.low = VectorXd::Constant(n, -1e9), fitted.high = VectorXd::Constant(n, 1e9);
+  Eigen::MatrixXd J = Eigen::MatrixXd::Random(60, n).householderQr().householderQ() *
+                      Eigen::MatrixXd::Identity(60, n);
+  Eigen::Index mu = -1;
+  const auto parameters = form.parameters();
+  for (size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].name == "mu") mu = static_cast<Eigen::Index>(i);
+  ASSERT_GE(mu, 0);
+  J.col(share) *= 30.0;
+  J.col(mu) -= fitted.p[share] / fitted.p[mu] * J.col(share);
+  DiagnosisSums sums;
+  sums.fitted.JtJ = J.transpose() * J;
+  sums.seen_held_out.JtJ = sums.fitted.JtJ;
+  sums.photo_count = sums.held_count = 60.0;
+  Diagnosis out;
+  tell_of_refined_mesh(fitted, Evaluation(), sums, out);
+  EXPECT_LT(out.mesh_shift.cwiseAbs().maxCoeff(), 1e-6);
+  const double next = parameters.back().typical;
+  EXPECT_NEAR(out.mesh_fall, std::pow(30.0 * next, 2) / 60.0, 1e-6);
+  EXPECT_NEAR(out.mesh_fall_held_out, out.mesh_fall, 1e-6);
 }
 
 TEST(MeshError, AModelOnItsToldMeshHasNone) {
