@@ -70,10 +70,10 @@ struct Tried {
   }
   void larger_form() const {
     const Model model = base.realise(base.initial());
-    VectorXd values = some_values(*one);
-    EXPECT_FALSE(effect.sentence(model, *one, values).empty());
-    const VectorXd scored = forces(extended(base, one), with_values(extended(base, one), values));
-    const auto larger = effect.refit_form(model, one, values).form;
+    const VectorXd own = some_values(*one);
+    EXPECT_FALSE(effect.sentence(model, *one, own).empty());
+    const VectorXd scored = forces(extended(base, one), with_values(extended(base, one), own));
+    const auto [larger, values, by_way_of, same_claim] = effect.refit_form(model, one, own);
     ASSERT_EQ(values.size(), static_cast<int>(larger->parameters().size()));
     EXPECT_FALSE(effect.sentence(model, *larger, values).empty());
     const ModelForm form = extended(base, larger);
