@@ -37,6 +37,9 @@ struct WorkedOut {
   const VectorXd& p;
   const std::atomic<bool>* cancel;
   std::function<Question()> question;
+  /// It is the same wherever it is asked from: of a model's own equilibria, which a fit asks where
+  /// it ends and whoever reads of that fit asks where it began.
+  bool anywhere = false;
 };
 
 /// Where a question of a form of `scene` is asked from: from rest where the workspace was
@@ -81,7 +84,8 @@ Result<T> archived(const WorkedOut& asked, const Work& work, const Write& write,
   std::optional<Question> question;
   nlohmann::json known;
   if (archive) {
-    question.emplace(asked.question()).from = mark_of(place);
+    question.emplace(asked.question());
+    if (!asked.anywhere) question->from = mark_of(place);
     if (archive->find(*question, known, asked.cancel)) {
       if (auto failure = failure_from(known)) return leave(no_result(*std::move(failure)));
       if (std::optional<Result<T>> result = read(known)) return leave(std::move(*result));

@@ -104,7 +104,7 @@ Result<Fitted> assess(Workspace& workspace, const ModelForm& form, const VectorX
     return out;
   };
   return archived<Fitted>(
-      {workspace, form, p, options.cancel, question},
+      {workspace, form, p, options.cancel, question, true},
       [&] { return assess_anew(workspace, form, p, options); },
       [&](const Fitted& fitted) {
         return nlohmann::json{{"states", states_json(fitted.evaluation)}};
