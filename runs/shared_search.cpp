@@ -59,6 +59,7 @@ struct SharedSearch::Impl {
   Tickets tickets;
   Heartbeat heartbeat;
   Leases leases;
+  WorkerWatch watch;  ///< for others()
   std::vector<std::unique_ptr<JournalReader>> journals;
   std::set<std::string> read;            ///< their files
   std::set<std::string> held;            ///< keys that are this process' turn
@@ -82,6 +83,7 @@ struct SharedSearch::Impl {
         tickets(shared),
         heartbeat(folder / "beats", options.times),
         leases(tickets, heartbeat.worker(), options.times, {}),
+        watch(shared, options.times),
         settler([this] { settle(); }) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -173,8 +175,15 @@ SharedSearch::~SharedSearch() {
   for (const std::string& key : std::set<std::string>(impl_->held)) finish(key, false);
 }
 
+/// One that was killed a moment ago has left its beat: what would be done ahead for it is in vain.
 bool SharedSearch::others() {
-  return !impl_->broken && names_in(*impl_->shared, "beats").size() > 1;
+  if (impl_->broken) return false;
+  for (const std::string& name : names_in(*impl_->shared, "beats")) {
+    if (name == worker()) continue;
+    impl_->watch.gone(name);
+    if (impl_->watch.known_alive(name)) return true;
+  }
+  return false;
 }
 
 const std::vector<std::unique_ptr<JournalReader>>& SharedSearch::journals() {

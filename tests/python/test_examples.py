@@ -85,4 +85,4 @@ def test_the_page_s_lines_run(folder, tmp_path, monkeypatch):
     assert "stiff_skin" in list(names["diagnosis"].table["effect"])
     he.unregister("stiff_skin")
     he.unregister("opening")
-    assert names["model"]["kappa"].fixed and (tmp_path / "run/run.json").exists()
+    assert names["model"]["mu"].fixed and (tmp_path / "run/run.json").exists()
