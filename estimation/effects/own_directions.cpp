@@ -137,10 +137,13 @@ std::vector<Vector3d> own_lines(const TetMesh& mesh) {
 }
 
 std::string direction_text(const Vector3d& direction) {
-  const std::string text = vector_text(direction, 3);
-  const std::vector<double> read = numbers_in(text);
-  return Vector3d(read.at(0), read.at(1), read.at(2)) == direction ? text
-                                                                   : vector_text(direction, 5);
+  const auto read = [](const std::string& text) {
+    const std::vector<double> numbers = numbers_in(text);
+    return Vector3d(numbers.at(0), numbers.at(1), numbers.at(2));
+  };
+  // Read back, five digits are told alike: rounding beyond them is no reason to tell five.
+  const std::string three = vector_text(direction, 3), five = vector_text(direction, 5);
+  return read(three) == read(five) ? three : five;
 }
 
 }  // namespace hookeye

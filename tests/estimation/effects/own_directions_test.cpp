@@ -124,6 +124,13 @@ TEST(FloorPlanes, StandAsNearWhereverTheOriginIs) {
     }
 }
 
+/// What is written is read, and written again, as it was.
+TEST(OwnDirections, AreToldAlikeOnceReadBack) {
+  EXPECT_EQ(direction_text({1e-17, 1.0, -1e-12}), "(0.000, 1.000, 0.000)");
+  EXPECT_EQ(direction_text({0.31415, 0.0, 0.94937}), "(0.31415, 0.00000, 0.94937)");
+  EXPECT_EQ(direction_text({0.314, 0.0, 0.949}), "(0.314, 0.000, 0.949)");
+}
+
 }  // namespace
 
 }  // namespace hookeye::test
