@@ -137,13 +137,13 @@ std::vector<Vector3d> own_lines(const TetMesh& mesh) {
 }
 
 std::string direction_text(const Vector3d& direction) {
-  const auto read = [](const std::string& text) {
-    const std::vector<double> numbers = numbers_in(text);
-    return Vector3d(numbers.at(0), numbers.at(1), numbers.at(2));
+  const auto as_read = [&](int digits) {
+    const std::vector<double> read = numbers_in(vector_text(direction, digits));
+    return Vector3d(read.at(0), read.at(1), read.at(2));
   };
-  // Read back, five digits are told alike: rounding beyond them is no reason to tell five.
-  const std::string three = vector_text(direction, 3), five = vector_text(direction, 5);
-  return read(three) == read(five) ? three : five;
+  // Rounding beyond five digits is no reason to tell five, nor to tell a zero's sign.
+  const Vector3d three = as_read(3), five = as_read(5);
+  return three == five ? vector_text(three, 3) : vector_text(five, 5);
 }
 
 }  // namespace hookeye
