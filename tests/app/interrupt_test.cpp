@@ -9,15 +9,8 @@ namespace {
 using testing::AnyOf;
 using testing::HasSubstr;
 
-class Interrupted : public Cli {
+class Interrupted : public WithSmallCapture {
  protected:
-  void SetUp() override {
-    Cli::SetUp();
-    write("recipe.yaml", kSmallRecipe);
-    const Result made = hookeye("synth recipe.yaml -o capture");
-    ASSERT_EQ(made.status, 0) << made.err;
-  }
-
   /// Ctrl-C (or another signal) once `sign` stands in what the program has said.
   Result interrupt_at(const std::string& sign, const std::string& arguments,
                       const std::string& signal = "INT") const {

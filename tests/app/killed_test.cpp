@@ -11,15 +11,8 @@
 namespace hookeye::test {
 namespace {
 
-class Killed : public Cli {
+class Killed : public WithSmallCapture {
  protected:
-  void SetUp() override {
-    Cli::SetUp();
-    write("recipe.yaml", kSmallRecipe);
-    const Result made = hookeye("synth recipe.yaml -o capture");
-    ASSERT_EQ(made.status, 0) << made.err;
-  }
-
   /// Where a search is stopped: once it has kept so many answers, and a moment later.
   struct Stop {
     std::string signal;

@@ -35,13 +35,10 @@ std::vector<std::string> half_written(const fs::path& folder) {
   return out;
 }
 
-class PhotoTaken : public Cli {
+class PhotoTaken : public WithSmallCapture {
  protected:
   void SetUp() override {
-    Cli::SetUp();
-    write("recipe.yaml", kSmallRecipe);
-    const Result made = hookeye("synth recipe.yaml -o capture");
-    ASSERT_EQ(made.status, 0) << made.err;
+    WithSmallCapture::SetUp();
     fs::copy_file(photo(), folder_ / "kept.png");
   }
   fs::path photo() const { return folder_ / "capture/photos/push_cam0.png"; }

@@ -10,15 +10,8 @@ namespace {
 
 using testing::HasSubstr;
 
-class Mpi : public Cli {
+class Mpi : public WithSmallCapture {
  protected:
-  void SetUp() override {
-    Cli::SetUp();
-    write("recipe.yaml", kSmallRecipe);
-    const Result made = hookeye("synth recipe.yaml -o capture");
-    ASSERT_EQ(made.status, 0) << made.err;
-  }
-
   /// Of Open MPI: more processes than cores, as root, without what containers forbid.
   static std::string mpirun(int processes) {
     return "env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
