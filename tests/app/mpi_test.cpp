@@ -12,6 +12,15 @@ using testing::HasSubstr;
 
 class Mpi : public WithSmallCapture {
  protected:
+  /// Where mpirun starts nothing at all (no network, no shell for it), that is no fault of ours.
+  void SetUp() override {
+    Cli::SetUp();
+    const Result started = shell(mpirun(2) + "true");
+    if (started.status != 0) GTEST_SKIP() << "NOT RUN: mpirun starts nothing here: " << started.err;
+    Cli::TearDown();
+    WithSmallCapture::SetUp();
+  }
+
   /// Of Open MPI: more processes than cores, as root, without what containers forbid.
   static std::string mpirun(int processes) {
     return "env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
