@@ -1,5 +1,7 @@
 #include "estimation/evaluation/load_case_bytes.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>

@@ -29,12 +29,11 @@ struct InspectionOptions {
   // Whether a camera sees the body where its photo shows it.
   double lost_share = 0.3;   ///< of patches found: below it camera and photo do not belong together
   double found_share = 0.6;  ///< from it on they do
-  double lost_shift = 0.02;  ///< of the photo's diagonal: found, but farther off than what a
-                             ///< knocked camera moves (1 %) or a weight that is not told
-  double lost_shift_px = 4.0;  ///< the same where the photos themselves are the texture: they show
-                               ///< the body in one state, and cameras agree (measured: 0.06). A
-                               ///< surface that is a hundredth of the body off leaves 3
-  double lost_overlap = 0.7;   ///< of silhouettes, where there is no texture
+  double lost_shift = 0.02;  ///< of the photo's diagonal, where the photos themselves are the
+                             ///< texture: they show one state of the body. A knocked camera moves
+                             ///< pictures by 1 %. (Of a told texture a weight that is not told
+                             ///< moves the body as far as it likes.)
+  double lost_overlap = 0.7;  ///< of silhouettes, where there is no texture
   double found_overlap = 0.85;
   double usual_overlap = 0.95;  ///< below it is told what parts the silhouettes (right: 0.97)
 

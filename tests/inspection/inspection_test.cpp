@@ -167,7 +167,7 @@ const Slip kSlips[] = {
     {"ACameraThatStandsBesideItsPose",
      [](InspectedCapture& c) {
        c.change("texture: \\{image[^}]*\\}", "texture: {from: rest}");
-       c.change("cx: 199.5", "cx: 211.5");
+       c.change("cx: 199.5", "cx: 225.5");
      },
      "flips", "px off)"},
     {"IntrinsicsOfTwiceTheSize",

@@ -24,19 +24,16 @@ double score(const Agreement& a) {
   return (std::isnan(a.share) ? 0.0 : 2.0 * a.share) + (std::isnan(a.overlap) ? 0.0 : a.overlap);
 }
 
-/// How far patches may be off that are found.
-double most_shift(const Sight& sight, PhotoIndex photo) {
+/// Photos that are each other's texture show it in other places: no load moves it between them.
+bool far_off(const Sight& sight, PhotoIndex photo, const Agreement& a) {
   const InspectionOptions& options = sight.options();
   const BodySpec& body = sight.scene().capture.body;
-  if (body.texture == BodySpec::Texture::rest &&
-      photo.first == sight.scene().example_index(body.texture_example))
-    return options.lost_shift_px;
+  if (body.texture != BodySpec::Texture::rest ||
+      photo.first != sight.scene().example_index(body.texture_example))
+    return false;
   const Camera camera = sight.camera(photo);
-  return options.lost_shift * std::hypot(camera.width, camera.height);
-}
-
-bool far_off(const Sight& sight, PhotoIndex photo, const Agreement& a) {
-  return a.share >= sight.options().found_share && a.shift_px > most_shift(sight, photo);
+  return a.share >= options.found_share &&
+         a.shift_px > options.lost_shift * std::hypot(camera.width, camera.height);
 }
 
 /// A clamp or a table in view lowers the overlap, but says nothing of the camera.
