@@ -65,11 +65,17 @@ void scale(const VectorXd& dp_dx, SeenPart& part) {
   part.s = dp_dx.cwiseProduct(part.s);
 }
 
-/// A parameter on its bound stays there: that it would go on is no gain.
+/// A parameter on its bound stays there: that it would go on is no gain. It is no column then.
+/// (With its slope alone taken out, columns that share in what it changes would seem to remove what
+/// it does, and more than there is: a density of held-out data above that of perfect ones.)
 void hold(const std::vector<ScoredModel::Column>& columns, std::vector<EffectiveSums>& groups) {
   for (EffectiveSums& group : groups)
-    for (size_t i = 0; i < columns.size(); ++i)
-      if (columns[i].at_bound) group.s[static_cast<Eigen::Index>(i)] = 0.0;
+    for (Eigen::Index i = 0; i < group.s.size(); ++i) {
+      if (!columns[static_cast<size_t>(i)].at_bound) continue;
+      group.s[i] = 0.0;
+      group.H.row(i).setZero();
+      group.H.col(i).setZero();
+    }
 }
 
 GaussianPrior prior_of(const ScoredModel& model, const std::vector<EffectiveSums>& all) {

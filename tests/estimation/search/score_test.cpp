@@ -107,6 +107,30 @@ TEST(ModelScore, NoFittedModelExceedsItsCeiling) {
   }
 }
 
+/// What a held parameter shares with another one is the other one's, once.
+TEST(ModelScore, AParameterOnItsBoundIsNoColumn) {
+  const auto scored = [](bool at_bound, double correlation) {
+    ScoredModel out;
+    for (const bool bound : {false, at_bound}) out.columns.push_back({0.0, 1.0, false, bound});
+    SeenPart part;
+    part.kind = SeenPart::Kind::textured;
+    part.count = part.effective = 100.0, part.variance = 4.0;
+    part.H = MatrixXd::Constant(2, 2, 10.0 * correlation);
+    part.H.diagonal().setConstant(10.0);
+    part.s = VectorXd::Zero(2);
+    out.seen.push_back(part);
+    part.held_out = true;
+    part.s << 60.0, 60.0 * correlation;  // 360 of its 400 lie along the first one
+    out.seen.push_back(part);
+    return out;
+  };
+  const ResidualNoise noise{{{1.0, 100.0, 1.0, 1.0}, {1.0, 100.0, 1.0, 1.0}}};
+  const double alone = score(scored(true, 0.0), noise).held_out;
+  EXPECT_LT(alone, 0.0);
+  EXPECT_NEAR(score(scored(true, 0.99), noise).held_out, alone, 1e-9);
+  EXPECT_NE(score(scored(false, 0.99), noise).held_out, alone);
+}
+
 TEST(ResidualNoise, IsNeverBelowTheNoiseAndTrustsARimLess) {
   SeenPart texture;
   texture.kind = SeenPart::Kind::textured;
