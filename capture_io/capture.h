@@ -172,11 +172,15 @@ struct FieldSpec {
   /// told shows in their sums.
   std::vector<int> piece;
   int pieces = 1;
+  Eigen::Matrix3Xi piece_at;  ///< by piece: where it is, in edges of a piece
   /// Independent numbers in it: those that err alike count as one.
   double numbers() const { return components * alike.cwiseInverse().sum(); }
   /// Of residuals over MeasuredSpec::sigma, point by point: variance of their sum over a piece,
   /// over what numbers() says of it; at least 1.
   double inflation(const VectorXd& r) const;
+  /// How many of numbers() count where residuals hang together over the surface, by the
+  /// autocorrelation of these: numbers() over the sum of its squares over all lags.
+  double effective(const VectorXd& r) const;
 };
 
 struct MeasuredSpec {

@@ -110,6 +110,7 @@ constexpr double kPatchesWide = 3.0;
 void cut_into_pieces(FieldSpec& field) {
   const double edge = kPatchesWide * std::max(field.correlation, field.spacing);
   field.piece.assign(static_cast<size_t>(field.X.cols()), 0);
+  field.piece_at = Eigen::Matrix3Xi::Zero(3, 1);
   if (edge <= 0.0) return;
   const Vector3d low = field.X.rowwise().minCoeff();
   std::map<std::array<double, 3>, int> index;
@@ -120,6 +121,10 @@ void cut_into_pieces(FieldSpec& field) {
     field.piece[static_cast<size_t>(k)] = found->second;
   }
   field.pieces = static_cast<int>(index.size());
+  field.piece_at.resize(3, field.pieces);
+  for (const auto& [at, piece] : index)
+    for (Eigen::Index i = 0; i < 3; ++i)
+      field.piece_at(i, piece) = static_cast<int>(at[static_cast<size_t>(i)]);
 }
 
 /// Metres in one of the file's unit; 0: it is none.

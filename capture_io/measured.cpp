@@ -48,14 +48,6 @@ std::string unit_of(const MeasuredSpec& measured, const Units& units) {
                                              : units.length;
 }
 
-double FieldSpec::inflation(const VectorXd& r) const {
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(components, pieces);
-  for (Eigen::Index k = 0; k < alike.size(); ++k)
-    sums.col(piece[static_cast<size_t>(k)]) +=
-        r.segment(components * k, components) / std::sqrt(alike[k]);
-  return std::max(1.0, sums.squaredNorm() / numbers());
-}
-
 Eigen::MatrixXd MeasuredSpec::whitened(Eigen::MatrixXd difference) const {
   if (covariance_root.size() > 0)
     return covariance_root.triangularView<Eigen::Lower>().solve(difference);

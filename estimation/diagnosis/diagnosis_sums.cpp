@@ -8,8 +8,8 @@ namespace hookeye {
 
 namespace {
 
-/// Fields count as photos do, each number of theirs as a cell. Where no example has a photo, what
-/// is seen are fields.
+/// Fields count as photos do, each number of theirs as a cell: by their effective share. Where no
+/// example has a photo, what is seen are fields.
 void add_fields(const Evaluation& evaluation, const Floor& floor, DiagnosisSums& out) {
   const bool seen = evaluation.seen() == Evaluation::Seen::fields;
   for (const auto& example : evaluation.examples)
@@ -25,12 +25,13 @@ void add_fields(const Evaluation& evaluation, const Floor& floor, DiagnosisSums&
         sums.JtJ += JtJ, sums.Jtr += Jtr;
       }
       if (example.held_out) continue;
-      out.effective.H += JtJ;
-      out.effective.s += Jtr;
-      out.effective.r2 += r2;
-      out.effective.count += field.size();
-      out.noise += field.inflation * JtJ;
-      out.null_noise += floor.cell_inflation * JtJ;
+      const double w = field.effective / field.size();
+      out.effective.H += w * JtJ;
+      out.effective.s += w * Jtr;
+      out.effective.r2 += w * r2;
+      out.effective.count += w * field.size();
+      out.noise += w * w * field.inflation * JtJ;
+      out.null_noise += w * w * floor.cell_inflation * JtJ;
     }
 }
 

@@ -31,7 +31,8 @@ SeenPart of_photo(const PhotoSpec& spec, const PhotoEvaluation& photo, const Con
 SeenPart of_numbers(const MeasuredEvaluation& measured, const MeasuredEvaluation& sums) {
   SeenPart out;
   out.kind = measured.is_field() ? Kind::field : Kind::sensor;
-  out.count = out.effective = measured.size();
+  out.count = measured.size();
+  out.effective = measured.is_field() ? measured.effective : out.count;
   out.variance = out.count > 0.0 ? measured.r.squaredNorm() / out.count : 0.0;
   out.H = sums.J.transpose() * sums.J;
   out.s = sums.J.transpose() * sums.r;
@@ -100,7 +101,8 @@ ResidualNoise estimate_noise(const std::vector<SeenPart>& reference, const Floor
         out.parts.push_back(noise_of_photo(part, floor));
         break;
       case Kind::field:
-        out.parts.push_back({floor.cell_variance, part.count, 1.0, 1.0});
+        out.parts.push_back(
+            {floor.cell_variance, part.effective, part.effective / part.count, 1.0});
         break;
       case Kind::sensor:
         out.parts.push_back({1.0, part.count, 1.0, 1.0});

@@ -81,6 +81,7 @@ struct MeasuredEvaluation {
   /// Of a field: variance of the sum of r over a piece of surface, over what `numbers` says of it.
   /// Noise that was told too small, or that hangs together farther, and misfit make it more than 1.
   double inflation = 1.0;
+  double effective = 0.0;  ///< of a field: how many of `numbers` count (FieldSpec::effective)
   bool is_field() const { return numbers > 0.0; }
   double size() const { return is_field() ? numbers : static_cast<double>(r.size()); }
 };

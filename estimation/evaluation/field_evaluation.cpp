@@ -108,6 +108,7 @@ MeasuredEvaluation compare_field(const MeasuredSpec& measured, const FieldPoints
     G.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
   out.inflation = measured.field->inflation(r);
+  out.effective = measured.field->effective(r);
   if (!seen.columns) {
     out.r = std::move(r);
     return out;

@@ -115,7 +115,7 @@ void visit(Bytes& bytes, PhotoEvaluation& photo) {
 
 void visit(Bytes& bytes, MeasuredEvaluation& measured) {
   visit_all(bytes, measured.example, measured.index, measured.predicted, measured.r, measured.J,
-            measured.numbers, measured.inflation);
+            measured.numbers, measured.inflation, measured.effective);
 }
 
 /// Without tangent and factor, which no evaluation keeps.

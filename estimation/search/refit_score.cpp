@@ -43,18 +43,25 @@ EffectiveMisfit photo_misfit(const Fitted& fitted, const Fitted& reference, bool
 }
 
 /// The same of fields, each number as a cell.
-EffectiveMisfit field_misfit(const Fitted& fitted, bool held_out) {
+EffectiveMisfit field_misfit(const Fitted& fitted, const Fitted& reference, bool held_out) {
   EffectiveMisfit out;
-  for (const auto& example : fitted.evaluation.examples)
-    for (const auto& measured : example.measured)
-      if (example.held_out == held_out && measured.is_field())
-        out = out + EffectiveMisfit{measured.r.squaredNorm(), measured.size()};
+  for (size_t e = 0; e < fitted.evaluation.examples.size(); ++e) {
+    const auto& example = fitted.evaluation.examples[e];
+    if (example.held_out != held_out) continue;
+    for (size_t k = 0; k < example.measured.size(); ++k) {
+      const MeasuredEvaluation& field = example.measured[k];
+      if (!field.is_field()) continue;
+      const double effective = reference.evaluation.examples[e].measured[k].effective;
+      out.r2 += effective / field.size() * field.r.squaredNorm();
+      out.count += effective;
+    }
+  }
   return out;
 }
 
 /// Of photos and fields together.
 EffectiveMisfit seen_misfit(const Fitted& fitted, const Fitted& reference, bool held_out) {
-  return photo_misfit(fitted, reference, held_out) + field_misfit(fitted, held_out);
+  return photo_misfit(fitted, reference, held_out) + field_misfit(fitted, reference, held_out);
 }
 
 /// The same of forces, moments and positions.

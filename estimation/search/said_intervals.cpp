@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <tuple>
 #include <vector>
 
@@ -132,22 +133,82 @@ std::string with_range(const std::string& text, const Range& range, bool in_vect
   return low == high ? text : fmt::format("{} ({} to {})", text, low, high);
 }
 
-std::string with_ranges(const Numbers& told, const std::vector<Numbers>& at_ends,
-                        const Eigen::MatrixXd& correlation) {
-  std::string out = told.words.front();
-  bool any = false;
-  for (size_t i = 0; i < told.values.size(); ++i) {
-    const std::string& before = told.words[i];
-    const bool in_vector =
-        before.ends_with('(') || (before.ends_with(", ") && out.rfind('(') != std::string::npos &&
-                                  out.find(')', out.rfind('(')) == std::string::npos);
-    const std::string number =
-        with_range(told.texts[i], range_of(told, at_ends, i, correlation), in_vector);
-    any = any || number != told.texts[i];
-    out += number + told.words[i + 1];
-  }
-  return any ? out + "; ranges: 95 %" : out;
+/// Three numbers in parentheses; numbers at, at + 1, at + 2.
+bool is_triple(const Numbers& told, size_t at) {
+  return at + 2 < told.values.size() && told.words[at].ends_with('(') &&
+         told.words[at + 1] == ", " && told.words[at + 2] == ", " &&
+         told.words[at + 3].starts_with(')');
 }
+
+/// Of length one, as far as two digits say.
+bool is_unit(const Numbers& told, size_t at) {
+  return std::abs(Eigen::Map<const Eigen::Vector3d>(&told.values[at]).norm() - 1.0) < 0.01;
+}
+
+/// Half the opening angle [degrees] of the cone that holds a direction at 95 %; two directions that
+/// are opposite are one axis.
+double cone_of(const Numbers& told, const std::vector<Numbers>& at_ends, size_t at,
+               const Eigen::MatrixXd& correlation) {
+  const Eigen::Map<const Eigen::Vector3d> direction(&told.values[at]);
+  const auto at_end = [&](Eigen::Index end) -> Eigen::Vector3d {
+    const Eigen::Map<const Eigen::Vector3d> there(&at_ends[static_cast<size_t>(end)].values[at]);
+    return there.dot(direction) < 0.0 ? Eigen::Vector3d(-there) : Eigen::Vector3d(there);
+  };
+  Eigen::Matrix3Xd D(3, correlation.rows());
+  for (Eigen::Index i = 0; i < D.cols(); ++i) D.col(i) = 0.5 * (at_end(2 * i) - at_end(2 * i + 1));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(D * correlation * D.transpose());
+  // 95 % of the values' one dimension are 1.96 deviations, of the cone's two 2.45.
+  const double reach = 2.4477 / 1.96 * std::sqrt(std::max(0.0, eigen.eigenvalues().maxCoeff()));
+  return std::min(90.0, reach * 180.0 / std::numbers::pi);
+}
+
+/// A sentence is put together from left to right.
+class WithRanges {
+ public:
+  WithRanges(const Numbers& told, const std::vector<Numbers>& at_ends,
+             const Eigen::MatrixXd& correlation)
+      : told_(told), at_ends_(at_ends), correlation_(correlation), out_(told.words.front()) {}
+
+  std::string said() {
+    for (size_t i = 0; i < told_.values.size();) i = is_direction(i) ? direction(i) : number(i);
+    return any_ ? out_ + "; ranges: 95 %" : out_;
+  }
+
+ private:
+  /// A place would change its length as its values do.
+  bool is_direction(size_t at) const {
+    return is_triple(told_, at) && is_unit(told_, at) &&
+           std::all_of(at_ends_.begin(), at_ends_.end(),
+                       [at](const Numbers& end) { return is_unit(end, at); });
+  }
+  size_t direction(size_t at) {
+    for (size_t i = at; i < at + 3; ++i)
+      out_ += told_.texts[i] + (i < at + 2 ? told_.words[i + 1] : "");
+    const double cone = cone_of(told_, at_ends_, at, correlation_);
+    const std::string& after = told_.words[at + 3];
+    any_ = any_ || cone > 0.0;
+    out_ += cone > 0.0 ? fmt::format(") within {:.2g} degrees", cone) + after.substr(1) : after;
+    return at + 3;
+  }
+  size_t number(size_t at) {
+    const std::string& before = told_.words[at];
+    const size_t open = out_.rfind('(');
+    const bool in_vector =
+        before.ends_with('(') || (before.ends_with(", ") && open != std::string::npos &&
+                                  out_.find(')', open) == std::string::npos);
+    const std::string text =
+        with_range(told_.texts[at], range_of(told_, at_ends_, at, correlation_), in_vector);
+    any_ = any_ || text != told_.texts[at];
+    out_ += text + told_.words[at + 1];
+    return at + 1;
+  }
+
+  const Numbers& told_;
+  const std::vector<Numbers>& at_ends_;
+  const Eigen::MatrixXd& correlation_;
+  std::string out_;
+  bool any_ = false;
+};
 
 }  // namespace
 
@@ -193,7 +254,7 @@ std::string said_with_intervals(const Saying& say, const KnownValues& values) {
   for (size_t k = 0; k + 1 < said.size(); k += 2)
     if (at_ends[k].words != numbers.words || at_ends[k + 1].words != numbers.words)
       return fmt::format("{}; 95 %: from {} to {}", told, said[k + 1], said[k]);
-  return with_ranges(numbers, at_ends, values.correlation);
+  return WithRanges(numbers, at_ends, values.correlation).said();
 }
 
 }  // namespace hookeye

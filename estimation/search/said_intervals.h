@@ -24,7 +24,8 @@ KnownValues part_of(const KnownValues& all, Eigen::Index first, Eigen::Index siz
 
 /// `say(value)`, where there are intervals with the range of every number that changes as the
 /// values go through their 95 %: "9.81 (9.79 to 9.83) m/s2"; of a number in a vector the range
-/// alone. Where its words change, too
+/// alone, of a direction the cone: "(0.60, 0.00, -0.80) within 1.4 degrees". Where its words
+/// change, too
 /// ("stiff", "soft"), what it says at both ends. The sentence speaks for itself, so that what it
 /// derives from the values (a length, an angle, a percentage) has its range as well.
 std::string said_with_intervals(const Saying& say, const KnownValues& values);

@@ -25,7 +25,7 @@ class Mpi : public WithSmallCapture {
   static std::string mpirun(int processes) {
     return "env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
            "OMPI_MCA_btl_vader_single_copy_mechanism=none '" HOOKEYE_MPIRUN
-           "' --oversubscribe -n " +
+           "' --oversubscribe --mca mpi_yield_when_idle 1 -n " +
            std::to_string(processes) + " ";
   }
   Result shell(const std::string& command) const {

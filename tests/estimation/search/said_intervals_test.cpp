@@ -30,8 +30,21 @@ TEST(SaidIntervals, WhatTheSentenceDerivesHasItsRange) {
   EXPECT_EQ(said(1e-5), said(0.0)) << "every digit is known";
   // The norm moves by its own direction's share of each value: as far as one value does.
   EXPECT_EQ(said(0.1),
-            "self-weight of 'pull_2', 5 (4.9 to 5.1) m/s2 towards (0.59 to 0.61, -0.02 to 0.02, "
-            "-0.81 to -0.79); ranges: 95 %");
+            "self-weight of 'pull_2', 5 (4.9 to 5.1) m/s2 towards (0.60, 0.00, -0.80) within 1.4 "
+            "degrees; ranges: 95 %");
+}
+
+/// An axis that is nowhere stays an axis: no component is told beyond one.
+TEST(SaidIntervals, AnAxisHasACone) {
+  const auto axis = [](const VectorXd& v) {
+    return fmt::format("fibres along {}",
+                       vector_text(Vector3d(std::cos(v[0]), std::sin(v[0]), 0.0)));
+  };
+  const VectorXd zero = VectorXd::Zero(1);
+  EXPECT_EQ(said_with_intervals(axis, known(zero, VectorXd::Constant(1, 0.1))),
+            "fibres along (1.00, 0.00, 0.00) within 7.2 degrees; ranges: 95 %");
+  EXPECT_EQ(said_with_intervals(axis, known(zero, VectorXd::Constant(1, 1.5))),
+            "fibres along (1.00, 0.00, 0.00) within 72 degrees; ranges: 95 %");
 }
 
 /// Two values that go against each other leave their sum as it is.
