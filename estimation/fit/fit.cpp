@@ -178,6 +178,10 @@ VectorXd settle_examples(Workspace& workspace, const ModelForm& form, VectorXd p
   return p;
 }
 
+double numbers_moved(const FitScope& scope) {
+  return static_cast<double>(std::count(scope.moving.begin(), scope.moving.end(), true));
+}
+
 /// From coarse to full size within a scope.
 Result<StageResult> run_stages(Workspace& workspace, const ModelForm& form, const VectorXd& start,
                                const FitOptions& options, const FitScope& scope) {
@@ -187,6 +191,8 @@ Result<StageResult> run_stages(Workspace& workspace, const ModelForm& form, cons
     if (stage.level > 0 || !full_size) {
       auto first = look(workspace, form, out.p, options, scope, stage.level);
       if (!first) return failure_of(first);
+      // A body that is thin in the photos has no pixel of its own where they are small.
+      if (stage.level > 0 && first->count <= numbers_moved(scope)) continue;
       full_size = *first;
       if (!scope.held_out) check_data(workspace.scene(), *full_size);
     }

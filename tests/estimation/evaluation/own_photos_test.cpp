@@ -224,6 +224,20 @@ TEST_F(OwnPhotos, AFitBeforeAPicture) {
   EXPECT_LT(result->evaluation.chi(false), 0.2);
 }
 
+/// Fifteen pixels wide: at an eighth of the size no pixel shows the body alone.
+TEST_F(OwnPhotos, AFitOfABodyThatIsThinInThem) {
+  const fs::path file = small_.scene->capture.file;
+  const std::string text = text_of(file);
+  std::ofstream(file) << std::regex_replace(text, std::regex("f([xy]): 950"), "f$1: 119");
+  photograph(load_scene(read_capture(file)), [](int, int) { return 0.3; });
+  const auto scene = told("ignore");
+  Workspace workspace(scene);
+  const ModelForm form = base_form(scene);
+  const auto result = fit(workspace, form, 1.2 * form.initial());
+  ASSERT_TRUE(result.has_value());
+  EXPECT_NEAR(result->p[0], 0.02, 2e-4);
+}
+
 /// Robust weights: a strip of one photo shows another motion, as behind a drop of water.
 TEST_F(OwnPhotos, AStripThatMovesOtherwiseMovesNoModulus) {
   photograph([](int, int) { return 0.0; });
