@@ -122,6 +122,7 @@ RenderOptions view_options(int rays_per_axis, bool all) {
   options.filter_width_px = rays_per_axis == 1 ? 0.5 : 3.0;
   options.visibility_rays = 0;
   options.cast_shadows = options.gloss_derivative = options.photo_derivative = all;
+  options.uneven_derivative = false;
   options.centres = options.blur_derivative = false;  // as in a fit
   return options;
 }

@@ -14,6 +14,7 @@
 
 #include "capture_io/camera.h"
 #include "capture_io/image.h"
+#include "capture_io/light_harmonics.h"
 #include "core/input_error.h"
 #include "core/shared_value.h"
 
@@ -98,8 +99,10 @@ struct BodySpec {
 
 struct LightSpec {
   double ambient = 1.0;
-  Vector3d sun = Vector3d::Zero();  ///< strength times unit vector towards the sun
-  bool given = false;               ///< false: absent, to be fitted
+  UnevenLight uneven = UnevenLight::Zero();  ///< of `harmonics`, whose L00 is in `ambient`
+  Vector3d sun = Vector3d::Zero();           ///< strength times unit vector towards the sun
+  bool given = false;                        ///< false: absent or `harmonics: fit`, to be fitted
+  bool fit_harmonics = false;                ///< `harmonics: fit`; the sun is told
 };
 
 struct RigidMotion {

@@ -189,11 +189,49 @@ std::vector<Camera> read_cameras(const YamlNode& node, const CaptureFolder& fold
   return cameras;
 }
 
+void read_harmonics(const YamlNode& node, LightSpec& light) {
+  const std::string what = "harmonics of the light";
+  const std::vector<double> numbers = read_numbers(node, what);
+  if (numbers.size() != harmonic_names.size())
+    throw InputError(node.place, fmt::format("{} are {} numbers", what, numbers.size()),
+                     fmt::format("give nine: {}", fmt::join(harmonic_names, " ")));
+  if (!(numbers[0] > 0.0))
+    unexpected(node.items[0], "L00 of the light, its mean over all directions,",
+               "a number above zero is expected");
+  light.ambient = even_by_harmonic * numbers[0];
+  light.uneven = Eigen::Map<const UnevenLight>(numbers.data() + 1);
+}
+
+namespace {
+
+/// Of the sky: the same from everywhere, or harmonics.
+void read_sky(const YamlSection& section, LightSpec& light) {
+  const YamlNode::Entry* harmonics = section.entry("harmonics");
+  if (!harmonics) {
+    light.ambient = read_not_negative(
+        section.need("ambient", "write `ambient: 0.4`, or `harmonics: fit`"), "ambient");
+    return;
+  }
+  if (section.has("ambient"))
+    throw InputError(harmonics->place, "light has both `ambient` and `harmonics`",
+                     "keep one of the two: an even sky is the first of the harmonics");
+  const YamlNode& value = harmonics->value;
+  if (value.kind != YamlNode::Kind::scalar) return read_harmonics(value, light);
+  if (value.text != "fit")
+    unexpected(
+        value, "harmonics of the light",
+        fmt::format("`fit` is expected, or nine numbers: {}", fmt::join(harmonic_names, " ")));
+  light.fit_harmonics = true;
+  light.given = false;
+}
+
+}  // namespace
+
 LightSpec read_light(const YamlNode& node) {
-  const YamlSection section(node, "light", {"ambient", "sun"});
+  const YamlSection section(node, "light", {"ambient", "harmonics", "sun"});
   LightSpec light;
   light.given = true;
-  light.ambient = read_not_negative(section.need("ambient", "write `ambient: 0.4`"), "ambient");
+  read_sky(section, light);
   if (const YamlNode* sun = section.find("sun")) {
     const YamlSection options(*sun, "sun", {"toward", "strength"});
     const std::string right = "write `sun: {toward: [-0.3, -0.5, 0.8], strength: 0.6}`";

@@ -28,6 +28,8 @@ BodySpec read_body(const YamlNode& node, const CaptureFolder& folder);
 void read_model(const YamlNode& node, Capture& capture);
 std::vector<Camera> read_cameras(const YamlNode& node, const CaptureFolder& folder);
 LightSpec read_light(const YamlNode& node);
+/// Nine told numbers.
+void read_harmonics(const YamlNode& node, LightSpec& light);
 std::vector<RegionSpec> read_regions(const YamlNode& node, const CaptureFolder& folder);
 
 /// The photo keys that may stand once for all.

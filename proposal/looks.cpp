@@ -24,15 +24,18 @@ std::string encoding_of(const ImageHeader& header, Questions& questions) {
        .choices = {"linear", "srgb"}});
 }
 
-/// "0.4" or "0.4,-0.3,-0.5,0.8,0.6": ambient, then where the sun is and its strength.
+/// "fit", "harmonics", "0.4" or "0.4,-0.3,-0.5,0.8,0.6": ambient, then where the sun is and its
+/// strength.
 std::string light_yaml(const std::string& answer) {
   if (answer == "fit") return "";
+  if (answer == "harmonics") return "light: {harmonics: fit}\n";
   const auto parts = between_commas(answer);
   std::vector<double> numbers;
   for (const std::string& part : parts)
     if (const auto value = number_in(part, false)) numbers.push_back(*value);
   if (numbers.size() != parts.size() || (numbers.size() != 1 && numbers.size() != 5))
-    refuse_answer("light", answer, "fit, or AMBIENT, or AMBIENT,X,Y,Z,STRENGTH of one lamp");
+    refuse_answer("light", answer,
+                  "fit, harmonics, or AMBIENT, or AMBIENT,X,Y,Z,STRENGTH of one lamp");
   std::string out = fmt::format("light:\n  ambient: {:.6g}\n", numbers[0]);
   if (numbers.size() == 5)
     out += fmt::format("  sun: {{toward: [{:.6g}, {:.6g}, {:.6g}], strength: {:.6g}}}\n",
@@ -73,7 +76,8 @@ Looks propose_looks(const Inventory& inventory, const BodyFacts& body, Questions
                                                    yaml_path(inventory.textures.front()));
   out.light = light_yaml(
       questions.ask({.name = "light",
-                     .text = "light: fit, or AMBIENT, or AMBIENT,X,Y,Z,STRENGTH of one lamp",
+                     .text = "light: fit (a sky and a sun), harmonics (several lamps or a window, "
+                             "fitted), or AMBIENT, or AMBIENT,X,Y,Z,STRENGTH of one lamp",
                      .standard = "fit",
                      .why = "found from the photos"}));
   return out;

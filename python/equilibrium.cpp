@@ -147,6 +147,7 @@ Probed probe(const ModelState& state, const VectorXd& q, const VectorXd& along) 
       append(photo.camera.R.reshaped());
       append(photo.camera.t);
       append(photo.sun);
+      append(photo.uneven);
       for (const double x : {photo.camera.fx, photo.camera.fy, photo.gain, photo.ambient,
                              photo.specular, photo.blur_variance, photo.background})
         numbers.push_back(x);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "core/work_clock.h"
@@ -25,9 +26,11 @@ struct NodeNormalEquations::Impl {
   };
   std::vector<std::vector<Neighbour>> row;  ///< position in `seen` -> those not before it
   VertexSums sums;
-  Eigen::Matrix<double, kPhotoFloats, kPhotoFloats> photo;
-  Eigen::Matrix<double, kPhotoFloats, 1> b_photo;
+  Eigen::Matrix<double, kPhotoColumns, kPhotoColumns> photo;
+  Eigen::Matrix<double, kPhotoColumns, 1> b_photo;
+  bool uneven = false;  ///< any pixel has derivatives by uneven light
   size_t count = 0;
+  int photo_columns() const { return !columns.photo ? 0 : uneven ? kPhotoColumns : kUneven; }
 
   int number(int vertex);
   size_t block_of(int i, int j);
@@ -39,6 +42,7 @@ int NodeNormalEquations::Impl::number(int vertex) {
   seen.push_back(vertex);
   row.emplace_back().reserve(8);  // itself, and of some six neighbours those not before it
   sums.vertex.emplace_back();
+  if (uneven) sums.uneven_vertex.emplace_back();
   return static_cast<int>(seen.size()) - 1;
 }
 
@@ -52,10 +56,28 @@ size_t NodeNormalEquations::Impl::block_of(int i, int j) {
 
 /// What all pixels add to is kept short as floats.
 void NodeNormalEquations::Impl::take_photo_sums() {
-  using Floats = Eigen::Matrix<float, kPhotoFloats, kPhotoFloats, Eigen::RowMajor>;
-  photo += Eigen::Map<const Floats>(sums.photo.photo[0]).cast<double>();
-  b_photo += Eigen::Map<const Eigen::Matrix<float, kPhotoFloats, 1>>(sums.photo.b).cast<double>();
+  const auto block = [](const auto& of) {
+    constexpr int kRows = std::extent_v<std::remove_reference_t<decltype(of)>, 0>;
+    constexpr int kColumns = std::extent_v<std::remove_reference_t<decltype(of)>, 1>;
+    using Floats = Eigen::Matrix<float, kRows, kColumns, Eigen::RowMajor>;
+    return Eigen::Map<const Floats>(of[0]).template cast<double>().eval();
+  };
+  const auto row = [](const auto& of) {
+    constexpr int kRows = std::extent_v<std::remove_reference_t<decltype(of)>, 0>;
+    return Eigen::Map<const Eigen::Matrix<float, kRows, 1>>(of).template cast<double>().eval();
+  };
+  photo.topLeftCorner<kUneven, kUneven>() +=
+      block(sums.photo.photo).topLeftCorner<kUneven, kUneven>();
+  b_photo.head<kUneven>() += row(sums.photo.b).head<kUneven>();
   sums.photo = {};
+  if (!uneven) return;
+  const Eigen::Matrix<double, kUnevenNumbers, kUneven> mixed =
+      block(sums.uneven.photo).leftCols<kUneven>();
+  photo.bottomLeftCorner<kUnevenNumbers, kUneven>() += mixed;
+  photo.topRightCorner<kUneven, kUnevenNumbers>() += mixed.transpose();
+  photo.bottomRightCorner<kUnevenNumbers, kUnevenNumbers>() += block(sums.uneven.uneven);
+  b_photo.tail<kUnevenNumbers>() += row(sums.uneven.b);
+  sums.uneven = {};
 }
 
 namespace {
@@ -81,7 +103,10 @@ class RunOfPixels {
     const bool same = is(segments, count);
     if (!same || run_.count == PixelRun::kPixels) flush();
     if (!same) set(segments, count);
-    if (run_.count == 0 && run_.with_photo) run_.photo = &part.photo[pixel];
+    if (run_.count == 0 && run_.with_photo) {
+      run_.photo = &part.photo[pixel];
+      run_.uneven = part.uneven.empty() ? nullptr : &part.uneven[pixel];
+    }
     if (count != 1)
       add_corners(segments, sum_.data() + run_.count * run_.step);
     else if (run_.count == 0)
@@ -202,6 +227,7 @@ NodeNormalEquations NodeNormalEquations::accumulate(const SurfaceMesh& surface,
   m.columns = columns;
   m.count = static_cast<size_t>((w.array() != 0).count());
   m.photo.setZero(), m.b_photo.setZero();
+  for (const Part& part : dI.parts) m.uneven |= columns.photo && !part.uneven.empty();
   RunOfPixels run(surface, &m);
   Eigen::Index at = 0;
   double by_blur = 0;  // that column is of the blurred picture already
@@ -246,7 +272,8 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
   const std::vector<int> moving = moving_columns(S, m);
   const auto columns = static_cast<Eigen::Index>(moving.size());
   const Eigen::Index rows = n * static_cast<Eigen::Index>(m.seen.size());
-  RowMatrix Z(rows, columns), with_photo(m.columns.photo ? rows : 0, kPhotoColumns);
+  const Eigen::Index of_photo = m.photo_columns();
+  RowMatrix Z(rows, columns), with_photo(of_photo > 0 ? rows : 0, of_photo);
   VectorXd b(rows);
   for (size_t i = 0; i < m.seen.size(); ++i) {
     const Eigen::Index at = n * static_cast<Eigen::Index>(i), v = 3 * m.seen[i];
@@ -254,8 +281,10 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
     if (m.columns.second) Z.middleRows(at + 3, 3) = S.second.middleRows(v, 3)(Eigen::all, moving);
     for (Eigen::Index c = 0; c < n; ++c) {
       b[at + c] = m.sums.vertex[i].b[c];
-      for (int k = 0; k < kPhotoColumns && m.columns.photo; ++k)
+      for (int k = 0; k < kUneven && m.columns.photo; ++k)
         with_photo(at + c, k) = m.sums.vertex[i].photo[c][k];
+      for (int k = 0; k < kUnevenNumbers && m.uneven; ++k)
+        with_photo(at + c, kUneven + k) = m.sums.uneven_vertex[i].uneven[c][k];
     }
   }
   if (columns > 0) {  // no empty product for BLAS
@@ -271,14 +300,14 @@ CondensedPhoto NodeNormalEquations::reduce(const VertexSensitivity& S) const {
     out.Jtr(moving) = Z.transpose() * b;
   }
   if (!m.columns.photo) return out;
+  const auto by_photo = S.photo.topRows(of_photo);
   if (columns > 0) {
-    const MatrixXd ZtP = (Z.transpose() * with_photo) * S.photo;
+    const MatrixXd ZtP = (Z.transpose() * with_photo) * by_photo;
     out.JtJ(moving, Eigen::all) += ZtP;
     out.JtJ(Eigen::all, moving) += ZtP.transpose();
   }
-  const auto photo = m.photo.topLeftCorner<kPhotoColumns, kPhotoColumns>();
-  out.JtJ += S.photo.transpose() * photo * S.photo;
-  out.Jtr += S.photo.transpose() * m.b_photo.head<kPhotoColumns>();
+  out.JtJ += by_photo.transpose() * m.photo.topLeftCorner(of_photo, of_photo) * by_photo;
+  out.Jtr += by_photo.transpose() * m.b_photo.head(of_photo);
   return out;
 }
 

@@ -57,14 +57,22 @@ void trace(const Frame& frame, const Vector2d* h, int count, Samples* out);
 /// triangle's corners are a DerivativeSegment::ByVertex.
 constexpr int by_position(int corner) { return 6 * corner; }    ///< unit vertex normals held
 constexpr int by_second(int corner) { return 6 * corner + 3; }  ///< unit normal; reference position
-constexpr int kByPhoto = 18;  ///< by PhotoColumn, those before kBlur
-constexpr int kRayFloats = 32;
-static_assert(kByPhoto + kBlur <= kRayFloats);
-constexpr int kFloatsWithoutPhoto =
-    (kByPhoto + 3) / 4 * 4;  ///< a multiple of four, as lanes.h asks
+constexpr int kByPhoto = 18;                 ///< by PhotoColumn, those before kBlur
+constexpr int kByUneven = kByPhoto + kBlur;  ///< from PhotoColumn kUneven on
+/// Multiples of four, as lanes.h asks; a row of whole vectors.
+constexpr int whole(int floats, int of) { return (floats + of - 1) / of * of; }
+constexpr int kFloatsWithoutPhoto = whole(kByPhoto, 4);
+constexpr int kFloatsWithoutUneven = whole(kByUneven, kLanes);
+constexpr int kAllFloats = whole(kByUneven + kUnevenNumbers, 4);
+constexpr int kRayFloats = whole(kAllFloats, kLanes);
+inline bool wants_uneven(const Frame& frame) {
+  return frame.options.photo_derivative && frame.options.uneven_derivative && frame.photo.shaded;
+}
 /// Those of them that are wanted; the others have any finite value.
-inline int wanted_floats(const RenderOptions& options) {
-  return options.photo_derivative ? kRayFloats : kFloatsWithoutPhoto;
+inline int wanted_floats(const Frame& frame) {
+  return wants_uneven(frame)              ? kAllFloats
+         : frame.options.photo_derivative ? kFloatsWithoutUneven
+                                          : kFloatsWithoutPhoto;
 }
 struct alignas(64) RayRow {
   float value[kRayFloats];

@@ -7,19 +7,22 @@
 
 #include "capture_io/camera.h"
 #include "capture_io/image.h"
+#include "capture_io/light_harmonics.h"
 #include "meshing/surface_mesh.h"
 
 namespace hookeye {
 
 /// The numbers of one photo with which its intensities change at fixed geometry.
-///   I = gain * blur_v[ albedo * (ambient * visibility + max(0, n.sun) * lit)
+///   I = gain * blur_v[ albedo * (sky(n) * visibility + max(0, n.sun) * lit)
 ///                      + specular * lit * |sun| * max(0, n.h)^shininess ]  on the body,
 ///   I = background elsewhere (before blur; background is not multiplied by gain).
-/// h: half vector between the directions to the sun and to the camera.
+/// h: half vector between the directions to the sun and to the camera. sky(n): irradiance over pi
+/// of the even and the uneven light (capture_io/light_harmonics.h), not below zero.
 struct PhotoState {
   Camera camera;
   double gain = 1.0;
   double ambient = 1.0;
+  UnevenLight uneven = UnevenLight::Zero();       ///< of the sky; `ambient` is its even part
   Eigen::Vector3d sun = Eigen::Vector3d::Zero();  ///< strength times unit vector to the sun
   double specular = 0.0;
   double shininess = 30.0;
@@ -42,7 +45,8 @@ enum PhotoColumn {
   kSpecular = 12,
   kBlur = 13,  ///< blur variance [1/px^2]
   kBackground = 14,
-  kPhotoColumns = 15
+  kUneven = 15,  ///< 8
+  kPhotoColumns = kUneven + kUnevenNumbers
 };
 
 /// Where colour comes from.

@@ -30,8 +30,12 @@ class Tile {
   Taps at(int x, int y) const {
     const int n = task_.filter.n;
     const size_t first = static_cast<size_t>((y - row_) * n) * columns_ + (x - column_) * n;
-    return {store_.triangle.data() + first, store_.I.data() + first, store_.uv.data() + first,
-            store_.rays.data() + first, columns_};
+    return {store_.triangle.data() + first,
+            store_.I.data() + first,
+            store_.uv.data() + first,
+            store_.rays.data() + first,
+            columns_,
+            wants_uneven(task_.frame) ? kRayFloats : kFloatsWithoutUneven};
   }
 
  private:
@@ -80,10 +84,14 @@ class Tile {
     if (!hit) return;
     store_.uv[at] = {samples.bary[1][lane], samples.bary[2][lane]};
     if (!task_.frame.options.derivatives) return;
-    if (task_.frame.options.photo_derivative)
-      store_.rays[at] = shading.ray[lane];
-    else  // of known length: a call of memmove costs as much as the copy
-      std::copy_n(shading.ray[lane].value, kFloatsWithoutPhoto, store_.rays[at].value);
+    // Of known length: a call of memmove costs as much as the copy.
+    const float* from = shading.ray[lane].value;
+    if (wants_uneven(task_.frame))
+      std::copy_n(from, kAllFloats, store_.rays[at].value);
+    else if (task_.frame.options.photo_derivative)
+      std::copy_n(from, kFloatsWithoutUneven, store_.rays[at].value);
+    else
+      std::copy_n(from, kFloatsWithoutPhoto, store_.rays[at].value);
   }
 
   static thread_local Store store_;
@@ -110,15 +118,17 @@ const EdgeSegment* close_pixel(int pixel, size_t begin, const EdgeSegment* edge,
 }
 
 /// The photo's numbers of the next pixel, `missing` of whose filter no triangle covers.
-void add_photo(float missing, ImageDerivative::Part* part) {
+void add_photo(const Frame& frame, float missing, ImageDerivative::Part* part) {
+  if (!frame.options.photo_derivative) return;
   PhotoDerivative& photo = part->photo.emplace_back();
   photo.setZero();
   photo[kBackground] = missing;
+  if (wants_uneven(frame)) part->uneven.emplace_back().setZero();
 }
 
 const EdgeSegment* add_edges_alone(const BandTask& task, const EdgeSegment* edge,
                                    const EdgeSegment* end, ImageDerivative::Part* part) {
-  if (task.frame.options.photo_derivative) add_photo(1, part);
+  add_photo(task.frame, 1, part);
   return close_pixel(edge->pixel, part->segments.size(), edge, end, part);
 }
 
@@ -165,7 +175,7 @@ class PixelSum {
 
   void add_body(int pixel, const Taps& taps, float missing) {
     const size_t begin = part_->segments.size();
-    if (task_.frame.options.photo_derivative) add_photo(missing, part_);
+    add_photo(task_.frame, missing, part_);
     if (single_) {
       add_segment(*taps.triangle, *taps.rays);
     } else {
@@ -180,6 +190,8 @@ class PixelSum {
     if (task_.frame.options.photo_derivative)
       part_->photo.back().head<kBlur>() +=
           Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
+    if (!part_->uneven.empty())
+      part_->uneven.back() += Eigen::Map<const UnevenDerivative>(at + kByUneven);
     part_->segments.push_back(
         {Eigen::Map<const DerivativeSegment::ByVertex>(at), {0, 0}, triangle});
   }
@@ -237,6 +249,7 @@ void render_band(const BandTask& task, int row, int last_row, Rendering* out,
     part->pixel.reserve(most), part->first.reserve(most + 1);
     part->segments.reserve(most);
     if (task.frame.options.photo_derivative) part->photo.reserve(most);
+    if (wants_uneven(task.frame)) part->uneven.reserve(most);
   }
   for (int x0 = view.x0; x0 < view.x1; x0 += columns) {
     const int x1 = std::min(x0 + columns, view.x1);

@@ -20,8 +20,9 @@ TriangleSum& sum_of(int triangle, std::vector<TriangleSum>* sums) {
 }
 
 /// Taps (first .. first + count) of a row.
-HWY_INLINE void add_run(const RayRow* rays, const float* weights, int count, RayRow* sum) {
-  for (size_t at = 0; at < kRayFloats; at += hn::Lanes(Tag())) {
+HWY_INLINE void add_run(const RayRow* rays, const float* weights, int count, size_t floats,
+                        RayRow* sum) {
+  for (size_t at = 0; at < floats; at += hn::Lanes(Tag())) {
     V v = load(sum->value + at);
     for (int i = 0; i < count; ++i) v = v + set(weights[i]) * load(rays[i].value + at);
     store(v, sum->value + at);
@@ -43,9 +44,10 @@ bool all_on(int triangle, const Taps& taps, const PixelFilter& filter) {
 
 void sum_rays(const Taps& taps, const PixelFilter& filter, std::vector<TriangleSum>* sums) {
   const int size = filter.taps();
+  const auto floats = static_cast<size_t>(taps.floats);
   if (all_on(taps.triangle[0], taps, filter)) {
     RayRow& sum = sum_of(taps.triangle[0], sums).sum;
-    for (size_t at = 0; at < kRayFloats; at += hn::Lanes(Tag())) {
+    for (size_t at = 0; at < floats; at += hn::Lanes(Tag())) {
       V v = load(sum.value + at);
       for (int j = 0; j < size; ++j) {
         const RayRow* ray = taps.rays + j * taps.stride;
@@ -60,7 +62,7 @@ void sum_rays(const Taps& taps, const PixelFilter& filter, std::vector<TriangleS
     for (int i = 0, end = 0; i < size; i = end) {
       for (end = i + 1; end < size && triangle[end] == triangle[i]; ++end) continue;
       if (triangle[i] >= 0)
-        add_run(taps.rays + j * taps.stride + i, filter.row(j) + i, end - i,
+        add_run(taps.rays + j * taps.stride + i, filter.row(j) + i, end - i, floats,
                 &sum_of(triangle[i], sums).sum);
     }
   }

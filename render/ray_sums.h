@@ -16,6 +16,7 @@ struct Taps {
   const Eigen::Vector2f* uv;
   const RayRow* rays;
   int stride;
+  int floats;  ///< of a row that are summed, whole vectors
 };
 
 struct TriangleSum {

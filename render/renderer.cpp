@@ -253,7 +253,7 @@ void Renderer::render(const Matrix3Xd& x, const Matrix3Xd* x_reference, const Te
 }
 
 void ImageDerivative::Part::clear() {
-  pixel.clear(), segments.clear(), photo.clear();
+  pixel.clear(), segments.clear(), photo.clear(), uneven.clear();
   first.assign(1, 0);
 }
 

@@ -25,10 +25,11 @@ struct RenderOptions {
   bool derivatives = true;
   bool photo_derivative =
       true;  ///< false: Part::photo stays empty, and kBlur and kSpecular with it
-  bool gloss_derivative = true;  ///< false: kSpecular of a body without gloss stays zero
-  bool blur_derivative = true;   ///< false: kBlur stays zero
-  bool centres = true;           ///< false: Rendering::triangle and uv stay empty
-  bool parallel = false;         ///< on the cores of the caller's arena (oneTBB)
+  bool gloss_derivative = true;   ///< false: kSpecular of a body without gloss stays zero
+  bool blur_derivative = true;    ///< false: kBlur stays zero
+  bool uneven_derivative = true;  ///< false: Part::uneven stays empty
+  bool centres = true;            ///< false: Rendering::triangle and uv stay empty
+  bool parallel = false;          ///< on the cores of the caller's arena (oneTBB)
 };
 
 /// Derivative of one pixel by the vertices of one triangle. A pixel's derivative is the sum of its
@@ -47,10 +48,12 @@ struct DerivativeSegment {
   auto d_second() const { return d.bottomRows<3>(); }
 };
 
-/// Derivative of one pixel by the photo's numbers: kPhotoColumns and zeros.
+/// Derivative of one pixel by the photo's numbers: those before kUneven and zeros.
 constexpr int kPhotoFloats = 16;
-static_assert(kPhotoColumns <= kPhotoFloats);
+static_assert(kUneven <= kPhotoFloats);
 using PhotoDerivative = Eigen::Matrix<float, kPhotoFloats, 1>;
+/// The same by those from kUneven on.
+using UnevenDerivative = Eigen::Matrix<float, kUnevenNumbers, 1>;
 
 /// Pixels that count, with their derivatives, each in one of the parts. A part's rows are
 /// compressed: the segments of its pixel i are segments[first[i] .. first[i+1]).
@@ -59,7 +62,8 @@ struct ImageDerivative {
     std::vector<int> pixel;  ///< y*width + x
     std::vector<int> first;  ///< pixel.size() + 1
     std::vector<DerivativeSegment> segments;
-    std::vector<PhotoDerivative> photo;  ///< as pixel; empty where not wanted
+    std::vector<PhotoDerivative> photo;    ///< as pixel; empty where not wanted
+    std::vector<UnevenDerivative> uneven;  ///< the same; empty too of bodies without light
     void clear();
   };
   std::vector<Part> parts;

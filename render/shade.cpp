@@ -58,9 +58,33 @@ Gloss gloss(const Frame& f, const Samples& s, V3 n, size_t at) {
   return out;
 }
 
+/// Light of the whole sky on a surface that nothing hides it from.
+struct Sky {
+  V I;
+  V3 by_n;      ///< zero where the light is even
+  Mask bright;  ///< above zero: harmonics of a lamp end a little below it on its far side
+};
+
+Sky sky(const Frame& f, V3 n) {
+  Sky out;
+  out.I = set(static_cast<float>(f.photo.ambient));
+  out.by_n = {set(0), set(0), set(0)};
+  out.bright = hn::Eq(out.I, out.I);
+  if (f.photo.uneven.isZero(0.0)) return out;
+  const Irradiance E(f.photo.ambient, f.photo.uneven);
+  const V3 b = set(E.b.cast<float>().eval());
+  const V3 Qn = transform(E.Q.cast<float>(), n);
+  const V I = out.I + dot(n, b + Qn);
+  out.bright = I > set(0);
+  out.I = only(out.bright, I);
+  out.by_n = only(out.bright, b + set(2) * Qn);
+  return out;
+}
+
 /// I = gain (albedo diffuse + gloss).
 struct Light {
   V diffuse, visibility, share;
+  Sky sky;
   Mask sunny;  ///< lit, and turned to the sun
   Gloss gloss;
   bool glossy;
@@ -79,8 +103,8 @@ Light light(const Frame& f, const Samples& s, const V* b, V3 n, bool derivatives
     out.share = set(0.5f) * (set(1) + dot(n, load3(s.of_triangle + kFacet, at)));
   const V cosine = dot(n, set(f.photo.sun.cast<float>().eval()));
   out.sunny = hn::And(load_mask(s.lit + at), cosine > set(0));
-  out.diffuse = set(static_cast<float>(f.photo.ambient)) * out.visibility * out.share +
-                only(out.sunny, cosine);
+  out.sky = sky(f, n);
+  out.diffuse = out.sky.I * out.visibility * out.share + only(out.sunny, cosine);
   out.glossy = !f.photo.sun.isZero(0.0) &&
                (f.photo.specular != 0 ||
                 (derivatives && f.options.photo_derivative && f.options.gloss_derivative));
@@ -100,6 +124,22 @@ void store_second(V3 v, const V* b, Values& out, size_t at) {
   for (int k = 0; k < 3; ++k) store3(b[k] * v, by_second(k), out, at);
 }
 
+/// by_sky times irradiance_by_uneven(n).
+void store_uneven(V by_sky, V3 n, Values& out, size_t at) {
+  const UnevenLight first = irradiance_by_uneven(Vector3d(1, 1, 1));
+  const auto scale = [&](int k) HWY_ATTR { return set(static_cast<float>(first[k])) * by_sky; };
+  const V axial = set(static_cast<float>(irradiance_by_uneven(Vector3d::UnitZ())[5])) * by_sky;
+  const V plane = set(static_cast<float>(irradiance_by_uneven(Vector3d::UnitX())[7])) * by_sky;
+  const V half = set(0.5f);
+  const V by[kUnevenNumbers] = {
+      scale(0) * n.y,       scale(1) * n.z,
+      scale(2) * n.x,       scale(3) * n.x * n.y,
+      scale(4) * n.y * n.z, axial * (n.z * n.z - half * (n.x * n.x + n.y * n.y)),
+      scale(6) * n.x * n.z, plane * (n.x * n.x - n.y * n.y),
+  };
+  for (int k = 0; k < kUnevenNumbers; ++k) store(by[k], out[kByUneven + k] + at);
+}
+
 /// Derivatives by light and, through vertex normals, by position; adds to by_bary. Returns that by
 /// the triangle's own unit normal.
 V3 differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const V* b,
@@ -114,13 +154,16 @@ V3 differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const 
     if (f.options.photo_derivative)
       store(gain * l.gloss.by_specular, out[kByPhoto + kSpecular] + at);
   }
-  const V by_visibility = gain * albedo * set(static_cast<float>(f.photo.ambient));
+  const V by_visibility = gain * albedo * l.sky.I;
+  const V by_sky = only(l.sky.bright, gain * albedo * l.visibility * l.share);
+  if (!f.photo.uneven.isZero(0.0)) by_n = by_n + by_sky * l.sky.by_n;
   for (int k = 0; k < 3; ++k)
     by_bary[k] = by_bary[k] + by_visibility * l.share * load(s.of_triangle[kVisibility + k] + at);
   if (f.options.photo_derivative) {
-    store(gain * albedo * l.visibility * l.share, out[kByPhoto + kAmbient] + at);
+    store(by_sky, out[kByPhoto + kAmbient] + at);
     store3(by_sun, kByPhoto + kSun, out, at);
   }
+  if (wants_uneven(f)) store_uneven(by_sky, n, out, at);
   if (!f.options.smooth_normals) return by_n;
   const V by_share = set(0.5f) * by_visibility * l.visibility;
   by_n = by_n + by_share * load3(s.of_triangle + kFacet, at);
@@ -215,7 +258,7 @@ void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivat
     if (!derivatives) continue;
     const V3 none = {set(0), set(0), set(0)};
     for (int k = 0; k < 3; ++k) store3(none, by_second(k), value, at);
-    for (int k = kByPhoto; k < wanted_floats(f.options); ++k) store(set(0), value[k] + at);
+    for (int k = kByPhoto; k < wanted_floats(f); ++k) store(set(0), value[k] + at);
     if (f.options.photo_derivative) store(I, value[kByPhoto + kLogGain] + at);
     V by_bary[3];
     for (int k = 0; k < 3; ++k) by_bary[k] = gain * l.diffuse * load(a.by_bary[k] + at);
@@ -229,7 +272,7 @@ void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivat
   if (!derivatives) return;
   float* rows[kLanes];
   for (int i = 0; i < kLanes; ++i) rows[i] = out->ray[i].value;
-  to_rows(value, wanted_floats(f.options), rows);
+  to_rows(value, wanted_floats(f), rows);
 }
 
 }  // namespace hookeye::HWY_NAMESPACE

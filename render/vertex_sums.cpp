@@ -43,8 +43,12 @@ HWY_INLINE void add_vertices(const PixelRun& p, VertexSums* sums) {
   const size_t* block = p.block.data();
   const auto slot = [&](size_t i) { return Rows{p.vertices + p.of_slot[i], p.step}; };
   const Rows photo = {p.with_photo ? p.photo->data() : nullptr, kPhotoFloats}, one = {kOne, 0};
+  const Rows uneven = {p.uneven ? p.uneven->data() : nullptr, kUnevenNumbers};
   for (size_t i = 0; i < p.slots.size(); ++i) {
     VertexRow& row = sums->vertex[p.slots[i]];
+    if (p.uneven)
+      add_outer<kNumbers, kUnevenNumbers>(slot(i), uneven, p.ww, p.count,
+                                          sums->uneven_vertex[p.slots[i]].uneven);
     if (p.with_photo) add_outer<kNumbers, kPhotoFloats>(slot(i), photo, p.ww, p.count, row.photo);
     add_outer<1, kVertexFloats>(one, slot(i), p.Bt_r, p.count, &row.b);
     for (size_t j = i; j < p.slots.size(); ++j, ++block)
@@ -60,8 +64,13 @@ void add_pixels_lanes(const PixelRun& p, VertexSums* sums) {
     add_vertices<6>(p, sums);
   if (!p.with_photo) return;
   const Rows photo = {p.photo->data(), kPhotoFloats}, one = {kOne, 0};
-  add_outer<kPhotoColumns, kPhotoFloats>(photo, photo, p.ww, p.count, sums->photo.photo);
+  add_outer<kUneven, kPhotoFloats>(photo, photo, p.ww, p.count, sums->photo.photo);
   add_outer<1, kPhotoFloats>(one, photo, p.Bt_r, p.count, &sums->photo.b);
+  if (!p.uneven) return;
+  const Rows uneven = {p.uneven->data(), kUnevenNumbers};
+  add_outer<kUnevenNumbers, kPhotoFloats>(uneven, photo, p.ww, p.count, sums->uneven.photo);
+  add_outer<kUnevenNumbers, kUnevenNumbers>(uneven, uneven, p.ww, p.count, sums->uneven.uneven);
+  add_outer<1, kUnevenNumbers>(one, uneven, p.Bt_r, p.count, &sums->uneven.b);
 }
 
 /// Rows kRows of Y at once, one vector of columns after the other.

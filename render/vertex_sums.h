@@ -23,10 +23,21 @@ struct alignas(64) PhotoBlock {
   float photo[kPhotoFloats][kPhotoFloats] = {};
   float b[kPhotoFloats] = {};
 };
+/// The same with the numbers of the uneven light.
+struct alignas(64) UnevenRow {
+  float uneven[6][kUnevenNumbers] = {};
+};
+struct alignas(64) UnevenBlock {
+  float photo[kUnevenNumbers][kPhotoFloats] = {};
+  float uneven[kUnevenNumbers][kUnevenNumbers] = {};
+  float b[kUnevenNumbers] = {};
+};
 struct VertexSums {
   std::vector<VertexBlock> block;
   std::vector<VertexRow> vertex;
+  std::vector<UnevenRow> uneven_vertex;  ///< as `vertex`, or empty
   PhotoBlock photo;
+  UnevenBlock uneven;
 };
 
 /// Derivatives g of neighbouring pixels by the same vertices and by the photo's numbers.
@@ -42,7 +53,8 @@ struct PixelRun {
   const float* vertices = nullptr;
   size_t step = 0;
   std::span<const size_t> of_slot;
-  const PhotoDerivative* photo = nullptr;  ///< of the first; the others follow
+  const PhotoDerivative* photo = nullptr;    ///< of the first; the others follow
+  const UnevenDerivative* uneven = nullptr;  ///< the same; null: not summed
   float ww[kPixels], Bt_r[kPixels];
 };
 

@@ -73,12 +73,18 @@ std::string texture_text(const BodySpec& body) {
 std::string light_text(const Capture& capture) {
   if (capture.body.texture == BodySpec::Texture::none) return "none needed";
   if (capture.body.texture == BodySpec::Texture::rest) return "in the photos";
-  if (!capture.light.given) return "not told: fitted";
-  const Vector3d& sun = capture.light.sun;
-  return fmt::format("ambient {:.4g}, {}", capture.light.ambient,
-                     sun.isZero(0.0) ? "no sun"
-                                     : fmt::format("sun {:.4g} from {}", sun.norm(),
-                                                   vector_text(sun.normalized())));
+  const LightSpec& light = capture.light;
+  if (!light.given && !light.fit_harmonics) return "not told: fitted";
+  const std::string sun = light.sun.isZero(0.0)
+                              ? "no sun"
+                              : fmt::format("sun {:.4g} from {}", light.sun.norm(),
+                                            vector_text(light.sun.normalized()));
+  if (light.fit_harmonics) return "harmonics, fitted; " + sun;
+  if (light.uneven.isZero(0.0)) return fmt::format("ambient {:.4g}, {}", light.ambient, sun);
+  const Irradiance E(light.ambient, light.uneven);
+  return fmt::format("harmonics, {:.4g} in the mean, {:.4g} at most, {:.4g} at least{}; {}",
+                     light.ambient, E.most(), E.least(),
+                     E.least() < 0.0 ? " (below 0 is black)" : "", sun);
 }
 
 std::string background_text(const BackgroundSpec& background) {

@@ -89,7 +89,7 @@ void BrightnessSums::add_to(CondensedPhoto* sums, const VertexSensitivity& S) co
         add(one.by_vertex(c, 0), one.by_vertex(c, 1),
             (c < 3 ? S.position : S.second).row(3 * one.vertex + c % 3));
     if (columns_.photo)
-      for (int c = 0; c < kPhotoColumns; ++c)
+      for (int c = 0; c < kUneven; ++c)  // a texture that is a photo has its light in it
         add(nodes_[n].by_photo(c, 0), nodes_[n].by_photo(c, 1), S.photo.row(c));
   }
   const RowMatrix C = brightness_.change(B);

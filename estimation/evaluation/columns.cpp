@@ -47,6 +47,7 @@ VectorXd photo_difference(const PhotoState& a, const PhotoState& b) {
   d[kSpecular] = b.specular - a.specular;
   d[kBlur] = b.blur_variance - a.blur_variance;
   d[kBackground] = b.background - a.background;
+  d.segment<kUnevenNumbers>(kUneven) = b.uneven - a.uneven;
   return d;
 }
 

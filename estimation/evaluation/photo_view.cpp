@@ -212,8 +212,8 @@ RenderOptions ExampleView::rendering(int photo, const Texture& texture, PhotoSiz
   out.derivatives = derivatives();
   out.parallel = true;
   out.centres = options.pictures || texture.source == Texture::Source::photo;
-  const auto moves = [&](PhotoColumn column) {
-    return columns_ && !columns_->dphoto[photo].row(column).isZero(0.0);
+  const auto moves = [&](PhotoColumn column, int count = 1) {
+    return columns_ && !columns_->dphoto[photo].middleRows(column, count).isZero(0.0);
   };
   // The texture is divided by the gain of the photo that it is from.
   const bool texture_gain =
@@ -224,6 +224,7 @@ RenderOptions ExampleView::rendering(int photo, const Texture& texture, PhotoSiz
   out.photo_derivative = columns_ && (texture_gain || !columns_->dphoto[photo].isZero(0.0));
   out.gloss_derivative = moves(kSpecular);
   out.blur_derivative = moves(kBlur);
+  out.uneven_derivative = moves(kUneven, kUnevenNumbers);
   return out;
 }
 

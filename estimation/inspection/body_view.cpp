@@ -19,6 +19,7 @@ BodyPicture BodyView::look(const Camera& camera, const Matrix3Xd& x, const Paint
   state.camera = camera;
   state.shaded = paint.shaded;
   state.ambient = paint.ambient;
+  state.uneven = paint.uneven;
   state.sun = paint.sun;
   const bool from_photo = paint.texture.source == Texture::Source::photo;
   Rendering rendering = renderer_.render(x, from_photo ? (x_reference ? x_reference : &x) : nullptr,
@@ -44,6 +45,7 @@ std::optional<Paint> told_paint(const Scene& scene, const PhotoState& state, int
   if (!scene.capture.light.given) return paint;
   paint.shaded = true;
   paint.ambient = state.ambient;
+  paint.uneven = state.uneven;
   paint.sun = state.sun;
   return paint;
 }

@@ -15,6 +15,7 @@ struct Paint {
   Texture texture;  ///< Texture::Source::uniform: shading alone
   bool shaded = false;
   double ambient = 1.0;
+  UnevenLight uneven = UnevenLight::Zero();
   Vector3d sun = Vector3d::Zero();
 };
 

@@ -68,6 +68,7 @@ PhotoState told_photo(const Capture& capture, const PhotoSpec& spec) {
                               ? capture.body.uniform_albedo.value_or(0.5)
                               : 1.0;
     state.ambient = albedo * capture.light.ambient;
+    state.uneven = albedo * capture.light.uneven;
     state.sun = albedo * capture.light.sun;
   }
   if (spec.background.kind == BackgroundSpec::Kind::level) state.background = spec.background.level;
@@ -113,11 +114,12 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
   if (auto travels = travel_ingredient(*scene)) form.ingredients.push_back(travels);
   const bool shaded = any_image(capture) && (capture.body.texture == BodySpec::Texture::image ||
                                              capture.body.texture == BodySpec::Texture::uniform);
-  if (shaded && !capture.light.given)
-    form.ingredients.push_back(light_ingredient(*scene));
-  else if (shaded && capture.body.texture == BodySpec::Texture::uniform &&
-           !capture.body.uniform_albedo)
+  // A light that is fitted whole has the albedo in it; told beside it, a sun tells that apart.
+  const bool told_light = capture.light.given || !capture.light.sun.isZero(0.0);
+  if (shaded && told_light && capture.body.texture == BodySpec::Texture::uniform &&
+      !capture.body.uniform_albedo)
     form.ingredients.push_back(albedo_ingredient());
+  if (shaded && !capture.light.given) form.ingredients.push_back(light_ingredient(*scene));
   if (auto levels = background_ingredient(*scene)) form.ingredients.push_back(levels);
   if (auto cameras = calibration_ingredient(*scene)) form.ingredients.push_back(cameras);
   if (capture.body.fit_placement) form.ingredients.push_back(placement_ingredient(*scene));

@@ -124,6 +124,30 @@ class Light final : public Ingredient {
   }
 };
 
+/// The sky's nine numbers; a told sun stays.
+class Harmonics final : public Ingredient {
+ public:
+  std::string name() const override { return "light"; }
+  std::vector<Parameter> parameters() const override {
+    std::vector<Parameter> all;
+    for (const char* harmonic : harmonic_names) {
+      const bool even = all.empty();
+      all.push_back({fmt::format("light.{}", harmonic), "",
+                     fmt::format("harmonic {} of the light", harmonic),
+                     even ? 0.6 / even_by_harmonic : 0.0, even ? 0.0 : -400.0, 400.0, 0.3, false});
+    }
+    return all;
+  }
+  Touches touches() const override { return {.photos = true}; }
+  void apply(const Eigen::VectorXd& values, Model& model) const override {
+    for (auto& example : model.examples)
+      for (auto& photo : example.photos) {
+        photo.ambient = even_by_harmonic * values[0];
+        photo.uneven = values.tail<kUnevenNumbers>();
+      }
+  }
+};
+
 class Albedo final : public Ingredient {
  public:
   std::string name() const override { return "albedo"; }
@@ -132,10 +156,11 @@ class Albedo final : public Ingredient {
   }
   Touches touches() const override { return {.photos = true}; }
   void apply(const Eigen::VectorXd& values, Model& model) const override {
-    // told_photo() put 0.5 into ambient and sun
+    // told_photo() put 0.5 into all of the light
     for (auto& example : model.examples)
       for (auto& photo : example.photos) {
         photo.ambient *= values[0] / 0.5;
+        photo.uneven *= values[0] / 0.5;
         photo.sun *= values[0] / 0.5;
       }
   }
@@ -290,7 +315,8 @@ std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene) {
   return std::make_shared<RigidSupports>(std::move(slots), scene);
 }
 
-std::shared_ptr<const Ingredient> light_ingredient(const Scene&) {
+std::shared_ptr<const Ingredient> light_ingredient(const Scene& scene) {
+  if (scene.capture.light.fit_harmonics) return std::make_shared<Harmonics>();
   return std::make_shared<Light>();
 }
 
@@ -331,6 +357,7 @@ void place(Model& model, const Eigen::Isometry3d& motion) {
       photo.camera.t += photo.camera.R * motion.translation();
       photo.camera.R = photo.camera.R * motion.linear();
       photo.sun = motion.linear().transpose() * photo.sun;
+      photo.uneven = turned(photo.uneven, motion.linear().transpose());
     }
   }
 }

@@ -15,7 +15,8 @@ std::vector<std::shared_ptr<const Ingredient>> material_ingredients(const Scene&
                                                                     const EnergyModel& energy);
 /// Six numbers for every `rigid: fit` support; null when there is none.
 std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene);
-/// Ambient and sun (vector), common to all photos; light was not told.
+/// Ambient and sun (vector), or the sky's harmonics where they are asked for, common to all photos;
+/// light was not told.
 std::shared_ptr<const Ingredient> light_ingredient(const Scene& scene);
 /// One uniform albedo.
 std::shared_ptr<const Ingredient> albedo_ingredient();

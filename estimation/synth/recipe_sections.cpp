@@ -87,18 +87,28 @@ void read_cameras(const YamlNode& node, Recipe& recipe) {
 }
 
 void read_light(const YamlNode& node, Recipe& recipe) {
-  const YamlSection section(node, "light", {"ambient", "toward", "strength"});
+  const YamlSection section(node, "light", {"ambient", "harmonics", "toward", "strength"});
   LightSpec& light = recipe.light;
   light.given = true;
   light.ambient = 0.35;
   double strength = 0.6;
+  const YamlNode::Entry* harmonics = section.entry("harmonics");
+  if (harmonics && section.has("ambient"))
+    throw InputError(harmonics->place, "light has both `ambient` and `harmonics`",
+                     "keep one of the two: an even sky is the first of the harmonics");
+  if (harmonics) {
+    read_harmonics(harmonics->value, light);
+    strength = 0.0;
+  }
   maybe(section, "ambient", light.ambient, 0.0, 1.0);
   maybe(section, "strength", strength, 0.0, 1.0);
   Vector3d toward = Vector3d(0.5, -0.4, 0.75).normalized();
   if (const YamlNode* given = section.find("toward")) toward = read_direction(*given, "toward");
   light.sun = strength * toward;
-  if (light.ambient + strength > 1.0)
-    throw InputError(node.place, "ambient and strength add up to more than full scale",
+  if (Irradiance(light.ambient, light.uneven).most() + strength > 1.0)
+    throw InputError(node.place,
+                     harmonics ? "harmonics and strength light a white surface beyond full scale"
+                               : "ambient and strength add up to more than full scale",
                      "keep their sum at 1 or below, or pictures saturate");
 }
 

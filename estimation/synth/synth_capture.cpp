@@ -189,16 +189,22 @@ std::string photo_name(const Recipe& recipe, const std::string& example,
 
 namespace {
 
+std::string sky_text(const LightSpec& light) {
+  if (light.uneven.isZero(0.0)) return fmt::format("ambient: {}", light.ambient);
+  return fmt::format("harmonics: [{}, {}]", rounded(light.ambient / even_by_harmonic),
+                     fmt::join(light.uneven.data(), light.uneven.data() + kUnevenNumbers, ", "));
+}
+
 std::string light_and_noise_text(const Recipe& recipe) {
   const double strength = recipe.light.sun.norm();
   const Vector3d toward =
       strength > 0.0 ? Vector3d(recipe.light.sun / strength) : Vector3d::UnitZ();
   const NoiseModel noise = told_noise(recipe.noise);
   return fmt::format(
-      "light:\n  ambient: {}\n  sun: {{toward: {}, strength: {}}}\n"
+      "light:\n  {}\n  sun: {{toward: {}, strength: {}}}\n"
       "photos:\n  encoding: linear\n  background: black\n"
       "  noise: {{full_well: {}, read: {}}}\n",
-      recipe.light.ambient, list(toward), strength, noise.full_well, noise.read);
+      sky_text(recipe.light), list(toward), strength, noise.full_well, noise.read);
 }
 
 }  // namespace

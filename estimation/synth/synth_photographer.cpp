@@ -70,6 +70,9 @@ void write_stage(const Truth& truth, const fs::path& albedo, const fs::path& sta
       if (state.specular != 0.0)
         throw InputError({stage.string()}, "another photographer does not know our gloss",
                          "a recipe without `specular`");
+      if (!state.uneven.isZero(0.0))
+        throw InputError({stage.string()}, "another photographer does not know our harmonics",
+                         "a recipe with `ambient` in place of `harmonics`");
       const CameraModel& model = *state.camera.model;
       if (!state.camera.straight() || !model.central())
         throw InputError(

@@ -106,6 +106,24 @@ const BrokenCase broken_cameras[] = {
     {"AmbientNegative", swap("ambient: 0.4", "ambient: -0.4"),
      "capture.yaml:29:12: ambient is `-0.4`\n"
      "  zero or a number above it is expected"},
+    {"LightWithoutSky", swap("  ambient: 0.4\n", ""),
+     "capture.yaml:29:3: light lacks `ambient`\n"
+     "  write `ambient: 0.4`, or `harmonics: fit`"},
+    {"HarmonicsBesideAmbient", swap("ambient: 0.4", "ambient: 0.4\n  harmonics: fit"),
+     "capture.yaml:30:3: light has both `ambient` and `harmonics`\n"
+     "  keep one of the two: an even sky is the first of the harmonics"},
+    {"HarmonicsOfFirstOrder", swap("ambient: 0.4", "harmonics: [1, 0.2, 0, 0]"),
+     "capture.yaml:29:14: harmonics of the light are 4 numbers\n"
+     "  give nine: L00 L1-1 L10 L11 L2-2 L2-1 L20 L21 L22"},
+    {"HarmonicsDarkerThanNothing", swap("ambient: 0.4", "harmonics: [-1, 0, 0, 0, 0, 0, 0, 0, 0]"),
+     "capture.yaml:29:15: L00 of the light, its mean over all directions, is `-1`\n"
+     "  a number above zero is expected"},
+    {"HarmonicsOfAWord", swap("ambient: 0.4", "harmonics: fitted"),
+     "capture.yaml:29:14: harmonics of the light is `fitted`\n"
+     "  `fit` is expected, or nine numbers: L00 L1-1 L10 L11 L2-2 L2-1 L20 L21 L22"},
+    {"HarmonicNotFinite", swap("ambient: 0.4", "harmonics: [1, .nan, 0, 0, 0, 0, 0, 0, 0]"),
+     "capture.yaml:29:18: a number of harmonics of the light is `.nan`\n"
+     "  a finite number is expected"},
     {"FullWellNegative", swap("full_well: 20000", "full_well: -20000"),
      "capture.yaml:33:22: full_well is `-20000`\n"
      "  a number above zero is expected"},

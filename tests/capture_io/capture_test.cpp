@@ -89,6 +89,8 @@ TEST(CaptureTest, CamerasAndLight) {
   EXPECT_EQ(c.light.ambient, 0.4);
   EXPECT_NEAR(c.light.sun.norm(), 0.6, 1e-15);
   EXPECT_LT(c.light.sun.x(), 0);
+  EXPECT_TRUE(c.light.uneven.isZero(0.0));
+  EXPECT_FALSE(c.light.fit_harmonics);
   const BackgroundSpec& background = c.examples[0].photos[0].background;
   EXPECT_EQ(background.kind, BackgroundSpec::Kind::level);
   EXPECT_EQ(background.level, 0);
@@ -202,6 +204,23 @@ TEST(CaptureTest, LawsBlendedOverTheBody) {
   EXPECT_EQ(blend.of({0, 0, 5}), 0.25);
   EXPECT_EQ(blend.of({0, 0, 6}), 0.0);
   EXPECT_EQ(c.materials[1].region, "head");
+}
+
+TEST(CaptureTest, LightOfHarmonics) {
+  CaptureFixture fixture;
+  fixture.replace("ambient: 0.4", "harmonics: [2, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, -0.8]");
+  const LightSpec told = read_fixture(fixture).light;
+  EXPECT_TRUE(told.given);
+  EXPECT_NEAR(told.ambient, 2 / std::sqrt(4 * M_PI), 1e-15);
+  EXPECT_EQ(told.uneven[0], 0.1);
+  EXPECT_EQ(told.uneven[7], -0.8);
+  EXPECT_NEAR(told.sun.norm(), 0.6, 1e-15);
+  CaptureFixture open;
+  open.replace("ambient: 0.4", "harmonics: fit");
+  const LightSpec fitted = read_fixture(open).light;
+  EXPECT_FALSE(fitted.given);
+  EXPECT_TRUE(fitted.fit_harmonics);
+  EXPECT_NEAR(fitted.sun.norm(), 0.6, 1e-15);
 }
 
 TEST(CaptureTest, SimulationNeedsNoPictures) {

@@ -88,6 +88,7 @@ VectorXd signature(const Model& model, const VectorXd& q) {
       append(photo.camera.R.reshaped());
       append(photo.camera.t);
       append(photo.sun);
+      append(photo.uneven);
       for (double x : {photo.camera.fx, photo.camera.fy, photo.gain, photo.ambient, photo.specular,
                        photo.blur_variance, photo.background, photo.shininess})
         all.push_back(x);

@@ -15,6 +15,7 @@ TEST(condensed, equals_explicit_rows) {
   Renderer renderer(surface);
   Texture texture;
   PhotoState state = test::state(test::camera("perspective", false));
+  state.uneven << 0.2, -0.3, 0.1, 0.25, -0.15, 0.2, -0.1, 0.3;
   for (bool from_photo : {false, true}) {
     if (from_photo) {
       texture.source = Texture::Source::photo;
@@ -128,6 +129,7 @@ TEST(renderer, without_the_photos_numbers_motions_stay_the_same) {
     for (size_t i = 0; i < all.dI.parts.size(); ++i) {
       const auto &a = all.dI.parts[i], &b = some.dI.parts[i];
       EXPECT_TRUE(b.photo.empty());
+      EXPECT_TRUE(b.uneven.empty());
       EXPECT_EQ(a.pixel, b.pixel);
       EXPECT_EQ(a.first, b.first);
       ASSERT_EQ(a.segments.size(), b.segments.size());
@@ -147,6 +149,36 @@ TEST(renderer, without_the_photos_numbers_motions_stay_the_same) {
     const CondensedPhoto a = reduced(all, {}), b = reduced(some, {true, false});
     EXPECT_LT((a.JtJ - b.JtJ).norm(), 1e-6 * a.JtJ.norm());
     EXPECT_LT((a.Jtr - b.Jtr).norm(), 1e-6 * a.Jtr.norm());
+  }
+}
+
+// Those of an uneven sky alone are left out where the light is told, or is a sky and a sun.
+TEST(renderer, without_uneven_light_the_other_numbers_stay_the_same) {
+  const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 3, 0.05);
+  Renderer renderer(surface);
+  const PhotoState state = test::state(test::camera("perspective", false));
+  for (const int rays : {1, 3}) {
+    RenderOptions with, without;
+    with.rays_per_axis = without.rays_per_axis = rays;
+    without.uneven_derivative = false;
+    const Rendering all = renderer.render(surface.X, nullptr, {}, state, with, true);
+    const Rendering some = renderer.render(surface.X, nullptr, {}, state, without, true);
+    EXPECT_EQ(all.I.values, some.I.values);
+    const test::Joined a = test::joined(all.dI), b = test::joined(some.dI);
+    EXPECT_TRUE(a.d_photo.topRows<kUneven>() == b.d_photo.topRows<kUneven>());
+    EXPECT_GT(a.d_photo.bottomRows<kUnevenNumbers>().norm(), 1.0f);
+    EXPECT_EQ(b.d_photo.bottomRows<kUnevenNumbers>().norm(), 0.0f);
+    const Eigen::Index m = 5, nv = 3 * surface.X.cols();
+    VertexSensitivity S{Eigen::MatrixXd::Random(nv, m), Eigen::MatrixXd::Random(nv, m),
+                        Eigen::MatrixXd::Random(kPhotoColumns, m)};
+    S.photo.bottomRows<kUnevenNumbers>().setZero();
+    const VectorXd r = VectorXd::Random(Eigen::Index(all.dI.pixels()));
+    const auto reduced = [&](const Rendering& rendering) {
+      return NodeNormalEquations::accumulate(surface, rendering.dI, r, r, r, {}).reduce(S);
+    };
+    const CondensedPhoto of_all = reduced(all), of_some = reduced(some);
+    EXPECT_LT((of_all.JtJ - of_some.JtJ).norm(), 1e-6 * of_all.JtJ.norm());
+    EXPECT_LT((of_all.Jtr - of_some.Jtr).norm(), 1e-6 * of_all.Jtr.norm());
   }
 }
 

@@ -179,6 +179,55 @@ TEST_P(SmoothInterior, photo_columns) {
   }
 }
 
+/// Settings with light that is not in the texture.
+class ShadedInterior : public Interior {
+ protected:
+  /// Brighter than nothing on every side.
+  void light_unevenly() {
+    state.ambient = 0.5;
+    state.uneven << 0.2, -0.3, 0.1, 0.25, -0.15, 0.2, -0.1, 0.3;
+    ASSERT_GT(Irradiance(state.ambient, state.uneven).least(), 0.1);
+  }
+};
+
+TEST_P(ShadedInterior, uneven_light) {
+  light_unevenly();
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  for (int k = -1; k < kUnevenNumbers; ++k) {
+    const int column = k < 0 ? kAmbient : kUneven + k;
+    const auto f = [&](double h) {
+      PhotoState s = state;
+      (k < 0 ? s.ambient : s.uneven[k]) += h;
+      return pick(render(x, x_reference, s, false).I);
+    };
+    const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
+    expect_derivative(f, pick(test::directional(renderer, r, x, nullptr, nullptr, unit)), 0.1, 1e-4,
+                      "column " + std::to_string(column));
+  }
+}
+
+/// As positions_where_facets_matter, with nothing to see but the sky: facets and normals turn.
+TEST_P(ShadedInterior, positions_under_uneven_light) {
+  light_unevenly();
+  state.sun.setZero();
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  const Matrix3Xd u = test::field(surface.X, 0.5);
+  const auto f = [&](double h) { return pick(render(x + h * u, x_reference, state, false).I); };
+  const VectorXd numeric = (f(3e-4) - f(-3e-4)) / 6e-4;
+  const VectorXd analytic =
+      pick(test::directional(renderer, r, x, &u, nullptr, VectorXd::Zero(kPhotoColumns)));
+  ASSERT_GT(numeric.cwiseAbs().mean(), 0);
+  std::vector<double> error;
+  for (int i = 0; i < numeric.size(); ++i) error.push_back(std::abs(numeric[i] - analytic[i]));
+  const auto tenth = error.begin() + static_cast<std::ptrdiff_t>(error.size() * 9 / 10);
+  std::nth_element(error.begin(), tenth, error.end());
+  // A body of one colour changes so little that rounding of its floats shows.
+  const double rounding = std::exp2(-24) * 2 * pick(r.I).maxCoeff() / 6e-4;
+  EXPECT_LT(*tenth, 6e-3 * numeric.cwiseAbs().mean() + rounding);
+}
+
 constexpr auto kPerspective = "perspective", kFisheye = "fisheye", kOrthographic = "orthographic";
 const auto kPhotos = testing::Values(Setting{Source::photo, kPerspective, false, true},
                                      Setting{Source::photo, kPerspective, true, true},
@@ -198,9 +247,10 @@ INSTANTIATE_TEST_SUITE_P(photo, SmoothInterior, kPhotos, name_of);
 INSTANTIATE_TEST_SUITE_P(shaded, SmoothInterior, kShaded, name_of);
 INSTANTIATE_TEST_SUITE_P(photo, Interior, kPhotos, name_of);
 INSTANTIATE_TEST_SUITE_P(shaded, Interior, kShaded, name_of);
-INSTANTIATE_TEST_SUITE_P(flat, SmoothInterior,
-                         testing::Values(Setting{Source::image, kPerspective, false, false}),
-                         name_of);
+const auto kFlat = testing::Values(Setting{Source::image, kPerspective, false, false});
+INSTANTIATE_TEST_SUITE_P(flat, SmoothInterior, kFlat, name_of);
+INSTANTIATE_TEST_SUITE_P(shaded, ShadedInterior, kShaded, name_of);
+INSTANTIATE_TEST_SUITE_P(flat, ShadedInterior, kFlat, name_of);
 
 TEST(normals, derivative) {
   const SurfaceMesh surface = test::sphere(Vector3d::Zero(), 8, 1, 0.2);

@@ -144,7 +144,10 @@ inline Joined joined(const ImageDerivative& dI) {
   out.d_photo.resize(kPhotoColumns, Eigen::Index(dI.pixels()));
   for (const auto& part : dI.parts)
     for (size_t i = 0; i < part.pixel.size(); ++i) {
-      out.d_photo.col(Eigen::Index(out.pixel.size())) = part.photo[i].head<kPhotoColumns>();
+      auto d_photo = out.d_photo.col(Eigen::Index(out.pixel.size()));
+      d_photo.setZero();
+      d_photo.head<kUneven>() = part.photo[i].head<kUneven>();
+      if (!part.uneven.empty()) d_photo.tail<kUnevenNumbers>() = part.uneven[i];
       out.pixel.push_back(part.pixel[i]);
       out.segments.insert(out.segments.end(), part.segments.begin() + part.first[i],
                           part.segments.begin() + part.first[i + 1]);

@@ -165,6 +165,7 @@ class Test:
         for path, value in ((("body", "mesh", "edge"), -1), (("model", "material"), {"law": "neo-hookean", "mu": 1}),
                             (("cameras", "front", "projection"), "pinhole"), (("examples", "pull", "use"), "train"),
                             (("regions", "base"), {}), (("light",), {"sun": 1}),
+                            (("light", "harmonics"), "fit"), (("light",), {"harmonics": [1, 2]}),
                             (("examples",), {"from": "cases.txt"})):
             document = captures.full_capture()
             place = document
@@ -173,6 +174,10 @@ class Test:
             place[path[-1]] = value
             if jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
                 self.fault(f"capture.json takes {'/'.join(path)}: {value}")
+        for harmonics in ("fit", [1] + 8 * [0]):
+            document = {**captures.full_capture(), "light": {"harmonics": harmonics}}
+            if not jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
+                self.fault(f"capture.json refuses light of harmonics: {harmonics}")
         for section in ("cameras", "examples"):
             document = {**captures.full_capture(), section: {"from": "parts/of_it.yaml"}}
             if not jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
