@@ -15,6 +15,7 @@
 #include "estimation/inspection/field_motion.h"
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
+#include "estimation/model/field_points.h"
 
 namespace hookeye::inspection {
 
@@ -191,6 +192,7 @@ void ask_of_single_photos(Sight& sight, Expectations& expected, const PhotoSerie
 /// pair.
 struct FieldSeries {
   std::vector<int> examples;
+  std::vector<int> starts;  ///< -1: the body as it was given
   std::vector<const MeasuredSpec*> fields;
 };
 
@@ -198,14 +200,17 @@ std::vector<FieldSeries> series_of_fields(Sight& sight) {
   std::vector<FieldSeries> out;
   for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
     const int e = static_cast<int>(i);
-    const FirstGuess* guess = sight.guess(e);
-    if (!guess || guess->u.size() == 0 || guess->u.isZero(0) || moved_by_unknown(sight.example(e)))
-      continue;
     size_t n = 0;
     for (const MeasuredSpec& measured : sight.example(e).measured) {
       if (!measured.field || measured.field->strain) continue;
+      const int start = start_index(sight.scene(), measured);
+      const VectorXd u = guessed_motion(sight, start, e).first_order;
+      if (u.size() == 0 || u.isZero(0) || moved_by_unknown(sight.example(e)) ||
+          (start >= 0 && moved_by_unknown(sight.example(start))))
+        continue;
       if (out.size() <= n) out.emplace_back();
-      out[n].examples.push_back(e), out[n].fields.push_back(&measured);
+      out[n].examples.push_back(e), out[n].starts.push_back(start);
+      out[n].fields.push_back(&measured);
       ++n;
     }
   }
@@ -221,14 +226,19 @@ MotionSums field_sums(const VectorXd& seen, const VectorXd& expected) {
 
 ComparedWays compared_fields(Sight& sight, const FieldSeries& series) {
   ComparedWays out;
-  const bool equilibria = std::all_of(series.examples.begin(), series.examples.end(),
-                                      [&](int e) { return sight.guess(e)->q.size() > 0; });
+  bool equilibria = true;
+  for (size_t i = 0; i < series.examples.size(); ++i)
+    equilibria = equilibria &&
+                 guessed_motion(sight, series.starts[i], series.examples[i]).in_equilibrium.size();
   out.ways.resize(equilibria ? 2 : 1);
   for (size_t i = 0; i < series.fields.size(); ++i) {
-    out.scaled.push_back(moved_by_forces(sight.example(series.examples[i])));
+    const int start = series.starts[i];
+    out.scaled.push_back(moved_by_forces(sight.example(series.examples[i])) &&
+                         (start < 0 || moved_by_forces(sight.example(start))));
     for (ComparedPlaces& way : out.ways) way.emplace_back();
     const VectorXd& seen = series.fields[i]->value;
-    for (const ComparedField& beside : field_beside(sight, *series.fields[i], series.examples)) {
+    for (const GuessedMotion& beside :
+         field_beside(sight, *series.fields[i], series.examples, series.starts)) {
       out.ways[0].back().push_back(field_sums(seen, beside.first_order));
       if (equilibria) out.ways[1].back().push_back(field_sums(seen, beside.in_equilibrium));
     }
