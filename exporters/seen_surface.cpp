@@ -347,11 +347,6 @@ SeenSurface seen_surface(const Model& model, const Evaluation& evaluation,
     const auto e = static_cast<size_t>(example.example);
     const ExampleSpec& spec = scene.capture.examples[e];
     const VectorXd& q = example.equilibrium->q;
-    const auto with_strain_seen = [&](const TetMesh& mesh, const auto& look) {
-      SeenPoints out_of = look(mesh);
-      set_strain_seen(mesh, q, options.window, out_of);
-      return out_of;
-    };
     SeenCase one;
     one.name = spec.name, one.use = spec.use(), one.rest = is_rest(spec);
     const std::vector<CasePhoto> photos = photos_of(model, example, renderer);
@@ -359,16 +354,16 @@ SeenSurface seen_surface(const Model& model, const Evaluation& evaluation,
       if (!grids.contains(photo.camera))
         grids.emplace(photo.camera,
                       grid_of(body, scene, photo.line.camera, renderer, locator, options));
-      one.views.push_back(with_strain_seen(body.mesh, [&](const TetMesh& mesh) {
-        return seen_by(grids.at(photo.camera), photo, photos, mesh, q);
-      }));
+      one.views.push_back(seen_by(grids.at(photo.camera), photo, photos, body.mesh, q));
+      set_strain_seen(body.mesh, q, options.window, one.views.back());
     }
     for (const MeasuredEvaluation& measured : example.measured)
-      if (const MeasuredSpec& told = spec.measured[static_cast<size_t>(measured.index)]; told.field)
-        one.views.push_back(
-            with_strain_seen(mesh_below(model, evaluation, told), [&](const TetMesh& mesh) {
-              return seen_in_field(model, mesh, told, measured, q, options);
-            }));
+      if (const MeasuredSpec& told = spec.measured[static_cast<size_t>(measured.index)];
+          told.field) {
+        const TetMesh mesh = mesh_below(model, evaluation, told);
+        one.views.push_back(seen_in_field(model, mesh, told, measured, q, options));
+        set_strain_seen(mesh, q, options.window, one.views.back());
+      }
     add_gauges(model, q, options, one);
     out.cases.push_back(std::move(one));
   }

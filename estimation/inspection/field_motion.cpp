@@ -144,8 +144,18 @@ std::vector<GuessedMotion> field_beside(Sight& sight, const MeasuredSpec& measur
                                         const std::vector<int>& examples,
                                         const std::vector<int>& starts) {
   const FieldSpec& field = *measured.field;
-  const FieldPoints points = field_points(mesh_of_field(sight, measured), field);
+  const TetMesh mesh = mesh_of_field(sight, measured);
   std::vector<GuessedMotion> out;
+  if (field.strain) {
+    for (size_t i = 0; i < examples.size(); ++i) {
+      out.push_back({strains_to_first_order(
+                         measured, mesh, guessed_motion(sight, starts[i], examples[i]).first_order),
+                     {}});
+      if (out.back().first_order.size() == 0) out.back().first_order.setZero(measured.value.size());
+    }
+    return out;
+  }
+  const FieldPoints points = field_points(mesh, field);
   for (size_t i = 0; i < examples.size(); ++i) {
     GuessedMotion nodes = guessed_motion(sight, starts[i], examples[i]);
     out.push_back({shown_by(field, points, nodes.first_order), {}});

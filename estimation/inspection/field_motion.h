@@ -29,7 +29,8 @@ TetMesh mesh_of_field(Sight& sight, const MeasuredSpec& measured);
 VectorXd strains_to_first_order(const MeasuredSpec& measured, const TetMesh& mesh,
                                 const VectorXd& u);
 /// What the first guess of examples would show at a field's points, each from where `starts` tells:
-/// components point by point, to first order and in equilibrium (empty: there is none).
+/// components point by point, to first order and in equilibrium (empty: there is none, or it is of
+/// strains).
 std::vector<GuessedMotion> field_beside(Sight& sight, const MeasuredSpec& measured,
                                         const std::vector<int>& examples,
                                         const std::vector<int>& starts);
