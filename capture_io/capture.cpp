@@ -9,6 +9,7 @@
 
 #include "capture_io/camera_covariance.h"
 #include "capture_io/capture_reader.h"
+#include "capture_io/field_start.h"
 #include "capture_io/placement.h"
 #include "capture_io/yaml_file.h"
 
@@ -90,6 +91,7 @@ void check_version(const YamlSection& top) {
 
 void check_together(const Capture& capture) {
   check_references(capture);
+  check_field_starts(capture);
   check_file_names(capture);
 }
 

@@ -247,7 +247,7 @@ void refuse_strain_keys(const YamlSection& section) {
 MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Capture& capture,
                         const CaptureFolder& folder) {
   const YamlSection section(node, "a measured field" + of,
-                            {"field", "strain", "sigma", "correlation", "unit", "scale",
+                            {"field", "strain", "sigma", "from", "correlation", "unit", "scale",
                              "strain_unit", "gauge", "axes", "frame", "columns", "tolerance"});
   auto field = std::make_shared<FieldSpec>();
   const YamlNode& name = section.need("field", "write `field: u.csv`");
@@ -287,6 +287,8 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
       field->strain ? field->strain->sigma : VectorXd::Constant(field->components, field->sigma);
   out.sigma = (sigma * field->alike.cwiseSqrt().transpose()).reshaped();
   out.field = std::move(field);
+  if (const YamlNode* from = section.find("from"))
+    out.region = read_string(*from, "the example that the field starts from");
   return out;
 }
 

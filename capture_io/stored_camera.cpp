@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "capture_io/camera_pose.h"
 
@@ -97,6 +98,12 @@ bool read_stored_pose(const StoredFile& from, Camera& camera) {
   camera.t = Eigen::Map<const Eigen::Vector3d>(t.data());
   if (r.size() == 3) {
     const Eigen::Map<const Eigen::Vector3d> w(r.data());
+    // None is longer than pi: beyond two of these it is no slip of a sign.
+    if (w.norm() > 2.0 * std::numbers::pi)
+      from.fail(
+          rotation,
+          fmt::format("`{}` turns by {:.4g} rad, more than a whole turn", rotation.name, w.norm()),
+          "a rotation vector is in radians: multiply degrees by pi/180");
     if (w.norm() > 0) camera.R = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
   } else if (r.size() == 9) {
     camera.R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(r.data());

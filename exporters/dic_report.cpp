@@ -97,6 +97,7 @@ void field_rows(const SeenSurface& seen, const std::string& length, Table& table
       told.push_back(view.view);
       table.part("field " + view.view);
       table.leave({"cameras, lenses, lighting", "program, subset, step, shape functions"});
+      if (!view.from.empty()) table.tell("reference", "load case " + view.from);
       table.tell("distance of points", number(view.spacing, length));
       table.tell("sigma as told", view.size() ? number(view.sigma[0], length) : "");
       table.tell("noise floor of displacements",

@@ -77,7 +77,7 @@ Gauge gauge_of(const Body& body, const VectorXd& q, const Region& region,
   const Membership membership(mesh, region);
   SurfaceStrain seen, model;
   for (const SeenPoints& view : views)
-    for (int i = 0; i < view.size(); ++i) {
+    for (int i = 0; i < view.size() && view.from.empty(); ++i) {
       const auto k = static_cast<size_t>(i);
       if (!view.strain_seen[k] || !membership.has(view.points[k])) continue;
       const Tangents& T = view.tangents[k];
@@ -100,7 +100,7 @@ std::optional<Vector3d> apart_at(const std::vector<SeenPoints>& views, const Vec
   std::optional<Vector3d> out;
   double nearest = 1.5;
   for (const SeenPoints& view : views)
-    for (int i = 0; i < view.size(); ++i) {
+    for (int i = 0; i < view.size() && view.from.empty(); ++i) {
       const double distance = (view.X.col(i) - X).norm() / std::max(view.spacing, 1e-300);
       if (!view.has_apart(i) || distance >= nearest) continue;
       nearest = distance, out = view.apart.col(i);

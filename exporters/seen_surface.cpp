@@ -5,7 +5,9 @@
 #include <limits>
 #include <unordered_map>
 
+#include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
+#include "estimation/evaluation/started_field.h"
 #include "estimation/model/field_points.h"
 #include "exporters/seen_motion.h"
 #include "meshing/extent.h"
@@ -216,13 +218,13 @@ std::optional<SurfaceStrain> as_green(StrainMeasure measure, const VectorXd& e) 
 }
 
 /// Of a field of strains: the model's over the field's gauge, and the measured ones.
-void set_strains(const Model& model, const MeasuredSpec& told, const StrainPoints& points,
-                 const VectorXd& q, SeenPoints& out) {
+void set_strains(const Model& model, const TetMesh& mesh, const MeasuredSpec& told,
+                 const StrainPoints& points, const VectorXd& q, SeenPoints& out) {
   FieldSpec green = *told.field;
   auto strain = std::make_shared<StrainSpec>(*green.strain);
   strain->measure = StrainMeasure::green;
   green.strain = strain;
-  const PointStrainer strainer(model.scene->body->mesh, green, points, model.placement.linear());
+  const PointStrainer strainer(mesh, green, points, model.placement.linear());
   const int c = told.field->components;
   for (int i = 0; i < out.size(); ++i) {
     const Vector3d e = strainer.at(i, q, nullptr, {}).e;
@@ -239,27 +241,26 @@ Tangents tangents_in(const FieldSpec& field, const Vector3d& normal, const SeenO
   return tangents_of(normal, options.along.value_or(field.axes.col(0)));
 }
 
-SeenPoints seen_in_field(const Model& model, const MeasuredSpec& told,
+/// `mesh`: where the field starts.
+SeenPoints seen_in_field(const Model& model, const TetMesh& mesh, const MeasuredSpec& told,
                          const MeasuredEvaluation& measured, const VectorXd& q,
-                         const BoundaryLocator& locator, const SeenOptions& options) {
-  const TetMesh& mesh = model.scene->body->mesh;
+                         const SeenOptions& options) {
   const BoundaryFaces faces(mesh);
   const FieldSpec& field = *told.field;
   const FieldPoints points = field_points(mesh, field);
   SeenPoints out;
   out.view = std::filesystem::path(field.told).stem().string();
-  out.camera = false, out.spacing = field.spacing;
+  out.camera = false, out.spacing = field.spacing, out.from = start_of(told);
   out.X = points.rest;
   for (Eigen::Index i = 0; i < out.X.cols(); ++i) {
-    SurfacePoint point;
-    locator.locate(field.X.col(i), &point);
+    const SurfacePoint& point = points.at[static_cast<size_t>(i)];
     out.points.push_back(point);
     out.tangents.push_back(points.strain ? points.strain->tangents[static_cast<size_t>(i)]
                                          : tangents_in(field, faces.normal(point), options));
   }
   set_model(mesh, q, out);
   if (points.strain) {
-    set_strains(model, told, *points.strain, q, out);
+    set_strains(model, mesh, told, *points.strain, q, out);
     return out;
   }
   const Eigen::Matrix3d turn = model.placement.linear();
@@ -354,11 +355,15 @@ SeenSurface seen_surface(const Model& model, const Evaluation& evaluation,
         grids.emplace(photo.camera,
                       grid_of(body, scene, photo.line.camera, renderer, locator, options));
       one.views.push_back(seen_by(grids.at(photo.camera), photo, photos, body.mesh, q));
+      set_strain_seen(body.mesh, q, options.window, one.views.back());
     }
     for (const MeasuredEvaluation& measured : example.measured)
-      if (const MeasuredSpec& told = spec.measured[static_cast<size_t>(measured.index)]; told.field)
-        one.views.push_back(seen_in_field(model, told, measured, q, locator, options));
-    for (SeenPoints& view : one.views) set_strain_seen(body.mesh, q, options.window, view);
+      if (const MeasuredSpec& told = spec.measured[static_cast<size_t>(measured.index)];
+          told.field) {
+        const TetMesh mesh = mesh_below(model, evaluation, told);
+        one.views.push_back(seen_in_field(model, mesh, told, measured, q, options));
+        set_strain_seen(mesh, q, options.window, one.views.back());
+      }
     add_gauges(model, q, options, one);
     out.cases.push_back(std::move(one));
   }

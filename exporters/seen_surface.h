@@ -26,6 +26,7 @@ struct SeenOptions {
 struct SeenPoints {
   std::string view;      ///< name of the camera, or of the field's file
   bool camera = true;    ///< else a field
+  std::string from;      ///< of a field that starts from a load case: X is there, u leads on
   double spacing = 0.0;  ///< from point to point on the body, in the middle [length]
   Eigen::Matrix2Xd px;   ///< in the whole picture of the body at rest; of a field empty
   Matrix3Xd X, u;        ///< at rest, and the model's displacement [length]

@@ -90,26 +90,6 @@ size_t choose_column(const TextTable& table, const Kind& kind, Questions& questi
                              : fmt::format("did you mean `{}`?", near));
 }
 
-/// Units of the record in one of the column's.
-double factor_of(const TextTable& table, size_t column, const Kind& kind, Questions& questions) {
-  const std::string unit = table.units[column];
-  const std::string name = kind.name + "_unit";
-  const auto known = unit_in(unit, kind.quantity);
-  CaptureQuestion question{
-      .name = name,
-      .text = fmt::format("unit of {}, which the table does not tell", shown(table, column)),
-      .standard = known ? unit : kind.unit,
-      .asked = !known};
-  const std::string answer = questions.ask(question);
-  if (!known && !unit.empty() && !questions.all().back().answered)
-    throw InputError(
-        {table.file.string(), table.names_line},
-        fmt::format("the unit `{}` of {} is not known here", unit, shown(table, column)),
-        fmt::format("give one that is, as --set {}={}", name, kind.unit));
-  if (const auto factor = unit_in(answer, kind.quantity)) return *factor;
-  refuse_answer(name, answer, fmt::format("a unit like {}", kind.unit));
-}
-
 struct Read {
   std::vector<double> values;  ///< NaN: no number there
   bool clock = false;
@@ -122,6 +102,68 @@ Read read_column(const TextTable& table, size_t column) {
     out.values.push_back(value.value_or(kNone));
   }
   return out;
+}
+
+/// From the least to the largest of a column's numbers, in the record's unit; 0: there is none.
+double range_of(const TextTable& table, size_t column, double factor) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : read_column(table, column).values)
+    if (!std::isnan(value)) low = std::min(low, value), high = std::max(high, value);
+  return high > low ? factor * (high - low) : 0.0;
+}
+
+/// What another column of lengths says of this one's unit: it goes a thousand times as far, or a
+/// thousandth, as the same motion does in m and in mm.
+struct OddUnit {
+  std::string unit;  ///< that would bring both together; "": there is no such column
+  std::string why;
+};
+OddUnit odd_unit(const TextTable& table, size_t column, const Kind& kind, double factor) {
+  constexpr double kThousand = 1000.0, kNear = 2.0;
+  if (kind.quantity != Quantity::length) return {};
+  const double own = range_of(table, column, factor);
+  for (size_t i = 0; i < table.names.size() && own > 0.0; ++i) {
+    const auto known = unit_in(table.units[i], Quantity::length);
+    if (i == column || table.units[i].empty() || !known ||
+        has_any(lower(table.names[i]), kind.others))
+      continue;
+    const double times = range_of(table, i, *known) / own;
+    const bool longer = std::abs(std::log(std::max(times, 1e-300) / kThousand)) < std::log(kNear);
+    const bool shorter = std::abs(std::log(std::max(times, 1e-300) * kThousand)) < std::log(kNear);
+    const double meant = longer ? factor * kThousand : factor / kThousand;
+    for (const char* unit : {"m", "mm", "um"})
+      if ((longer || shorter) && std::abs(*unit_in(unit, Quantity::length) / meant - 1.0) < 1e-9)
+        return {unit, fmt::format("{} goes over {:.3g} mm, {} over {:.3g} mm", shown(table, column),
+                                  own, shown(table, i), times * own)};
+  }
+  return {};
+}
+
+/// Units of the record in one of the column's.
+double factor_of(const TextTable& table, size_t column, const Kind& kind, Questions& questions) {
+  const std::string unit = table.units[column];
+  const std::string name = kind.name + "_unit";
+  const auto known = unit_in(unit, kind.quantity);
+  const OddUnit odd = odd_unit(table, column, kind, known.value_or(1.0));
+  CaptureQuestion question{
+      .name = name,
+      .text = known
+                  ? fmt::format("unit of {}, in which the table's lengths do not go together",
+                                shown(table, column))
+                  : fmt::format("unit of {}, which the table does not tell", shown(table, column)),
+      .standard = known              ? unit
+                  : odd.unit.empty() ? kind.unit
+                                     : odd.unit,
+      .why = odd.unit.empty() ? "" : fmt::format("{}: as if it were in {}", odd.why, odd.unit),
+      .asked = !known || !odd.unit.empty()};
+  const std::string answer = questions.ask(question);
+  if (!known && !unit.empty() && !questions.all().back().answered)
+    throw InputError(
+        {table.file.string(), table.names_line},
+        fmt::format("the unit `{}` of {} is not known here", unit, shown(table, column)),
+        fmt::format("give one that is, as --set {}={}", name, kind.unit));
+  if (const auto factor = unit_in(answer, kind.quantity)) return *factor;
+  refuse_answer(name, answer, fmt::format("a unit like {}", kind.unit));
 }
 
 /// Rows with a cell that is no number go, and the first is told with its line.

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include "capture_io/field_start.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/evaluation/normal_equations.h"
 #include "python/arrays.h"
@@ -56,7 +57,8 @@ py::list measured_list(const ExampleEvaluation& example, const Capture& capture)
     py::dict d;
     d["example"] = spec.name;
     d["kind"] = kind_of(told).name;
-    d["region"] = told.region;
+    d["region"] = told.field ? "" : told.region;
+    if (!start_of(told).empty()) d["from"] = start_of(told);
     d["value"] = array_of(Eigen::VectorXd(told.value));
     d["predicted"] = array_of(Eigen::VectorXd(one.predicted));
     d["r"] = array_of(Eigen::VectorXd(one.r));

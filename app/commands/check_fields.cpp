@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/model/field_points.h"
@@ -47,19 +48,22 @@ Json describe_fields(const Scene& scene) {
   Json out = Json::array();
   for_each_field(scene, [&](const auto& example, const auto& measured, const auto& field) {
     const double rough = rough_of(measured);
-    out.push_back({{"example", example.name},
-                   {"file", field.told},
-                   {"points", field.X.cols()},
-                   {"dropped", field.dropped},
-                   {"holds", field.strain ? "strains" : "displacements"},
-                   {"components", field.components},
-                   {"spacing", field.spacing},
-                   {"correlation", field.correlation},
-                   {"numbers", field.numbers()},
-                   {"sigma", field.sigma},
-                   {"rough", rough > 0.0 ? Json(rough * field.sigma) : Json()},
-                   {"largest", measured.value.cwiseAbs().maxCoeff()},
-                   {"gap", gap_of(scene.body->mesh, field)}});
+    out.push_back(
+        {{"example", example.name},
+         {"file", field.told},
+         {"points", field.X.cols()},
+         {"dropped", field.dropped},
+         {"holds", field.strain ? "strains" : "displacements"},
+         {"components", field.components},
+         {"spacing", field.spacing},
+         {"correlation", field.correlation},
+         {"numbers", field.numbers()},
+         {"sigma", field.sigma},
+         {"rough", rough > 0.0 ? Json(rough * field.sigma) : Json()},
+         {"largest", measured.value.cwiseAbs().maxCoeff()},
+         {"gap", start_of(measured).empty() ? Json(gap_of(scene.body->mesh, field)) : Json()}});
+    // Where its points lie, the load case tells once it is solved.
+    if (!start_of(measured).empty()) out.back()["from"] = start_of(measured);
     if (field.strain)
       out.back().update({{"strain", name_of(field.strain->measure)},
                          {"gauge", field.strain->gauge},
@@ -81,8 +85,10 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
   for (const auto& one : fields) {
     const bool strains = one["holds"] == "strains";
     const double in = strains ? 1e3 : 1.0;
+    std::string example = one["example"];
+    if (one.contains("from")) example += " from " + one["from"].get<std::string>();
     std::vector<std::string> row{
-        one["example"],
+        example,
         std::filesystem::path(one["file"].get<std::string>()).filename().string(),
         std::to_string(one["points"].get<long>()),
         std::to_string(one["dropped"].get<long>()),
@@ -136,7 +142,7 @@ void warn_of_fields(const Scene& scene, Session& session) {
           fmt::format("{}the field is rough by {} only, and `sigma` is {:g}: told too "
                       "large it hides what is missing",
                       at, size, field.sigma));
-    else if (rough > 2.0 && is_rest(example))
+    else if (rough > 2.0 && is_rest(example) && start_of(measured).empty())
       session.warn(
           fmt::format("{}at rest the field is rough by {}, and `sigma` is {:g}: told too "
                       "small it promises too much; rows that are outliers may do it too",

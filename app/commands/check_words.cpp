@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/describe.h"
+#include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
 
 namespace hookeye {
@@ -40,11 +41,13 @@ std::string load_text(const LoadSpec& load, const Units& units) {
 std::string measured_text(const MeasuredSpec& measured) {
   if (measured.field) {
     const FieldSpec& field = *measured.field;
+    const std::string& start = start_of(measured);
+    const std::string from = start.empty() ? "" : " from " + start;
     if (field.strain)
-      return fmt::format("field of {} strains at {} points{}", name_of(field.strain->measure),
-                         field.X.cols(), field.components == 2 ? " (exx, eyy)" : "");
-    return fmt::format("field of {} points{}", field.X.cols(),
-                       field.components == 2 ? " (in plane)" : "");
+      return fmt::format("field of {} strains at {} points{}{}", name_of(field.strain->measure),
+                         field.X.cols(), field.components == 2 ? " (exx, eyy)" : "", from);
+    return fmt::format("field of {} points{}{}", field.X.cols(),
+                       field.components == 2 ? " (in plane)" : "", from);
   }
   if (measured.kind == MeasuredSpec::Kind::strain_of)
     return fmt::format("strain from {} to {}", vector_text(measured.point),

@@ -91,7 +91,9 @@ std::string field_rows(const json& fields, double floor) {
   for (const auto& one : fields) all.push_back(one.at("chi"));
   for (const auto& one : fields) {
     const double chi = one.at("chi");
-    rows.push_back({one.at("example"),
+    std::string example = one.at("example");
+    if (one.contains("from")) example += " from " + one.at("from").get<std::string>();
+    rows.push_back({example,
                     std::filesystem::path(one.at("file").get<std::string>()).filename().string(),
                     one.at("use"), fmt::format("{:.0f}", one.at("points").get<double>()),
                     fmt::format("{:.2f}", chi), marked_bar(chi, floor, scale_of(all, floor)),
@@ -109,8 +111,9 @@ json metrics_of(const std::filesystem::path& step) {
   const json measured = {{"example", "text"},   {"kind", "text"},       {"region", "text"},
                          {"measured", numbers}, {"predicted", numbers}, {"over_sigma", numbers},
                          {"?unit", "text"}};
-  const json field = {{"example", "text"}, {"file", "text"}, {"use", "text"},     {"chi", "number"},
-                      {"rms", "number"},   {"unit", "text"}, {"points", "number"}};
+  const json field = {{"example", "text"},  {"file", "text"},  {"use", "text"},
+                      {"chi", "number"},    {"rms", "number"}, {"unit", "text"},
+                      {"points", "number"}, {"?from", "text"}};
   const auto file = step / "metrics.json";
   json found = read_json(file);
   expect_shape(found,

@@ -17,6 +17,7 @@
 #include "estimation/evaluation/load_case_share.h"
 #include "estimation/evaluation/photo_evaluation.h"
 #include "estimation/evaluation/sensor.h"
+#include "estimation/evaluation/started_field.h"
 
 namespace hookeye {
 
@@ -41,6 +42,10 @@ void give_back_freed_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
+}
+
+bool among(const std::vector<int>& examples, int e) {
+  return std::find(examples.begin(), examples.end(), e) != examples.end();
 }
 
 /// Where the equilibria of an evaluation with derivatives go with the parameters, to first order.
@@ -136,6 +141,15 @@ struct Workspace::Impl {
                                                    : -1;
   }
 
+  /// Examples at whose equilibria others look: that of the texture, and those that fields start
+  /// from.
+  std::vector<int> references(const std::vector<int>& examples) const {
+    std::vector<int> out = field_starts(*scene, examples);
+    if (const int texture = reference(); texture >= 0 && !among(out, texture))
+      out.push_back(texture);
+    return out;
+  }
+
   /// Equilibrium and sensitivities of one example. `expected`: where it may be; `cancelled` is
   /// polled.
   Result<void> solve(const Model& model, const ColumnSet* columns, int e,
@@ -189,12 +203,12 @@ namespace {
 
 /// Predictions of what was measured with their derivatives.
 std::vector<MeasuredEvaluation> compare_measured(const Scene& scene, const Model& model, int e,
-                                                 const ExampleEvaluation& example,
+                                                 const std::vector<ExampleEvaluation>& states,
                                                  const ExampleColumns* columns,
                                                  FieldComparer& fields) {
   std::vector<MeasuredEvaluation> all;
   const auto& specs = scene.capture.examples[e].measured;
-  const Sensed seen{scene, model, e, *example.equilibrium, example.S, columns};
+  const Sensed seen{scene, model, e, *states[e].equilibrium, states[e].S, columns, &states};
   for (size_t i = 0; i < specs.size(); ++i) {
     if (specs[i].field) {
       all.push_back(fields.compare(static_cast<int>(i), seen));
@@ -277,12 +291,13 @@ Result<Evaluation> Workspace::evaluate(
   std::vector<ExampleEvaluation> solved(examples);
   std::vector<ExampleColumns> derivative(examples);
   std::vector<Result<void>> failures(examples);
+  const std::vector<int> references = impl_->references(wanted);
   std::vector<int> to_solve = wanted;
-  if (reference >= 0 && std::find(wanted.begin(), wanted.end(), reference) == wanted.end())
-    to_solve.push_back(reference);
-  std::vector<int> own = wanted, own_to_solve = to_solve;  // all look at the reference
+  for (int e : references)
+    if (!among(wanted, e)) to_solve.push_back(e);
+  std::vector<int> own = wanted, own_to_solve = to_solve;  // all look at the references
   std::erase_if(own, [&](int e) { return !impl_->own(e); });
-  std::erase_if(own_to_solve, [&](int e) { return !impl_->own(e) && e != reference; });
+  std::erase_if(own_to_solve, [&](int e) { return !impl_->own(e) && !among(references, e); });
   auto cancelled = [&] { return options.cancel && options.cancel->load(); };
   for (int e : to_solve) impl_->seconds[e] = 0.0;
   std::atomic<int> done = 0;
@@ -318,8 +333,8 @@ Result<Evaluation> Workspace::evaluate(
     solved[e].held_out = capture.examples[e].validate;
     const ExampleColumns* d = columns ? &derivative[e] : nullptr;
     solved[e].photos = impl_->comparers[e].compare(model, solved[e], reference_state, d, options);
-    solved[e].measured = compare_measured(*impl_->scene, model, e, solved[e], d, impl_->fields[e]);
-    if (e != reference_state.example) {  // at which others look
+    solved[e].measured = compare_measured(*impl_->scene, model, e, solved, d, impl_->fields[e]);
+    if (!among(references, e)) {  // at which others look
       derivative[e] = {};
       drop_tangent(solved[e]);
     }
@@ -332,21 +347,22 @@ Result<Evaluation> Workspace::evaluate(
     else
       tbb::parallel_for(size_t{0}, examples.size(), one);
   };
-  // All look at the reference state. Without one every example goes on to its photos by itself, and
-  // no core waits for the slowest equilibrium.
-  if (reference < 0) {
+  // All look at the reference states. Without any every example goes on to its photos by itself,
+  // and no core waits for the slowest equilibrium.
+  if (references.empty()) {
     for_each(own, [&](int e) {
       solve(e);
       compare(e, {});
     });
   } else {
     for_each(own_to_solve, solve);
-    const ReferenceState state{reference, &solved[reference],
-                               columns ? &derivative[reference] : nullptr};
+    ReferenceState state;
+    if (reference >= 0)
+      state = {reference, &solved[reference], columns ? &derivative[reference] : nullptr};
     for_each(own, [&](int e) { compare(e, state); });
   }
   if (cancelled()) return stopped();
-  if (reference >= 0) drop_tangent(solved[reference]);
+  for (int e : references) drop_tangent(solved[e]);
   impl_->exchange(wanted, solved, failures);
   for (int e : wanted) failed = failed || !failures[e];
   impl_->settle(to_solve, solved, failed);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimation/evaluation/gram.h"
+#include "estimation/evaluation/started_field.h"
 
 namespace hookeye {
 
@@ -84,8 +85,8 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& G) {
 
 }  // namespace
 
-MeasuredEvaluation compare_field(const MeasuredSpec& measured, const FieldPoints& points,
-                                 const Sensed& seen) {
+MeasuredEvaluation compare_field(const MeasuredSpec& measured, const Sensed& seen,
+                                 const PredictPoints& predict) {
   constexpr Eigen::Index kAtOnce = 256;
   const int components = measured.field->components;
   const Eigen::Index n = measured.field->X.cols(), m = seen.columns ? seen.S.cols() : 0;
@@ -97,7 +98,7 @@ MeasuredEvaluation compare_field(const MeasuredSpec& measured, const FieldPoints
   for (Eigen::Index first = 0; first < n; first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, n - first);
     const Eigen::Index at = components * first, size = components * count;
-    const SensorPrediction there = predicted_field(measured, points, seen, first, count);
+    const SensorPrediction there = predict(first, count);
     const VectorXd weight = measured.sigma.segment(at, size).cwiseInverse();
     out.predicted.segment(at, size) = there.value;
     r.segment(at, size) = weight.cwiseProduct(there.value - measured.value.segment(at, size));
@@ -122,10 +123,20 @@ MeasuredEvaluation compare_field(const MeasuredSpec& measured, const FieldPoints
 MeasuredEvaluation FieldComparer::compare(int index, const Sensed& seen) {
   const MeasuredSpec& spec = seen.scene.capture.examples[static_cast<size_t>(seen.example)]
                                  .measured[static_cast<size_t>(index)];
-  auto found = points_.find(index);
-  if (found == points_.end())
-    found = points_.emplace(index, field_points(seen.scene.body->mesh, *spec.field)).first;
-  MeasuredEvaluation out = compare_field(spec, found->second, seen);
+  MeasuredEvaluation out;
+  if (start_index(seen.scene, spec) >= 0) {
+    const StartedField field(spec, seen);
+    out = compare_field(spec, seen, [&](Eigen::Index first, Eigen::Index count) {
+      return field.predicted(first, count);
+    });
+  } else {
+    auto found = points_.find(index);
+    if (found == points_.end())
+      found = points_.emplace(index, field_points(seen.scene.body->mesh, *spec.field)).first;
+    out = compare_field(spec, seen, [&](Eigen::Index first, Eigen::Index count) {
+      return predicted_field(spec, found->second, seen, first, count);
+    });
+  }
   out.example = seen.example;
   out.index = index;
   return out;

@@ -15,6 +15,8 @@ struct Sensed {
   const Equilibrium& equilibrium;
   const Eigen::MatrixXd& S;                 ///< dq/dp, 3n x columns
   const ExampleColumns* columns = nullptr;  ///< null: no derivative is asked for
+  /// By example, those that a field may start from; null: none of these does.
+  const std::vector<ExampleEvaluation>* states = nullptr;
 };
 
 struct SensorPrediction {

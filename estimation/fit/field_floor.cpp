@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "estimation/model/field_points.h"
+
 namespace hookeye {
 
 namespace {
@@ -91,14 +93,22 @@ struct FieldLeft {
   double inflation = 0.0, fields = 0.0;
 };
 
+/// Neither load case of which the field tells strains the body.
+bool shows_rest(const Scene& scene, const ExampleSpec& example, const MeasuredSpec& field) {
+  const int start = start_index(scene, field);
+  return is_rest(example) &&
+         (start < 0 || is_rest(scene.capture.examples[static_cast<size_t>(start)]));
+}
+
 FieldLeft left_of(const Scene& scene, const Evaluation& evaluation, bool rest) {
   FieldLeft out;
   for (const auto& example : evaluation.examples) {
     const ExampleSpec& spec = scene.capture.examples[example.example];
-    if (is_rest(spec) != rest || (!rest && example.held_out)) continue;
+    if (!rest && example.held_out) continue;
     for (const auto& field : example.measured) {
       if (!field.is_field()) continue;
       const MeasuredSpec& told = spec.measured[field.index];
+      if (shows_rest(scene, spec, told) != rest) continue;
       const VectorXd r = whole_residual(told, field);
       const RoughField rough = rough_field(*told.field, r);
       if (rough.count <= 0.0) continue;

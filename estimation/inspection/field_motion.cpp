@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "capture_io/field_start.h"
 #include "estimation/model/field_points.h"
 #include "estimation/model/strain_measure.h"
 #include "meshing/extent.h"
@@ -43,12 +44,13 @@ double cosine_of(const VectorXd& a, const VectorXd& b) {
 }
 
 FieldMotion strain_of(const MeasuredSpec& measured, const TetMesh& mesh, const VectorXd& u) {
-  const VectorXd expected = strains_to_first_order(*measured.field, mesh, u);
+  const VectorXd expected = strains_to_first_order(measured, mesh, u);
   FieldMotion out;
   out.strain = true;
   out.file = measured.field->told;
   out.place = measured.place;
   out.seen = out.seen_bent = length_of(measured.value, *measured.field);
+  if (expected.size() == 0) return out;
   out.expected = out.expected_bent = length_of(expected, *measured.field);
   out.cosine = out.cosine_bent = cosine_of(measured.value, expected);
   return out;
@@ -83,7 +85,43 @@ FieldMotion motion_of(const MeasuredSpec& measured, const TetMesh& mesh, const V
 
 }  // namespace
 
-VectorXd strains_to_first_order(const FieldSpec& field, const TetMesh& mesh, const VectorXd& u) {
+GuessedMotion guessed_motion(Sight& sight, int start, int e) {
+  const FirstGuess* guess = sight.guess(e);
+  const FirstGuess* before = start < 0 ? nullptr : sight.guess(start);
+  GuessedMotion out;
+  if (!guess || guess->u.size() == 0 || (before && before->u.size() == 0)) return out;
+  out.first_order = guess->u;
+  if (before) out.first_order -= before->u;
+  if (guess->q.size() == 0 || (before && before->q.size() == 0)) return out;
+  out.in_equilibrium = guess->q;
+  if (before)
+    out.in_equilibrium -= before->q;
+  else
+    out.in_equilibrium -= sight.coarse()->scene().body->mesh.X.reshaped();
+  return out;
+}
+
+TetMesh mesh_of_field(Sight& sight, const MeasuredSpec& measured) {
+  const TetMesh& mesh = sight.coarse()->scene().body->mesh;
+  const int start = start_index(sight.scene(), measured);
+  const FirstGuess* guess = start < 0 ? nullptr : sight.guess(start);
+  if (!guess || guess->u.size() == 0) return mesh;
+  TetMesh loaded =
+      mesh_at(mesh, guess->q.size() > 0 ? guess->q : VectorXd(mesh.X.reshaped() + guess->u));
+  const auto off = [&](const TetMesh& where) {
+    const BoundaryLocator locator(where);
+    double out = 0.0;
+    SurfacePoint point;
+    for (Eigen::Index k = 0; k < measured.field->X.cols(); ++k)
+      out += std::pow(locator.locate(measured.field->X.col(k), &point), 2);
+    return out;
+  };
+  return off(loaded) <= off(mesh) ? loaded : mesh;
+}
+
+VectorXd strains_to_first_order(const MeasuredSpec& measured, const TetMesh& mesh,
+                                const VectorXd& u) try {
+  const FieldSpec& field = *measured.field;
   const BoundaryLocator locator(mesh);
   const StrainPoints points = strain_points(mesh, field, locator);
   const Matrix3Xd nodal = u.reshaped(3, mesh.nodes());
@@ -97,31 +135,46 @@ VectorXd strains_to_first_order(const FieldSpec& field, const TetMesh& mesh, con
     out.col(k) = strain_by(StrainMeasure::small, A, T).e;
   }
   return out.topRows(field.components).reshaped();
+} catch (const InputError&) {
+  if (start_of(measured).empty()) throw;
+  return {};
 }
 
-std::vector<ComparedField> field_beside(Sight& sight, const MeasuredSpec& measured,
-                                        const std::vector<int>& examples) {
-  const TetMesh& mesh = sight.coarse()->scene().body->mesh;
+std::vector<GuessedMotion> field_beside(Sight& sight, const MeasuredSpec& measured,
+                                        const std::vector<int>& examples,
+                                        const std::vector<int>& starts) {
   const FieldSpec& field = *measured.field;
+  const TetMesh mesh = mesh_of_field(sight, measured);
+  std::vector<GuessedMotion> out;
+  if (field.strain) {
+    for (size_t i = 0; i < examples.size(); ++i) {
+      out.push_back({strains_to_first_order(
+                         measured, mesh, guessed_motion(sight, starts[i], examples[i]).first_order),
+                     {}});
+      if (out.back().first_order.size() == 0) out.back().first_order.setZero(measured.value.size());
+    }
+    return out;
+  }
   const FieldPoints points = field_points(mesh, field);
-  std::vector<ComparedField> out;
-  for (const int e : examples) {
-    const FirstGuess& guess = *sight.guess(e);
-    out.push_back({shown_by(field, points, guess.u), {}});
-    if (guess.q.size() > 0)
-      out.back().in_equilibrium = shown_by(field, points, guess.q - mesh.X.reshaped());
+  for (size_t i = 0; i < examples.size(); ++i) {
+    GuessedMotion nodes = guessed_motion(sight, starts[i], examples[i]);
+    out.push_back({shown_by(field, points, nodes.first_order), {}});
+    if (nodes.in_equilibrium.size() > 0)
+      out.back().in_equilibrium = shown_by(field, points, nodes.in_equilibrium);
   }
   return out;
 }
 
 std::vector<FieldMotion> field_motions(Sight& sight, int e) {
   std::vector<FieldMotion> out;
-  const FirstGuess* guess = sight.guess(e);
-  if (!guess || guess->u.size() == 0) return out;
-  for (const MeasuredSpec& measured : sight.example(e).measured)
-    if (measured.field)
-      out.push_back(motion_of(measured, sight.coarse()->scene().body->mesh, guess->u));
-  for (FieldMotion& one : out) one.example = e;
+  for (const MeasuredSpec& measured : sight.example(e).measured) {
+    if (!measured.field) continue;
+    const int start = start_index(sight.scene(), measured);
+    const VectorXd u = guessed_motion(sight, start, e).first_order;
+    if (u.size() == 0 || (start >= 0 && sight.guess(start)->turned)) continue;
+    out.push_back(motion_of(measured, mesh_of_field(sight, measured), u));
+    out.back().example = e;
+  }
   return out;
 }
 

@@ -84,6 +84,35 @@ std::vector<Flip> make_flips() {
   return all;
 }
 
+template <Camera (*pose)(const Camera&), int numerator, int denominator>
+Camera scaled_and(const Camera& c) {
+  return pose(scaled(c, double(numerator) / denominator));
+}
+
+template <Camera (*pose)(const Camera&)>
+void add_pairs(const Flip& of, std::vector<Flip>* all) {
+  all->push_back({of.name + "_1000_times_small",
+                  of.seen + " and its lengths are 1000 times as long",
+                  of.right + "; and lengths in the unit of the body: m for mm?", Flip::Of::pose,
+                  scaled_and<pose, 1000, 1>});
+  all->push_back({of.name + "_1000_times_large",
+                  of.seen + " and its lengths are a thousandth as long",
+                  of.right + "; and lengths in the unit of the body: mm for m?", Flip::Of::pose,
+                  scaled_and<pose, 1, 1000>});
+}
+
+std::vector<Flip> make_pairs() {
+  std::vector<Flip> all;
+  const std::vector<Flip>& single = usual_flips();
+  add_pairs<inverted>(single[0], &all);
+  add_pairs<from_gl>(single[1], &all);
+  add_pairs<inverted_gl>(single[2], &all);
+  add_pairs<transposed>(single[3], &all);
+  add_pairs<centred>(single[4], &all);
+  add_pairs<inverted_centred>(single[5], &all);
+  return all;
+}
+
 /// Where a pixel of the turned picture comes from; `width`, `height` of the picture before.
 std::pair<int, int> source(Turn turn, int x, int y, int width, int height) {
   switch (turn) {
@@ -138,6 +167,11 @@ const Flip& as_told() {
 
 const std::vector<Flip>& usual_flips() {
   static const std::vector<Flip> all = make_flips();
+  return all;
+}
+
+const std::vector<Flip>& paired_flips() {
+  static const std::vector<Flip> all = make_pairs();
   return all;
 }
 

@@ -31,6 +31,9 @@ struct Flip {
 const Flip& as_told();
 /// All of the list, the likelier first. A new one is a line in flip.cpp.
 const std::vector<Flip>& usual_flips();
+/// Two at once: poses the other way round whose lengths are in m for mm, or in mm for m, as
+/// programs that draw or reconstruct scenes write them.
+const std::vector<Flip>& paired_flips();
 
 Image turned(const Image& image, Turn turn);
 std::vector<unsigned char> turned(const std::vector<unsigned char>& values, int width, int height,

@@ -52,6 +52,10 @@ struct InspectionOptions {
   double softest_guess = 1.0;    ///< [Pa]: the softest gels have 10; a guess may be ten times off
   double stiffest_guess = 1e10;  ///< [Pa]: hard plastics have 1e9
 
+  /// Of numbers that have the digits of radians by chance: a capture in a few hundred would get a
+  /// false word, one with two angles in 40000.
+  double digits_by_chance = 0.005;
+
   // Weight.
   double least_density = 1.0;     ///< [kg/m^3]: aerogel
   double most_density = 25000.0;  ///< [kg/m^3]: above all metals
@@ -98,6 +102,8 @@ struct InspectionOptions {
   double most_times_by_force = 30.0;  ///< a modulus that is told ten times wrong is found by a fit;
                                       ///< measured: 0.65 to 2.0
   double most_times_moved = 3.0;  ///< a prescribed motion is known better; measured: 0.87 to 1.08
+  double close_turn = 1.6;   ///< of radians, which are 57 degrees each: a large turn seen to first
+                             ///< order is longer than it is
   double usual_times = 3.0;  ///< beyond it, either way, it is remarked: right loads had 0.65 to 2.0
 
   // The coarse solve.

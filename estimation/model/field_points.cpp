@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
+#include "capture_io/field_start.h"
 #include "meshing/extent.h"
 
 namespace hookeye {
@@ -38,7 +40,21 @@ std::string hint_at_unit(const BoundaryLocator& locator, const TetMesh& mesh,
 
 }  // namespace
 
-FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field) {
+int start_index(const Scene& scene, const MeasuredSpec& measured) {
+  const std::string& name = start_of(measured);
+  if (name.empty()) return -1;
+  const int out = scene.example_index(name);
+  if (out < 0) throw std::logic_error("the example that a field starts from is not in the scene");
+  return out;
+}
+
+TetMesh mesh_at(const TetMesh& mesh, const VectorXd& q) {
+  TetMesh out = mesh;
+  out.X = q.reshaped(3, q.size() / 3);
+  return out;
+}
+
+FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field, bool windows) {
   const BoundaryLocator locator(mesh);
   FieldPoints out;
   out.gap.resize(field.X.cols());
@@ -46,6 +62,7 @@ FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field) {
   for (Eigen::Index k = 0; k < field.X.cols(); ++k) {
     SurfacePoint point;
     out.gap[k] = locator.locate(field.X.col(k), &point);
+    out.at.push_back(point);
     const VectorXd N = shape_functions(mesh.order, point.barycentric);
     for (Eigen::Index a = 0; a < N.size(); ++a)
       if (std::abs(N[a]) > 1e-14)
@@ -55,7 +72,7 @@ FieldPoints field_points(const TetMesh& mesh, const FieldSpec& field) {
   out.N.setFromTriplets(entries.begin(), entries.end());
   out.rest = (out.N * mesh.X.transpose()).transpose();
   if (field.strain)
-    out.strain = std::make_shared<const StrainPoints>(strain_points(mesh, field, locator));
+    out.strain = std::make_shared<const StrainPoints>(strain_points(mesh, field, locator, windows));
   return out;
 }
 
@@ -69,7 +86,8 @@ void check_fields(const Scene& scene, const ExampleSpec& example) {
     if (!measured.field) continue;
     const FieldSpec& field = *measured.field;
     const BoundaryLocator locator(mesh);
-    const double most = field_tolerance(mesh, field);
+    const bool loaded = !start_of(measured).empty();
+    const double most = field_tolerance(mesh, field) + (loaded ? extent(mesh.X) : 0.0);
     double farthest = 0.0;
     Eigen::Index at = -1, off = 0;
     SurfacePoint point;
@@ -79,7 +97,7 @@ void check_fields(const Scene& scene, const ExampleSpec& example) {
       if (gap > farthest) farthest = gap, at = k;
     }
     if (off == 0) {
-      if (field.strain) strain_tangents(mesh, field, locator);
+      if (field.strain && !loaded) strain_tangents(mesh, field, locator);
       continue;
     }
     const Vector3d X = field.X.col(at);

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
+#include "estimation/evaluation/started_field.h"
 #include "estimation/fit/field_floor.h"
 #include "estimation/model/field_points.h"
 
@@ -34,13 +36,21 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
                      {"dropped", told.field->dropped},
                      {"numbers", one.numbers},
                      {"correlation", told.field->correlation}});
+      if (const std::string& start = start_of(told); !start.empty()) {
+        const Model model = fitted.form.realise(fitted.p);
+        const FieldPoints points =
+            field_points(mesh_below(model, fitted.evaluation, told), *told.field);
+        all.back().update({{"from", start}, {"gap", points.gap.maxCoeff()}});
+      }
       if (const auto& strain = told.field->strain)
         all.back().update({{"strain", name_of(strain->measure)}, {"gauge", strain->gauge}});
     }
   return all;
 }
 
-NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example) {
+NodalField nodal_field(const Model& model, const Evaluation& evaluation,
+                       const ExampleEvaluation& example) {
+  const Scene& scene = *model.scene;
   const TetMesh& mesh = scene.body->mesh;
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(1, mesh.nodes());
   const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(3, mesh.nodes());
@@ -50,7 +60,7 @@ NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example) {
     const MeasuredSpec& told = scene.capture.examples[example.example].measured[one.index];
     if (!told.field) continue;
     const FieldSpec& field = *told.field;
-    const FieldPoints points = field_points(mesh, field);
+    const FieldPoints points = field_points(mesh_below(model, evaluation, told), field);
     const VectorXd apart = one.predicted - told.value;
     const VectorXd over = apart.cwiseQuotient(told.sigma);
     const int components = field.components;

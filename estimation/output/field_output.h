@@ -19,6 +19,7 @@ struct NodalField {
   Eigen::MatrixXd share;     ///< 1 x n, the points' weights; 0: no point is near
   bool has_motions = false, has_strains = false;
 };
-NodalField nodal_field(const Scene& scene, const ExampleEvaluation& example);
+NodalField nodal_field(const Model& model, const Evaluation& evaluation,
+                       const ExampleEvaluation& example);
 
 }  // namespace hookeye

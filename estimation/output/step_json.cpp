@@ -304,7 +304,8 @@ NodalResidual nodal_residual(const Scene& scene, const Model& model,
 }
 
 void write_deformed(const std::filesystem::path& file, const Scene& scene, const ModelForm& form,
-                    const Model& model, const ExampleEvaluation& example) {
+                    const Model& model, const Evaluation& evaluation,
+                    const ExampleEvaluation& example) {
   const TetMesh& mesh = scene.body->mesh;
   const VectorXd& q = example.equilibrium->q;
   const Eigen::MatrixXd u = Eigen::Map<const Matrix3Xd>(q.data(), 3, mesh.nodes()) - mesh.X;
@@ -312,7 +313,7 @@ void write_deformed(const std::filesystem::path& file, const Scene& scene, const
       Eigen::Map<const Matrix3Xd>(example.equilibrium->R.data(), 3, mesh.nodes());
   const ElementState state = element_state(mesh, model.energy_of(example.example), q);
   NodalResidual residual = nodal_residual(scene, model, example);
-  const NodalField field = nodal_field(scene, example);
+  const NodalField field = nodal_field(model, evaluation, example);
   if (example.photos.empty()) residual = {field.rms.transpose(), field.share.transpose()};
   std::vector<VtuArray> arrays = {{"displacement", u, true},
                                   {"reaction", reaction, true},
@@ -375,7 +376,7 @@ StepFiles step_files(const Scene& scene, const Step& step) {
     std::filesystem::create_directories(folder);
     for (const auto& example : fitted.evaluation.examples)
       write_deformed(folder / (scene.capture.examples[example.example].name + ".vtu"), scene,
-                     fitted.form, *model, example);
+                     fitted.form, *model, fitted.evaluation, example);
   };
   out["page"] = [&, model](const path& folder) { write_page_data(folder, scene, *model, fitted); };
   return out;

@@ -363,50 +363,5 @@ TEST(Calibrate, BothKindsOfEvenCharucoBoardsAreRead) {
   }
 }
 
-TEST(Calibrate, PhotosThatDoNotGoTogetherAreRefused) {
-  std::mt19937 random(9);
-  const TemporaryFolder folder;
-  const DrawnBoard drawn = charuco(7, 5);
-  Camera small = true_camera("a");
-  const auto poses = spread_poses(small, drawn.board, 3, 330, 20, random);
-  auto photos = photograph(folder, drawn, {small}, poses, random);
-  small = small.resized(0.5);
-  small.width = 320, small.height = 240;
-  write_image(folder / "a_04.png", BoardPhotographer(small).photo(drawn, poses[0], {}, random));
-  EXPECT_THAT(refused(drawn.board, photos), HasSubstr("a_04.png: this photo has 320 x 240 px"));
-  std::filesystem::remove(folder / "a_04.png");
-  std::ofstream(folder / "a_04.png") << "no picture";
-  EXPECT_THAT(refused(drawn.board, photos), HasSubstr("a_04.png"));
-  std::filesystem::remove(folder / "a_04.png");
-  std::filesystem::copy(folder / "a_01.png", folder / "b_x.png");
-  std::filesystem::copy(folder / "a_01.png", folder / "b_y.png");
-  EXPECT_THAT(refused(drawn.board, {photos[0], {"b", {(folder / "b_*.png").string()}}}),
-              HasSubstr("`a` has 3 photos and `b` has 2"));
-  EXPECT_THAT(refused(drawn.board, {{"a", {(folder / "none_*.png").string()}}}),
-              HasSubstr("no photo is found there"));
-  Image grey;
-  grey.width = 64, grey.height = 48, grey.channels = 1;
-  grey.values.assign(grey.pixels(), 0.5F);
-  write_image(folder / "grey_1.png", grey);
-  EXPECT_THAT(refused(drawn.board, {{"grey", {(folder / "grey_1.png").string()}}}),
-              HasSubstr("no marker of 4X4_50 seen"));
-}
-
-TEST(Calibrate, FewPosesThatFaceAlikeInTheMiddleAreDoubted) {
-  std::mt19937 random(6);
-  const TemporaryFolder folder;
-  const DrawnBoard drawn = charuco(7, 5);
-  const Camera camera = true_camera("a");
-  auto poses = spread_poses(camera, drawn.board, 4, 450, 8, random);
-  for (BoardPose& pose : poses) pose.t.head<2>() *= 0.3;
-  const auto photos = photograph(folder, drawn, {camera}, poses, random);
-  CalibrateOptions options;
-  options.lens = 0;
-  const Calibration found = calibrate(drawn.board, photos, options);
-  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("4 poses of the board")));
-  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("face alike")));
-  EXPECT_THAT(found.warnings, testing::Contains(HasSubstr("of the way to a corner")));
-}
-
 }  // namespace
 }  // namespace hookeye::test

@@ -58,6 +58,25 @@ TEST(CalibrationTest, RotationVectorAndMissingPose) {
   EXPECT_FALSE(has_pose);
 }
 
+TEST(CalibrationTest, ARotationVectorInDegreesIsRefused) {
+  const TemporaryFolder folder;
+  const auto read = [&](double turn) -> std::string {
+    write_text(folder / "a.yml",
+               "%YAML:1.0\n---\nK: [100., 0., 5., 0., 100., 5., 0., 0., 1.]\nrvec: [0., 0., " +
+                   std::to_string(turn) + "]\ntvec: [0., 0., 9.]\n");
+    try {
+      read_opencv_calibration(folder / "a.yml");
+      return "";
+    } catch (const InputError& error) {
+      return error.wrong() + "; " + error.right();
+    }
+  };
+  EXPECT_EQ(read(3.2), "") << "the other way round is meant";
+  EXPECT_EQ(read(20.0),
+            "`rvec` turns by 20 rad, more than a whole turn; a rotation vector is in "
+            "radians: multiply degrees by pi/180");
+}
+
 /// A fisheye is told by OpenCV's flag, or by the name that ROS and Kalibr give its distortion.
 TEST(CalibrationTest, FisheyeAndSkew) {
   const TemporaryFolder folder;

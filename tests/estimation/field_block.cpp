@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <map>
 #include <random>
+#include <vector>
 
 #include "estimation/effects/catalogue.h"
 #include "estimation/evaluation/evaluation.h"
@@ -83,21 +85,23 @@ std::string entry(const FieldBlock& block, const std::string& example, const Fac
   if (!block.strain.empty())
     out += fmt::format(", strain: {}, axes: [[{}, {}, 0], [0, 0, 1]]", block.strain,
                        face.across.x(), face.across.y());
+  if (block.from_pull && example == "bend") out += ", from: pull";
   if (block.in_plane)
     out += fmt::format(", frame: {{origin: [{}, {}, 0], x: [{}, {}, 0], y: [0, 0, 1]}}",
                        face.corner.x(), face.corner.y(), face.across.x(), face.across.y());
   return out + "}\n";
 }
 
+/// `moved`: of the places, from where they are at rest.
 void write_table(const fs::path& file, const Face& face, const FieldBlock& block,
-                 const Matrix3Xd& u) {
+                 const Matrix3Xd& u, const Matrix3Xd& moved) {
   const bool in_plane = block.in_plane;
   std::string text = !block.strain.empty() ? "X,Y,Z,exx,eyy,exy\n"
                      : in_plane            ? "X [mm],Y [mm],U [mm],V [mm]\n"
                                            : "X,Y,Z,U,V,W\n";
   for (int i = 0; i < kAcross; ++i)
     for (int j = 0; j < kUp; ++j) {
-      const Vector3d X = point(face, i, j), d = u.col(i * kUp + j);
+      const Vector3d X = point(face, i, j) + moved.col(i * kUp + j), d = u.col(i * kUp + j);
       text += in_plane
                   ? fmt::format("{},{},{},{}\n", kStep * i, X.z(), face.across.dot(d), d.z())
                   : fmt::format("{},{},{},{},{},{}\n", X.x(), X.y(), X.z(), d.x(), d.y(), d.z());
@@ -132,7 +136,7 @@ void write_unmoved(const FieldBlock& block, const fs::path& folder) {
                     load.name, load.text);
     for (const Face& face : kFaces) {
       write_table(folder / fmt::format("{}_{}.csv", load.name, face.name), face, block,
-                  Matrix3Xd::Zero(3, kAcross * kUp));
+                  Matrix3Xd::Zero(3, kAcross * kUp), Matrix3Xd::Zero(3, kAcross * kUp));
       yaml += entry(block, load.name, face);
     }
   }
@@ -141,31 +145,79 @@ void write_unmoved(const FieldBlock& block, const fs::path& folder) {
 
 }  // namespace
 
-void FieldBlock::write(const fs::path& folder) const {
-  write_unmoved(*this, folder);
-  // The truth is solved where whole displacements are asked for.
-  const TemporaryFolder aside;
-  FieldBlock whole = *this;
-  whole.in_plane = false, whole.rest = true;
-  write_unmoved(whole, aside.path());
-  const auto scene = load_scene(read_capture(aside.path()));
+namespace {
+
+/// What the truth would show: of each example by face.
+using Predictions = std::map<std::string, std::vector<VectorXd>>;
+Predictions predicted_by_truth(const FieldBlock& block, const fs::path& folder) {
+  const auto scene = load_scene(read_capture(folder));
   ModelForm form = base_form(scene);
   form.ingredients.push_back(find_effect("gravity")->candidate(form.realise(form.initial()), ""));
   VectorXd p = form.initial();
-  p[0] = mu;
-  p.tail<3>() = gravity;
+  p[0] = block.mu;
+  p.tail<3>() = block.gravity;
   Workspace workspace(scene);
   EvaluationOptions options;
   options.derivatives = false;
   options.held_out = true;
-  const auto seen = workspace.evaluate(form, p, options).value();
-  std::mt19937 engine(seed);
-  for (const auto& example : seen.examples) {
-    const std::string name = scene->capture.examples[static_cast<size_t>(example.example)].name;
-    for (size_t f = 0; f < std::size(kFaces) && (rest || name != "rest"); ++f)
-      write_table(folder / fmt::format("{}_{}.csv", name, kFaces[f].name), kFaces[f], *this,
-                  displacements(*this, example.measured[f].predicted, engine));
+  Predictions out;
+  const Evaluation seen = workspace.evaluate(form, p, options).value();
+  for (const auto& example : seen.examples)
+    for (const auto& one : example.measured)
+      out[scene->capture.examples[static_cast<size_t>(example.example)].name].push_back(
+          one.predicted);
+  return out;
+}
+
+Predictions predicted_by_truth(const FieldBlock& block) {
+  const TemporaryFolder aside;
+  write_unmoved(block, aside.path());
+  return predicted_by_truth(block, aside.path());
+}
+
+fs::path table_of(const fs::path& folder, const std::string& load, size_t face) {
+  return folder / fmt::format("{}_{}.csv", load, kFaces[face].name);
+}
+
+/// The fields of `bend` from where `pull` has taken their points.
+void write_from_pull(const FieldBlock& block, const Predictions& moved, const fs::path& folder,
+                     std::mt19937& engine) {
+  for (const bool last : {false, true}) {
+    Predictions strains;
+    if (!block.strain.empty()) {
+      if (last) strains = predicted_by_truth(block, folder);
+    } else if (!last) {
+      continue;
+    }
+    for (size_t f = 0; f < std::size(kFaces); ++f) {
+      const VectorXd& pull = moved.at("pull")[f];
+      VectorXd seen = moved.at("bend")[f] - pull;
+      if (!block.strain.empty()) seen = last ? strains.at("bend")[f] : VectorXd(0.0 * seen);
+      write_table(table_of(folder, "bend", f), kFaces[f], block, displacements(block, seen, engine),
+                  pull.reshaped(3, kAcross * kUp));
+    }
   }
+}
+
+}  // namespace
+
+void FieldBlock::write(const fs::path& folder) const {
+  write_unmoved(*this, folder);
+  // The truth is solved where whole displacements are asked for.
+  FieldBlock whole = *this;
+  whole.in_plane = whole.from_pull = false, whole.rest = true;
+  const Predictions truth = predicted_by_truth(whole);
+  std::mt19937 engine(seed);
+  for (const Load& load : kLoads) {
+    if (!rest && load.name == std::string("rest")) continue;
+    for (size_t f = 0; f < std::size(kFaces); ++f)
+      write_table(table_of(folder, load.name, f), kFaces[f], *this,
+                  displacements(*this, truth.at(load.name)[f], engine),
+                  Matrix3Xd::Zero(3, kAcross * kUp));
+  }
+  if (!from_pull) return;
+  whole.strain.clear(), whole.keys.clear();
+  write_from_pull(*this, strain.empty() ? truth : predicted_by_truth(whole), folder, engine);
 }
 
 std::shared_ptr<const Scene> FieldBlock::scene() const {

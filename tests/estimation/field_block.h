@@ -20,6 +20,7 @@ struct FieldBlock {
   bool rest = true;                     ///< a field of the body at rest
   bool in_plane = false;                ///< files without Z and W, each face in a frame of its own
   unsigned seed = 1;
+  bool from_pull = false;   ///< the fields of `bend` start from the state of `pull`
   std::string strain = {};  ///< the fields hold strains by this measure; sigma is of them
 
   /// Writes capture.yaml, block.obj and the fields of two faces of every example.

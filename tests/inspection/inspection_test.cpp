@@ -1,10 +1,14 @@
 // What `check` sees: every ordinary mistake is told of by its name, and a right capture is not.
 #include "estimation/inspection/inspection.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <functional>
+#include <regex>
 
 #include "estimation/inspection/flip.h"
 #include "inspection/inspected_capture.h"
@@ -137,6 +141,38 @@ std::string in(const std::string& name, const std::string& until) {
   return "(\n  " + name + ":\n[^#]*?" + until + ")";
 }
 
+/// Every pose as `f` makes it.
+void change_poses(InspectedCapture& capture, const std::function<void(Camera&)>& f) {
+  const auto cameras = read_capture(capture.folder()).cameras;
+  const std::string now = capture.text();
+  const std::regex pattern(
+      R"(rotation: \[\[[^\]]*\], \[[^\]]*\], \[[^\]]*\]\]\s+translation: \[[^\]]*\])");
+  std::string out;
+  auto from = now.begin();
+  size_t k = 0;
+  for (std::sregex_iterator at(now.begin(), now.end(), pattern), end; at != end; ++at) {
+    Camera camera = cameras.at(k++);
+    f(camera);
+    out.append(from, now.begin() + at->position());
+    out += "rotation: [";
+    for (int i = 0; i < 3; ++i)
+      out += fmt::format("{}[{}, {}, {}]", i ? ", " : "", camera.R(i, 0), camera.R(i, 1),
+                         camera.R(i, 2));
+    out += fmt::format("]\n      translation: [{}, {}, {}]", camera.t[0], camera.t[1], camera.t[2]);
+    from = now.begin() + at->position() + at->length();
+  }
+  ASSERT_EQ(k, cameras.size());
+  out.append(from, now.end());
+  std::ofstream(capture.folder() / "capture.yaml") << out;
+}
+
+/// What Blender calls matrix_world: camera to world, y up, z backwards.
+void to_world_by_opengl(Camera& c) {
+  const Eigen::Matrix3d R = c.R.transpose();
+  c.t = -R * c.t;
+  c.R = R * Eigen::Vector3d(1, -1, -1).asDiagonal();
+}
+
 double to_srgb(double l) {
   return l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055;
 }
@@ -147,6 +183,38 @@ const Slip kSlips[] = {
        c.change_numbers("translation", [](double t) { return t / 1000; });
      },
      "flips", "the translation is 1000 times as long"},
+    {"RotationsTransposed",
+     [](InspectedCapture& c) {
+       change_poses(c, [](Camera& camera) { camera.R.transposeInPlace(); });
+     },
+     "flips", "the rotation is transposed"},
+    {"RotationsTransposedAndMetres",
+     [](InspectedCapture& c) {
+       change_poses(c, [](Camera& camera) { camera.R.transposeInPlace(), camera.t /= 1000; });
+     },
+     "flips", "the rotation is transposed and its lengths are 1000 times as long"},
+    {"PosesOfBlenderInMetres",
+     [](InspectedCapture& c) {
+       change_poses(c, [](Camera& camera) {
+         to_world_by_opengl(camera);
+         camera.t /= 1000;
+       });
+     },
+     "flips", "(Blender's matrix_world) and its lengths are 1000 times as long"},
+    {"CameraToWorldInMillimetresForMetres",
+     [](InspectedCapture& c) {
+       change_poses(c, [](Camera& camera) {
+         camera.R.transposeInPlace();
+         camera.t = -1000 * (camera.R * camera.t);
+       });
+     },
+     "flips", "the pose maps camera to world and its lengths are a thousandth as long"},
+    {"RadiansForDegrees",
+     [](InspectedCapture& c) { c.change("degrees: [0-9.]+", "degrees: 0.4189"); }, "magnitudes",
+     "(radians for degrees?)"},
+    {"RadiansByTheirDigits",
+     [](InspectedCapture& c) { c.change("degrees: [0-9.]+", "degrees: 0.4363"); }, "angles",
+     "as radians it would be 25 degrees"},
     {"PhotosUpsideDown", turn_photos<Turn::half>, "flips", "the photo is turned by 180 degrees"},
     {"PhotosMirrored", turn_photos<Turn::mirrored>, "flips", "the photo is mirrored left to right"},
     {"CamerasSwapped",

@@ -15,6 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 class StrainReadings : public testing::Test {
  protected:
@@ -53,9 +54,16 @@ class StrainReadings : public testing::Test {
     const auto scene = load_scene(read_capture(folder_.path()));
     std::string out;
     for (const CaptureWarning& warning : inspect(*scene, {}).warnings)
-      if (warning.question == "strain_fields" || warning.question == "magnitudes")
+      if (warning.question == "strain_fields" || warning.question == "magnitudes" ||
+          warning.question == "exchanges")
         out += warning.text() + "\n";
     return out;
+  }
+  void exchange(const std::string& one, const std::string& other) const {
+    const std::string kept = text(one);
+    const std::string file = (folder_.path() / one).string();
+    std::ofstream(file) << text(other);
+    std::ofstream(folder_.path() / other) << kept;
   }
   const TemporaryFolder folder_;
 };
@@ -121,6 +129,28 @@ TEST_F(StrainReadings, WithoutDisplacementsTheFirstGuessTells) {
   EXPECT_THAT(of_strains(), IsEmpty());
   change("pull_front.csv", [](auto& row) { row[3] *= 100, row[4] *= 100, row[5] *= 100; });
   EXPECT_THAT(of_strains(), AllOf(HasSubstr("pull_front.csv are"), HasSubstr("`strain_unit`")));
+}
+
+TEST_F(StrainReadings, FieldsInEachOthersPlacesAreNamedWithTheirFiles) {
+  for (const char* measure : {"green", "hencky"}) {
+    write({.mu = 0.06, .gravity = {0, 0, -9810}, .sigma = 1e-3, .strain = measure});
+    EXPECT_THAT(of_strains(), IsEmpty());
+    exchange("pull_front.csv", "bend_front.csv");
+    EXPECT_THAT(of_strains(),
+                AllOf(HasSubstr("pull_front.csv shows the strain of example `bend`, and"),
+                      HasSubstr("bend_front.csv shows the strain of example `pull`: of the squares "
+                                "of their strains"),
+                      HasSubstr("stand in one another's places"), Not(HasSubstr("flank"))));
+  }
+}
+
+/// A field that starts from a load case is held against the difference of both guesses.
+TEST_F(StrainReadings, OneThatStartsFromALoadCaseIsReadFromThere) {
+  write({.mu = 0.06, .sigma = 1e-3, .from_pull = true, .strain = "green"});
+  EXPECT_THAT(of_strains(), IsEmpty());
+  change("bend_front.csv", [](auto& row) { std::swap(row[3], row[4]); });
+  EXPECT_THAT(of_strains(), HasSubstr("bend_front.csv agree with the first guess where exx and eyy "
+                                      "are in each other's places"));
 }
 
 }  // namespace

@@ -131,6 +131,35 @@ TEST(MachineRecord, MissingUnitsAreAsked) {
   EXPECT_THAT(open, testing::ElementsAre("force_unit", "travel_unit"));
 }
 
+/// The crosshead in m beside an extensometer in mm: the same motion.
+TEST(MachineRecord, ATravelAThousandTimesAnotherOneIsAsked) {
+  const LabFolder lab;
+  const auto asked = [&](const std::string& head, double travel, double other) {
+    std::string text = head + "\n";
+    for (const RampRow& row : ramp(10, 20))
+      text += fmt::format("{},{:.7f},{:.7f},{:.4f}\n", row.time, travel * row.travel,
+                          other * row.travel, row.force);
+    lab.write("test.csv", text);
+    Questions questions({});
+    const MachineRecord record =
+        machine_record(*read_text_table(lab.path() / "test.csv"), questions);
+    for (const CaptureQuestion& one : questions.open())
+      if (one.name == "travel_unit")
+        return fmt::format("{} | {} | {}", one.text, one.why, one.standard);
+    return std::string();
+  };
+  const std::string head = "time [s],travel [mm],extension [mm],force [N]";
+  EXPECT_EQ(asked(head, 1.0, 0.7), "");
+  EXPECT_EQ(asked(head, 1.0, 0.02), "") << "a stiff specimen in soft grips";
+  EXPECT_EQ(asked("time [s],travel [m],extension [mm],force [N]", 1e-3, 0.7), "");
+  const std::string in_metres = asked(head, 1e-3, 0.7);
+  EXPECT_THAT(in_metres, HasSubstr("in which the table's lengths do not go together"));
+  EXPECT_THAT(in_metres, HasSubstr("`travel [mm]` goes over 0.004 mm"));
+  EXPECT_THAT(in_metres, HasSubstr("as if it were in m | mm"));
+  EXPECT_THAT(asked("time [s],travel,extension [mm],force [N]", 1e-3, 0.7),
+              testing::EndsWith("as if it were in m | m"));
+}
+
 TEST(MachineRecord, ATestThatBeginsAtOnceHasNoZero) {
   const LabFolder lab;
   for (const size_t rows : {30u, 3000u}) {

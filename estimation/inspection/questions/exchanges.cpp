@@ -15,6 +15,7 @@
 #include "estimation/inspection/field_motion.h"
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
+#include "estimation/model/field_points.h"
 
 namespace hookeye::inspection {
 
@@ -187,26 +188,38 @@ void ask_of_single_photos(Sight& sight, Expectations& expected, const PhotoSerie
   }
 }
 
-/// One field of displacements of each example that has so many of them, as those of one camera
-/// pair.
+/// One field of each example that has so many of them, as those of one camera pair: of
+/// displacements, or of strains.
 struct FieldSeries {
   std::vector<int> examples;
+  std::vector<int> starts;  ///< -1: the body as it was given
   std::vector<const MeasuredSpec*> fields;
 };
 
-std::vector<FieldSeries> series_of_fields(Sight& sight) {
+/// A field whose motion the first guess knows, in size but for the stiffness.
+bool has_expected_motion(Sight& sight, int start, int e, bool strain) {
+  const VectorXd u = guessed_motion(sight, start, e).first_order;
+  if (u.size() == 0 || u.isZero(0)) return false;
+  // To first order a turn strains.
+  const auto unknown = [&](int load) {
+    return moved_by_unknown(sight.example(load)) || (strain && sight.guess(load)->turned);
+  };
+  return !unknown(e) && (start < 0 || !unknown(start));
+}
+
+std::vector<FieldSeries> series_of_fields(Sight& sight, bool strains) {
   std::vector<FieldSeries> out;
   for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
     const int e = static_cast<int>(i);
-    const FirstGuess* guess = sight.guess(e);
-    if (!guess || guess->u.size() == 0 || guess->u.isZero(0) || moved_by_unknown(sight.example(e)))
-      continue;
     size_t n = 0;
     for (const MeasuredSpec& measured : sight.example(e).measured) {
-      if (!measured.field || measured.field->strain) continue;
-      if (out.size() <= n) out.emplace_back();
-      out[n].examples.push_back(e), out[n].fields.push_back(&measured);
-      ++n;
+      if (!measured.field || is_strain_field(measured) != strains) continue;
+      const int start = start_index(sight.scene(), measured);
+      const size_t at = n++;
+      if (!has_expected_motion(sight, start, e, strains)) continue;
+      if (out.size() <= at) out.resize(at + 1);
+      out[at].examples.push_back(e), out[at].starts.push_back(start);
+      out[at].fields.push_back(&measured);
     }
   }
   return out;
@@ -221,14 +234,19 @@ MotionSums field_sums(const VectorXd& seen, const VectorXd& expected) {
 
 ComparedWays compared_fields(Sight& sight, const FieldSeries& series) {
   ComparedWays out;
-  const bool equilibria = std::all_of(series.examples.begin(), series.examples.end(),
-                                      [&](int e) { return sight.guess(e)->q.size() > 0; });
+  bool equilibria = !is_strain_field(*series.fields.front());
+  for (size_t i = 0; i < series.examples.size(); ++i)
+    equilibria = equilibria &&
+                 guessed_motion(sight, series.starts[i], series.examples[i]).in_equilibrium.size();
   out.ways.resize(equilibria ? 2 : 1);
   for (size_t i = 0; i < series.fields.size(); ++i) {
-    out.scaled.push_back(moved_by_forces(sight.example(series.examples[i])));
+    const int start = series.starts[i];
+    out.scaled.push_back(moved_by_forces(sight.example(series.examples[i])) &&
+                         (start < 0 || moved_by_forces(sight.example(start))));
     for (ComparedPlaces& way : out.ways) way.emplace_back();
     const VectorXd& seen = series.fields[i]->value;
-    for (const ComparedField& beside : field_beside(sight, *series.fields[i], series.examples)) {
+    for (const GuessedMotion& beside :
+         field_beside(sight, *series.fields[i], series.examples, series.starts)) {
       out.ways[0].back().push_back(field_sums(seen, beside.first_order));
       if (equilibria) out.ways[1].back().push_back(field_sums(seen, beside.in_equilibrium));
     }
@@ -237,23 +255,24 @@ ComparedWays compared_fields(Sight& sight, const FieldSeries& series) {
 }
 
 /// Fields as photos: each stands in an example, and may show the motion of another.
-void ask_for_exchanged_fields(Sight& sight, Warnings& warnings) {
-  for (const FieldSeries& series : series_of_fields(sight)) {
+void ask_for_exchanged_fields(Sight& sight, bool strains, Warnings& warnings) {
+  const std::string what = strains ? "strain" : "motion";
+  for (const FieldSeries& series : series_of_fields(sight, strains)) {
     if (series.fields.size() < 2) continue;
     for (const Exchange& one : exchanges({compared_fields(sight, series)}, sight.options())) {
       std::string which;
       for (size_t i = 0; i < one.places.size(); ++i) {
         const auto here = static_cast<size_t>(one.places[i]);
         const auto fits = static_cast<size_t>(one.fits[i]);
-        which += fmt::format("{}{} shows the motion of example `{}`", i == 0 ? "" : ", and ",
-                             series.fields[here]->field->told,
+        which += fmt::format("{}{} shows the {} of example `{}`", i == 0 ? "" : ", and ",
+                             series.fields[here]->field->told, what,
                              sight.example(series.examples[fits]).name);
         sight.doubt_load(series.examples[here]);
       }
       warnings.say(series.fields[static_cast<size_t>(one.places.front())]->place,
-                   fmt::format("{}: of the squares of their motions {:.0f} % are not as the first "
+                   fmt::format("{}: of the squares of their {}s {:.0f} % are not as the first "
                                "guess expects them, and {:.2g} % once they are exchanged",
-                               which, 100.0 * one.told, 100.0 * one.exchanged),
+                               which, what, 100.0 * one.told, 100.0 * one.exchanged),
                    "the fields of these examples stand in one another's places");
     }
   }
@@ -268,7 +287,8 @@ void ask_exchanges(Sight& sight, Warnings& warnings) {
       if (moves(one, series, sight.options())) say_exchange(sight, one, series, warnings);
     ask_of_single_photos(sight, expected, series, warnings);
   }
-  if (sight.coarse()) ask_for_exchanged_fields(sight, warnings);
+  if (!sight.coarse()) return;
+  for (const bool strains : {false, true}) ask_for_exchanged_fields(sight, strains, warnings);
 }
 
 }  // namespace hookeye::inspection

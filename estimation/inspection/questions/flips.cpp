@@ -99,25 +99,38 @@ void try_swaps(Sight& sight, PhotoIndex photo, std::vector<Explanation>* out) {
   }
 }
 
-/// Those that fit, the best first.
-std::vector<Explanation> explanations(Sight& sight, PhotoIndex photo) {
-  std::vector<Explanation> all, out;
-  const Agreement& told = sight.agreement(photo);
+void try_flips(Sight& sight, PhotoIndex photo, const std::vector<Flip>& flips,
+               std::vector<Explanation>* out) {
   const bool from_photos = sight.scene().capture.body.texture == BodySpec::Texture::rest;
   for (const bool sources : {true, false})
-    for (const Flip& flip : usual_flips()) {
+    for (const Flip& flip : flips) {
       if (!sources && !from_photos) continue;
       Trial trial;
       trial.flip = &flip, trial.sources = sources;
       trial.least_overlap = sight.options().lost_overlap;
-      all.push_back(
+      out->push_back(
           {flip.name, flip.seen, flip.right, key_of(flip.of), sight.agreement(photo, trial)});
-      if (flip.of == Flip::Of::texture) all.back().key = "texture";
+      if (flip.of == Flip::Of::texture) out->back().key = "texture";
     }
+}
+
+/// Those that fit, the best first. Two slips at once are sought where no single one is enough.
+std::vector<Explanation> explanations(Sight& sight, PhotoIndex photo) {
+  std::vector<Explanation> all, out;
+  const Agreement& told = sight.agreement(photo);
+  const auto keep_what_fits = [&] {
+    for (Explanation& one : all)
+      if (fits(one.agreement, told, sight.options()) && !far_off(sight, photo, one.agreement))
+        out.push_back(std::move(one));
+    all.clear();
+  };
+  try_flips(sight, photo, usual_flips(), &all);
   try_swaps(sight, photo, &all);
-  for (Explanation& one : all)
-    if (fits(one.agreement, told, sight.options()) && !far_off(sight, photo, one.agreement))
-      out.push_back(std::move(one));
+  keep_what_fits();
+  if (out.empty()) {
+    try_flips(sight, photo, paired_flips(), &all);
+    keep_what_fits();
+  }
   std::stable_sort(out.begin(), out.end(), [](const Explanation& a, const Explanation& b) {
     return score(a.agreement) > score(b.agreement);
   });

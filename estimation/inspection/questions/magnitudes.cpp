@@ -44,6 +44,19 @@ std::string unit_slip(double times) {
   return {};
 }
 
+/// Where a support turns the body by 57 times what it should, or by a 57th.
+std::string radians_slip(const ExampleSpec& example, double times,
+                         const InspectionOptions& options) {
+  const bool turns =
+      std::any_of(example.supports.begin(), example.supports.end(), [](const SupportSpec& support) {
+        return support.kind == SupportSpec::Kind::rigid && support.rigid.degrees != 0.0;
+      });
+  constexpr double kDegrees = 57.29578;
+  return turns && std::abs(std::log(times / kDegrees)) < std::log(options.close_turn)
+             ? " (radians for degrees?)"
+             : "";
+}
+
 std::string more_or_less(double times) {
   return times > 1.0 ? fmt::format("{:.3g} times as far as", times)
                      : fmt::format("1/{:.3g} as far as", 1.0 / times);
@@ -133,11 +146,13 @@ void ask_of_fields(Sight& sight, Warnings& warnings) {
                      "moves");
       else if (off(times, moved_by_forces(sight.example(e)) ? options.most_times_by_force
                                                             : options.most_times_moved))
-        warnings.say(field.place, seen,
-                     fmt::format("the field's `unit` or `scale`, or loads and moduli in another "
-                                 "unit: forces in {}, stresses in {}, motions in {}",
-                                 sight.scene().capture.units.force,
-                                 sight.scene().capture.units.stress(), length));
+        warnings.say(
+            field.place, seen,
+            fmt::format("the field's `unit` or `scale`, or loads and moduli in another "
+                        "unit: forces in {}, stresses in {}, motions in {}, rotations in "
+                        "degrees{}",
+                        sight.scene().capture.units.force, sight.scene().capture.units.stress(),
+                        length, radians_slip(sight.example(e), times, options)));
     }
   }
 }
@@ -185,8 +200,9 @@ void ask_magnitudes(Sight& sight, Warnings& warnings) {
                       "motion would ({:.3g} px)",
                       sight.example(one.example).name, one.seen_px, more_or_less(one.times),
                       one.expected_px),
-          fmt::format("motions are in {}, rotations in degrees",
-                      sight.scene().capture.units.length));
+          fmt::format("motions are in {}, rotations in degrees{}",
+                      sight.scene().capture.units.length,
+                      radians_slip(sight.example(one.example), one.times, options)));
   }
   say_of_forces(sight, off, asked, warnings);
   ask_of_fields(sight, warnings);

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture_io/field_start.h"
 #include "estimation/inspection/field_motion.h"
 #include "estimation/inspection/question.h"
 #include "estimation/inspection/strain_readings.h"
+#include "estimation/model/field_points.h"
 
 namespace hookeye::inspection {
 
@@ -75,7 +77,10 @@ std::string said_of(const std::string& file, const StrainReading& reading, const
 bool by_displacements(Sight& sight, const MeasuredSpec& measured, Warnings& warnings) {
   const FieldSpec& field = *measured.field;
   const char* by = "the displacements beside them";
-  const auto all = out_of_displacements(sight.scene().body->mesh, field, sight.options());
+  if (!start_of(measured).empty() && !sight.coarse()) return false;
+  const auto all = out_of_displacements(
+      start_of(measured).empty() ? sight.scene().body->mesh : mesh_of_field(sight, measured), field,
+      sight.options());
   if (all.empty() || against(measured, all.front().expected).count < 3.0 * field.components)
     return false;
   const Against told = against(measured, all.front().expected);
@@ -104,11 +109,15 @@ bool by_displacements(Sight& sight, const MeasuredSpec& measured, Warnings& warn
 }
 
 void by_first_guess(Sight& sight, int e, const MeasuredSpec& measured, Warnings& warnings) {
-  const FirstGuess* guess = sight.guess(e);
-  if (!guess || guess->u.size() == 0 || guess->turned || sight.load_doubted(e)) return;
-  const StrainReading right{
-      strains_to_first_order(*measured.field, sight.coarse()->scene().body->mesh, guess->u),
-      "they are as told", ""};
+  const int start = start_index(sight.scene(), measured);
+  const auto unknown = [&](int load) {
+    return sight.guess(load)->turned || sight.load_doubted(load);
+  };
+  const VectorXd u = guessed_motion(sight, start, e).first_order;
+  if (u.size() == 0 || unknown(e) || (start >= 0 && unknown(start))) return;
+  const StrainReading right{strains_to_first_order(measured, mesh_of_field(sight, measured), u),
+                            "they are as told", ""};
+  if (right.expected.size() == 0) return;
   const auto readings = other_readings(*measured.field, right);
   if (const StrainReading* one = better(measured, readings, true, sight.options()))
     warnings.say(measured.place, said_of(measured.field->told, *one, "the first guess"),
@@ -120,10 +129,9 @@ void by_first_guess(Sight& sight, int e, const MeasuredSpec& measured, Warnings&
 void ask_strain_fields(Sight& sight, Warnings& warnings) {
   for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
     const int e = static_cast<int>(i);
-    if (is_rest(sight.example(e))) continue;
     for (const MeasuredSpec& measured : sight.example(e).measured)
-      if (is_strain_field(measured) && !by_displacements(sight, measured, warnings) &&
-          sight.coarse())
+      if (is_strain_field(measured) && !(is_rest(sight.example(e)) && start_of(measured).empty()) &&
+          !by_displacements(sight, measured, warnings) && sight.coarse())
         by_first_guess(sight, e, measured, warnings);
   }
 }

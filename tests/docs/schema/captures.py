@@ -88,7 +88,7 @@ def full_capture():
                     {"sensor": "opening", "value": [34.2, 1], "sigma": 0.05},
                     {"rotation_of": "grip", "axis": [0, 0, 1], "value": 20, "sigma": 0.5},
                     {"strain_of": [[20, 10, 10], [20, 10, 30]], "value": 0.01, "sigma": 2e-5},
-                    {"field": "u.csv", "sigma": 0.01, "correlation": 2, "scale": 1, "tolerance": 100,
+                    {"field": "u.csv", "sigma": 0.01, "correlation": 2, "scale": 1, "tolerance": 100, "from": "rest",
                      "frame": {"origin": [0, 0, 0], "x": [1, 0, 0], "y": [0, 1, 0]},
                      "columns": {"X": "A", "Y": "B", "Z": "C", "U": "D", "V": "E", "W": "F"}},
                     {"field": "u.csv", "strain": "hencky", "sigma": [0.01, 0.01, 0.02], "gauge": 1.5,
