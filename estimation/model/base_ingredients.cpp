@@ -357,7 +357,7 @@ void place(Model& model, const Eigen::Isometry3d& motion) {
       photo.camera.t += photo.camera.R * motion.translation();
       photo.camera.R = photo.camera.R * motion.linear();
       photo.sun = motion.linear().transpose() * photo.sun;
-      photo.uneven = turned(photo.uneven, motion.linear().transpose());
+      photo.uneven = hookeye::turned(photo.uneven, motion.linear().transpose());
     }
   }
 }
