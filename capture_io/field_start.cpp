@@ -20,6 +20,17 @@ const ExampleSpec* example_called(const Capture& capture, const std::string& nam
   return found == capture.examples.end() ? nullptr : &*found;
 }
 
+/// It has numbers of its own that are fitted after all others where it is held out: how a grip
+/// moved.
+bool has_own_numbers(const ExampleSpec& example) {
+  return std::any_of(
+             example.supports.begin(), example.supports.end(),
+             [](const SupportSpec& one) { return one.kind == SupportSpec::Kind::rigid_fit; }) ||
+         std::any_of(example.measured.begin(), example.measured.end(), [](const MeasuredSpec& one) {
+           return one.kind == MeasuredSpec::Kind::travel_of;
+         });
+}
+
 void check_start(const Capture& capture, const ExampleSpec& example, const MeasuredSpec& field) {
   const std::string& name = start_of(field);
   const ExampleSpec* start = example_called(capture, name);
@@ -36,6 +47,12 @@ void check_start(const Capture& capture, const ExampleSpec& example, const Measu
     throw InputError(field.place,
                      fmt::format("{}`{}`, which is held out for the test", starts, name),
                      fmt::format("`use: test` here too, or another use of `{}`", name));
+  if (start->validate && !example.validate && has_own_numbers(*start))
+    throw InputError(
+        field.place,
+        fmt::format("{}`{}`, which is held out, and how its grip moves is fitted then", starts,
+                    name),
+        fmt::format("`use: fit` for `{}`: what is held out is fitted to nothing else", name));
 }
 
 /// From which examples the fields of each start.

@@ -178,6 +178,13 @@ class Dic final : public Exporter {
         "x, y, z are where a point is at rest, u, v, w the model's displacement; u_photo "
         "and its like add what the photos still ask for"};
     for (const SeenCase& one : seen.cases)
+      for (const SeenPoints& view : one.views)
+        if (!view.from.empty())
+          out.notes.push_back(fmt::format(
+              "{}-{}.csv has its field's reference: places are those of load case {}, and what it "
+              "holds leads on from there",
+              one.name, view.view, view.from));
+    for (const SeenCase& one : seen.cases)
       if (std::ranges::none_of(one.views, [](const auto& view) { return view.size() > 0; }))
         out.lacks.push_back(one.name + ": no camera and no field shows a point of the body");
     return out;

@@ -70,13 +70,14 @@ StartedField::StartedField(const MeasuredSpec& measured, const Sensed& seen)
       faces_(mesh_),
       points_(field_points(mesh_, field_, seen.columns != nullptr)) {}
 
-Eigen::MatrixXd StartedField::displacement_moved(const SurfacePoint& at, const Vector3d& place,
-                                                 const Eigen::MatrixXd* d_place) const {
+StartedField::PointMoved StartedField::point_moved(const SurfacePoint& at, const Vector3d& place,
+                                                   const Eigen::MatrixXd* d_place) const {
   const ElementPoint point(mesh_, at);
-  const Matrix3Xd went =
-      nodes_of(mesh_, at.element, &seen_.equilibrium.q) - nodes_of(mesh_, at.element);
-  return point.of(seen_.S) - point.of(start_.S) +
-         (went * point.dN) * HeldPlace(mesh_, faces_, at, place).moved(start_.S, d_place);
+  const Matrix3Xd from = nodes_of(mesh_, at.element),
+                  to = nodes_of(mesh_, at.element, &seen_.equilibrium.q);
+  const Eigen::MatrixXd d = HeldPlace(mesh_, faces_, at, place).moved(start_.S, d_place);
+  return {from * point.N, point.of(start_.S) + from * point.dN * d,
+          point.of(seen_.S) + to * point.dN * d};
 }
 
 StartedField::TangentsMoved StartedField::tangents_moved(Eigen::Index k) const {
@@ -114,22 +115,39 @@ StartedField::TangentsMoved StartedField::tangents_moved(Eigen::Index k) const {
   return out;
 }
 
-/// What the points of its window add. They stay where they are sought about the centre, and so do
-/// their weights.
+/// What the points of its window add, as the plane through them goes: sum of W (du - G dy), with
+/// the gradient G of the plane and its weights W by the points' places y in it. What the points
+/// leave of the plane changes the weights to second order only.
 Eigen::MatrixXd StartedField::by_window(Eigen::Index k, const Eigen::MatrixXd& d_centre,
                                         const Eigen::MatrixXd& d_T) const {
   const StrainWindow& window = points_.strain->windows[static_cast<size_t>(k)];
   const Tangents& T = points_.strain->tangents[static_cast<size_t>(k)];
   const Vector3d centre = points_.rest.col(k);
+  const Tangents G = gradient_of(k);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(6, d_T.cols());
   for (size_t i = 0; i < window.at.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector2d offset = window.offset.col(column), weight = window.weights.col(column);
     const Eigen::MatrixXd d_place =
         d_centre + offset[0] * d_T.topRows(3) + offset[1] * d_T.bottomRows(3);
-    const Eigen::MatrixXd d_u = displacement_moved(window.at[i], centre + T * offset, &d_place);
+    const PointMoved moved = point_moved(window.at[i], centre + T * offset, &d_place);
+    Eigen::MatrixXd d_y = T.transpose() * (moved.d_from - d_centre);
+    const Vector3d from_centre = moved.from - centre;
+    for (int j = 0; j < 2; ++j) d_y.row(j) += from_centre.transpose() * d_T.middleRows(3 * j, 3);
+    const Eigen::MatrixXd d_u = moved.d_to - moved.d_from - G * d_y;
     for (int j = 0; j < 2; ++j) out.middleRows(3 * j, 3) += weight[j] * d_u;
   }
+  return out;
+}
+
+/// Of the displacements along the tangents.
+Tangents StartedField::gradient_of(Eigen::Index k) const {
+  Tangents out = Tangents::Zero();
+  for (size_t j = 0; j < 2; ++j)
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(points_.strain->D[j], k);
+         it; ++it)
+      out.col(static_cast<Eigen::Index>(j)) +=
+          it.value() * (seen_.equilibrium.q.segment<3>(3 * it.col()) - mesh_.X.col(it.col()));
   return out;
 }
 
@@ -148,8 +166,9 @@ SensorPrediction StartedField::displacements(Eigen::Index first, Eigen::Index co
     out.value.segment(components * k, components) = turned * u;
     if (!seen_.columns) continue;
     auto J = out.J.middleRows(components * k, components);
-    J = turned * displacement_moved(points_.at[static_cast<size_t>(first + k)],
-                                    field_.X.col(first + k), nullptr);
+    const PointMoved moved =
+        point_moved(points_.at[static_cast<size_t>(first + k)], field_.X.col(first + k), nullptr);
+    J = turned * (moved.d_to - moved.d_from);
     for (const auto& [column, d_placement] : turning) J.col(column) += along * (d_placement * u);
   }
   return out;

@@ -21,13 +21,19 @@ class StartedField {
   struct TangentsMoved {
     Eigen::MatrixXd d_A, d_T;
   };
-  /// Of the displacement of the point that lies at a place, 3 x columns; `d_place`: null: the place
-  /// stands still.
-  Eigen::MatrixXd displacement_moved(const SurfacePoint& at, const Vector3d& place,
-                                     const Eigen::MatrixXd* d_place) const;
+  /// The point that lies at a place, and where it is at the start and goes: derivatives, 3 x
+  /// columns.
+  struct PointMoved {
+    Vector3d from;
+    Eigen::MatrixXd d_from, d_to;
+  };
+  /// `d_place`: null: the place stands still.
+  PointMoved point_moved(const SurfacePoint& at, const Vector3d& place,
+                         const Eigen::MatrixXd* d_place) const;
   TangentsMoved tangents_moved(Eigen::Index k) const;
   Eigen::MatrixXd by_window(Eigen::Index k, const Eigen::MatrixXd& d_centre,
                             const Eigen::MatrixXd& d_T) const;
+  Tangents gradient_of(Eigen::Index k) const;
   SensorPrediction displacements(Eigen::Index first, Eigen::Index count) const;
   SensorPrediction strains(Eigen::Index first, Eigen::Index count) const;
 

@@ -30,6 +30,7 @@ std::vector<Sample> disc_on(const TetMesh& mesh, const BoundaryLocator& locator,
   constexpr int kHalf = 2;           // five points across
   constexpr double kSameSide = 0.7;  // cosine of normals
   constexpr double kShift = 0.25;    // of a step, by which a foot may lie beside its point
+  constexpr double kInward = 0.02;   // of the way to the centre: a foot on a rim is on two faces
   const double step = diameter / (2 * kHalf + 1);
   std::vector<Sample> out;
   for (int i = -kHalf; i <= kHalf; ++i)
@@ -40,7 +41,9 @@ std::vector<Sample> disc_on(const TetMesh& mesh, const BoundaryLocator& locator,
       locator.locate(sought, &one.at);
       one.X = nodes_of(mesh, one.at.element) * shape_values(mesh.order, one.at.barycentric);
       if ((T.transpose() * (one.X - sought)).norm() > kShift * step) continue;
-      if (faces.normal(one.at).dot(normal) < kSameSide) continue;
+      SurfacePoint inside;
+      locator.locate(one.X + kInward * (centre - one.X), &inside);
+      if (faces.normal(inside).dot(normal) < kSameSide) continue;
       out.push_back(one);
     }
   return out;

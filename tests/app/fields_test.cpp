@@ -66,6 +66,54 @@ TEST_F(FieldCapture, AFitIsComparedAndReported) {
   EXPECT_NE(hookeye("compare run").err + hookeye("diagnose run").err, "");
 }
 
+/// The second half of the pull, by a program that took the first half as its reference.
+TEST_F(FieldCapture, AFieldMayStartFromALoadCase) {
+  std::string yaml = read(folder_ / "capture.yaml");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(yaml.find(from), std::string::npos) << from << yaml;
+    yaml.replace(yaml.find(from), from.size(), to);
+  };
+  const size_t begin = yaml.find("  pull:\n"), end = yaml.find("    measured:", begin);
+  ASSERT_NE(end, std::string::npos);
+  std::string half = yaml.substr(begin, end - begin);
+  half.replace(half.find("pull"), 4, "half");
+  half.replace(half.find("z: 0.8"), 6, "z: 0.4");
+  replace("  pull:\n", half + "  pull:\n");
+  replace("{field: u.csv, sigma: 0.02}", "{field: u.csv, sigma: 0.02, from: half}");
+  write("capture.yaml", yaml);
+  std::string table = "X [mm],Y [mm],Z [mm],U [mm],V [mm],W [mm]\n";
+  for (int y = 1; y < 10; ++y)
+    for (int z = 1; z < 10; ++z)
+      table += "0.05," + std::to_string(y + 0.005 * (5 - y)) + "," + std::to_string(1.04 * z) +
+               ",0.05," + std::to_string(0.005 * (5 - y)) + "," + std::to_string(0.04 * z) + "\n";
+  write("u.csv", table);
+  const Result checked = hookeye("check capture.yaml");
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("field of 81 points from half"));
+  EXPECT_THAT(checked.out, HasSubstr("pull from half"));
+  EXPECT_THAT(checked.err, testing::Not(HasSubstr("u.csv")));
+  const Result fitted = hookeye("fit capture.yaml -o run");
+  ASSERT_EQ(fitted.status, 0) << fitted.err;
+  EXPECT_THAT(hookeye("compare run").out, HasSubstr("pull from half"));
+  const json metrics = json::parse(read(folder_ / "run/steps/00-base/metrics.json"));
+  const json& field = metrics.at("fields").at(0);
+  EXPECT_EQ(field.at("from"), "half");
+  EXPECT_LT(field.at("gap").get<double>(), 0.2);
+  EXPECT_LT(field.at("rms").get<double>(), 0.1);
+  EXPECT_THAT(read(folder_ / "run/steps/00-base/deformed/pull.vtu"), HasSubstr("field_residual"));
+  EXPECT_EQ(hookeye("diagnose run").status, 0);
+  const Result exported = hookeye("export run --to dic -o dic");
+  ASSERT_EQ(exported.status, 0) << exported.err;
+  EXPECT_THAT(read(folder_ / "dic/reporting.csv"), HasSubstr("reference,load case half"));
+  const std::string written = read(folder_ / "dic/pull-u.csv");
+  const std::string row = written.substr(written.find('\n') + 1);
+  EXPECT_NEAR(std::stod(row), 0.05, 0.05) << "the places are those of `half`";
+  write("capture.yaml", yaml.replace(yaml.find("from: half"), 10, "from: hall"));
+  const Result unknown = hookeye("check capture.yaml");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("starts from `hall`, and there is no such example"));
+}
+
 TEST_F(FieldCapture, APointOffTheBodyEndsWithItsLine) {
   write("u.csv", "X [mm],Y,Z,U,V,W\n0,5,5,0,0,0\n-4,5,5,0,0,0\n");
   const Result said = hookeye("check capture.yaml");

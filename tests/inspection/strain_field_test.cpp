@@ -135,6 +135,9 @@ TEST_F(StrainReadings, FieldsInEachOthersPlacesAreNamedWithTheirFiles) {
   for (const char* measure : {"green", "hencky"}) {
     write({.mu = 0.06, .gravity = {0, 0, -9810}, .sigma = 1e-3, .strain = measure});
     EXPECT_THAT(of_strains(), IsEmpty());
+    // The push buckles the block: to first order it has another strain.
+    const std::string all = text("capture.yaml");
+    std::ofstream(folder_.path() / "capture.yaml") << all.substr(0, all.find("  push:"));
     exchange("pull_front.csv", "bend_front.csv");
     EXPECT_THAT(of_strains(),
                 AllOf(HasSubstr("pull_front.csv shows the strain of example `bend`, and"),

@@ -82,7 +82,8 @@ TEST(StartedField, StrainsAreThoseBetweenTheStates) {
       const Vector3d expected = strain_by(two.field().field->strain->measure, went, T).e;
       EXPECT_GT(expected.norm(), 0.1);
       for (Eigen::Index k = 0; k < two.rest.cols(); ++k)
-        EXPECT_NEAR((e.segment<3>(3 * k) - expected).norm(), 0.0, 1e-9) << measure << gauge << k;
+        EXPECT_NEAR((e.segment<3>(3 * k) - expected).norm(), 0.0, *gauge ? 5e-4 : 1e-9)
+            << measure << gauge << " at " << k << ": a foot may lie just round the rim";
     }
 }
 
@@ -252,6 +253,9 @@ TEST(StartedField, WhatItCannotStartFromIsToldWithFileAndLine) {
       HasSubstr("fields start from one another in a circle: `bend` from `pull` from `bend`"));
   EXPECT_THAT(refusal(block, "  pull:\n", "  pull:\n    use: test\n"),
               HasSubstr("starts from `pull`, which is held out for the test"));
+  EXPECT_THAT(refusal(block, "  pull:\n    supports: [{region: base, fix: [x, y, z]}]",
+                      "  pull:\n    use: validate\n    supports: [{region: base, rigid: fit}]"),
+              HasSubstr("starts from `pull`, which is held out, and how its grip moves is fitted"));
   EXPECT_EQ(refusal(block, "    use: validate", "    use: test"), "");
   EXPECT_THAT(refusal(block, "from: pull", "from: [1, 2]"), HasSubstr("capture.yaml:30:"));
 }
