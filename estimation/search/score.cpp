@@ -65,16 +65,19 @@ void scale(const VectorXd& dp_dx, SeenPart& part) {
   part.s = dp_dx.cwiseProduct(part.s);
 }
 
-/// A parameter on its bound stays there: that it would go on is no gain. It is no column then.
-/// (With its slope alone taken out, columns that share in what it changes would seem to remove what
-/// it does, and more than there is: a density of held-out data above that of perfect ones.)
+/// A parameter on its bound stays there: that it would go on is no gain. It costs what it costs,
+/// and shares nothing with the others. (With its slope alone taken out, columns that change the
+/// same would seem to remove what it does, and more than there is: a density of held-out data above
+/// that of perfect ones.)
 void hold(const std::vector<ScoredModel::Column>& columns, std::vector<EffectiveSums>& groups) {
   for (EffectiveSums& group : groups)
     for (Eigen::Index i = 0; i < group.s.size(); ++i) {
       if (!columns[static_cast<size_t>(i)].at_bound) continue;
+      const double own = group.H(i, i);
       group.s[i] = 0.0;
       group.H.row(i).setZero();
       group.H.col(i).setZero();
+      group.H(i, i) = own;
     }
 }
 

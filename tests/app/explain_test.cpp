@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "app/fitted_run.h"
 
@@ -75,9 +76,10 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
   std::string first_by_score;
   const json told = json::parse(hookeye("explain run --json").out);
   for (const json& step : told.at("steps")) {
-    std::map<std::string, json> scored;
+    // Two refits of one model may have come to two places.
+    std::vector<std::pair<std::string, json>> scored;
     for (const json& line : step.at("decisions"))
-      if (line.at("asked") == "scored") scored[line.at("candidate")] = line;
+      if (line.at("asked") == "scored") scored.emplace_back(line.at("candidate"), line);
     most = std::max(most, scored.size());
     const auto best = std::find_if(scored.begin(), scored.end(), [](const auto& one) {
       return one.second.at("parts").at("below_best") == 0.0;

@@ -107,8 +107,8 @@ TEST(ModelScore, NoFittedModelExceedsItsCeiling) {
   }
 }
 
-/// What a held parameter shares with another one is the other one's, once.
-TEST(ModelScore, AParameterOnItsBoundIsNoColumn) {
+/// What a held parameter shares with another one is the other one's, once; its own cost stays.
+TEST(ModelScore, AParameterOnItsBoundSharesNothing) {
   const auto scored = [](bool at_bound, double correlation) {
     ScoredModel out;
     for (const bool bound : {false, at_bound}) out.columns.push_back({0.0, 1.0, false, bound});
@@ -126,9 +126,14 @@ TEST(ModelScore, AParameterOnItsBoundIsNoColumn) {
   };
   const ResidualNoise noise{{{1.0, 100.0, 1.0, 1.0}, {1.0, 100.0, 1.0, 1.0}}};
   const double alone = score(scored(true, 0.0), noise).held_out;
+  ScoredModel one_column = scored(true, 0.0);
+  one_column.columns.pop_back();
+  for (SeenPart& part : one_column.seen)
+    part.H = part.H.topLeftCorner(1, 1).eval(), part.s = part.s.head(1).eval();
   EXPECT_LT(alone, 0.0);
   EXPECT_NEAR(score(scored(true, 0.99), noise).held_out, alone, 1e-9);
   EXPECT_NE(score(scored(false, 0.99), noise).held_out, alone);
+  EXPECT_LT(score(scored(true, 0.0), noise).fitted, score(one_column, noise).fitted - 0.5);
 }
 
 TEST(ResidualNoise, IsNeverBelowTheNoiseAndTrustsARimLess) {
