@@ -5,6 +5,8 @@
 #include <fstream>
 #include <map>
 #include <random>
+#include <sstream>
+#include <stdexcept>
 #include <vector>
 
 #include "estimation/effects/catalogue.h"
@@ -224,6 +226,37 @@ std::shared_ptr<const Scene> FieldBlock::scene() const {
   const TemporaryFolder folder;
   write(folder.path());
   return load_scene(read_capture(folder.path()));
+}
+
+void ChangedBlock::write(const fs::path& folder) const {
+  block.write(folder);
+  std::ostringstream text;
+  text << std::ifstream(folder / file).rdbuf();
+  std::string all = text.str();
+  const size_t at = all.find(from);
+  if (at == std::string::npos) throw std::logic_error("not in " + file + ": " + from);
+  std::ofstream(folder / file) << all.replace(at, from.size(), to);
+}
+
+std::shared_ptr<const Scene> ChangedBlock::scene() const {
+  const TemporaryFolder folder;
+  write(folder.path());
+  return load_scene(read_capture(folder.path()));
+}
+
+std::string ChangedBlock::refusal() const {
+  const TemporaryFolder folder;
+  write(folder.path());
+  try {
+    load_scene(read_capture(folder.path()));
+  } catch (const InputError& error) {
+    std::string said = error.what();
+    const std::string name = folder.path().string() + "/";
+    for (size_t found; (found = said.find(name)) != std::string::npos;)
+      said.erase(found, name.size());
+    return said;
+  }
+  return "";
 }
 
 }  // namespace hookeye::test

@@ -28,4 +28,14 @@ struct FieldBlock {
   std::shared_ptr<const Scene> scene() const;  ///< the same, read
 };
 
+/// The block with `from` replaced by `to`, once, in a file of its folder.
+struct ChangedBlock {
+  FieldBlock block;
+  std::string file, from, to;
+  void write(const std::filesystem::path& folder) const;  ///< throws where `from` is not there
+  std::shared_ptr<const Scene> scene() const;
+  /// Why it is not read, with names of files as from its folder; "": it is.
+  std::string refusal() const;
+};
+
 }  // namespace hookeye::test

@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 #include "estimation/effects/catalogue.h"
 #include "estimation/evaluation/field_evaluation.h"
 #include "estimation/evaluation/normal_equations.h"
@@ -170,33 +168,15 @@ TEST(StartedField, AFitFindsTheTruth) {
   }
 }
 
-/// The capture with `from` on another text of its examples.
-void rewrite(const FieldBlock& block, const TemporaryFolder& folder, const std::string& from,
-             const std::string& to) {
-  block.write(folder.path());
-  std::ostringstream text;
-  text << std::ifstream(folder.path() / "capture.yaml").rdbuf();
-  std::string all = text.str();
-  const size_t at = all.find(from);
-  if (at == std::string::npos) throw std::logic_error("not there: " + from);
-  std::ofstream(folder.path() / "capture.yaml") << all.replace(at, from.size(), to);
-}
-
-std::shared_ptr<const Scene> rewritten(const FieldBlock& block, const std::string& from,
-                                       const std::string& to) {
-  const TemporaryFolder folder;
-  rewrite(block, folder, from, to);
-  return load_scene(read_capture(folder.path()));
-}
-
 /// Of the load case that others start from, nothing need be measured; and it may be held out.
 TEST(StartedField, WhereItStartsNothingNeedBeMeasured) {
   const FieldBlock block{.sigma = 5e-3, .from_pull = true};
   const std::string entries =
       "    measured:\n    - {field: pull_front.csv, sigma: 0.005}\n    - {field: pull_flank.csv, "
       "sigma: 0.005}\n";
-  const auto bare = rewritten(block, entries, "");
-  const auto held = rewritten(block, "  pull:\n", "  pull:\n    use: validate\n");
+  const auto bare = ChangedBlock{block, "capture.yaml", entries, ""}.scene();
+  const auto held =
+      ChangedBlock{block, "capture.yaml", "  pull:\n", "  pull:\n    use: validate\n"}.scene();
   for (const auto& scene : {bare, held}) {
     const Fitted fitted = fitted_to(scene);
     EXPECT_NEAR(fitted.p[0], 0.05, 5e-4);
@@ -226,18 +206,7 @@ TEST(StartedField, TheOrderOfExamplesDoesNotMatter) {
 }
 
 std::string refusal(const FieldBlock& block, const std::string& from, const std::string& to) {
-  const TemporaryFolder folder;
-  rewrite(block, folder, from, to);
-  try {
-    load_scene(read_capture(folder.path()));
-  } catch (const InputError& error) {
-    std::string said = error.what();
-    const std::string name = folder.path().string() + "/";
-    for (size_t found; (found = said.find(name)) != std::string::npos;)
-      said.erase(found, name.size());
-    return said;
-  }
-  return "";
+  return ChangedBlock{block, "capture.yaml", from, to}.refusal();
 }
 
 TEST(StartedField, WhatItCannotStartFromIsToldWithFileAndLine) {
