@@ -146,6 +146,13 @@ Matrix3d symmetry_frame(const Stiffness6& C) {
   return frame;
 }
 
+/// An axis has no sign: the largest component is told as positive.
+std::string axis_text(const Vector3d& axis) {
+  Eigen::Index largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  return vector_text(axis[largest] < 0.0 ? Vector3d(-axis) : axis);
+}
+
 /// Young's moduli along the axes and shear moduli, of base and effect together.
 std::string constants_text(const Model& model, const Stiffness6& added, const Matrix3d& frame) {
   const Stiffness6 compliance = stiffness_in_frame(at_rest(model.energy) + added, frame).inverse();
@@ -153,7 +160,7 @@ std::string constants_text(const Model& model, const Stiffness6& added, const Ma
   std::string text;
   for (int i = 0; i < 3; ++i)
     text += fmt::format("{}{} {} along {}", i == 0 ? "Young's modulus " : ", ",
-                        figure(1.0 / compliance(i, i)), stress, vector_text(frame.col(i)));
+                        figure(1.0 / compliance(i, i)), stress, axis_text(frame.col(i)));
   return fmt::format("{}; shear moduli with the first axis {} and {} {}, across it {}", text,
                      figure(1.0 / compliance(5, 5)), figure(1.0 / compliance(4, 4)), stress,
                      figure(1.0 / compliance(3, 3)));

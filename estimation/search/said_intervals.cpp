@@ -145,21 +145,24 @@ bool is_unit(const Numbers& told, size_t at) {
   return std::abs(Eigen::Map<const Eigen::Vector3d>(&told.values[at]).norm() - 1.0) < 0.01;
 }
 
-/// Half the opening angle [degrees] of the cone that holds a direction at 95 %; two directions that
-/// are opposite are one axis.
+/// Half the opening angle [degrees] of the cone that holds a direction at 95 %. One that turns to
+/// the other side at an end, as a vector through zero does, may be any.
 double cone_of(const Numbers& told, const std::vector<Numbers>& at_ends, size_t at,
                const Eigen::MatrixXd& correlation) {
   const Eigen::Map<const Eigen::Vector3d> direction(&told.values[at]);
-  const auto at_end = [&](Eigen::Index end) -> Eigen::Vector3d {
-    const Eigen::Map<const Eigen::Vector3d> there(&at_ends[static_cast<size_t>(end)].values[at]);
-    return there.dot(direction) < 0.0 ? Eigen::Vector3d(-there) : Eigen::Vector3d(there);
+  constexpr double kAny = 180.0;
+  const auto at_end = [&](Eigen::Index end) {
+    return Eigen::Map<const Eigen::Vector3d>(&at_ends[static_cast<size_t>(end)].values[at]);
   };
   Eigen::Matrix3Xd D(3, correlation.rows());
-  for (Eigen::Index i = 0; i < D.cols(); ++i) D.col(i) = 0.5 * (at_end(2 * i) - at_end(2 * i + 1));
+  for (Eigen::Index i = 0; i < D.cols(); ++i) {
+    if (at_end(2 * i).dot(direction) < 0.0 || at_end(2 * i + 1).dot(direction) < 0.0) return kAny;
+    D.col(i) = 0.5 * (at_end(2 * i) - at_end(2 * i + 1));
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(D * correlation * D.transpose());
   // 95 % of the values' one dimension are 1.96 deviations, of the cone's two 2.45.
   const double reach = 2.4477 / 1.96 * std::sqrt(std::max(0.0, eigen.eigenvalues().maxCoeff()));
-  return std::min(90.0, reach * 180.0 / std::numbers::pi);
+  return std::min(kAny, reach * 180.0 / std::numbers::pi);
 }
 
 /// A sentence is put together from left to right.
@@ -187,7 +190,9 @@ class WithRanges {
     const double cone = cone_of(told_, at_ends_, at, correlation_);
     const std::string& after = told_.words[at + 3];
     any_ = any_ || cone > 0.0;
-    out_ += cone > 0.0 ? fmt::format(") within {:.2g} degrees", cone) + after.substr(1) : after;
+    out_ += cone > 0.0 ? fmt::format(") within {:.{}f} degrees", cone, cone < 9.95 ? 1 : 0) +
+                             after.substr(1)
+                       : after;
     return at + 3;
   }
   size_t number(size_t at) {

@@ -34,8 +34,8 @@ TEST(SaidIntervals, WhatTheSentenceDerivesHasItsRange) {
             "degrees; ranges: 95 %");
 }
 
-/// An axis that is nowhere stays an axis: no component is told beyond one.
-TEST(SaidIntervals, AnAxisHasACone) {
+/// No component is told beyond one.
+TEST(SaidIntervals, ADirectionHasACone) {
   const auto axis = [](const VectorXd& v) {
     return fmt::format("fibres along {}",
                        vector_text(Vector3d(std::cos(v[0]), std::sin(v[0]), 0.0)));
@@ -45,6 +45,18 @@ TEST(SaidIntervals, AnAxisHasACone) {
             "fibres along (1.00, 0.00, 0.00) within 7.2 degrees; ranges: 95 %");
   EXPECT_EQ(said_with_intervals(axis, known(zero, VectorXd::Constant(1, 1.5))),
             "fibres along (1.00, 0.00, 0.00) within 72 degrees; ranges: 95 %");
+}
+
+/// A vector that may be none, or the opposite, points anywhere.
+TEST(SaidIntervals, AVectorThroughZeroMayPointAnywhere) {
+  const auto pull = [](const VectorXd& v) {
+    return fmt::format("a pull towards {}", vector_text(Vector3d(v[0], 0.0, 0.0).normalized()));
+  };
+  const VectorXd value = VectorXd::Constant(1, 0.1);
+  EXPECT_EQ(said_with_intervals(pull, known(value, 3.0 * value)),
+            "a pull towards (1.00, 0.00, 0.00) within 180 degrees; ranges: 95 %");
+  EXPECT_EQ(said_with_intervals(pull, known(value, 0.5 * value)),
+            "a pull towards (1.00, 0.00, 0.00)");
 }
 
 /// Two values that go against each other leave their sum as it is.
