@@ -92,6 +92,11 @@ Camera Camera::moved(const Eigen::Vector3d& w_rad, const Eigen::Vector3d& v) con
   return result;
 }
 
+Camera Camera::of_colour(int colour) const {
+  const double log_factor = colour == 0 ? colour_zoom[0] : colour == 2 ? colour_zoom[1] : 0.0;
+  return log_factor == 0.0 ? *this : zoomed(log_factor);
+}
+
 Camera Camera::zoomed(double log_factor) const {
   Camera result = *this;
   result.fx *= std::exp(log_factor);

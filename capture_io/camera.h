@@ -34,8 +34,15 @@ struct Camera {
   /// The numbers of the model's lens. Perspective: OpenCV's order k1 k2 p1 p2 k3 (k4 k5 k6 (s1 s2
   /// s3 s4 (tx ty))); fisheye: k1 k2 k3 k4; empty: none.
   std::vector<double> distortion;
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< camera_from_world rotation
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();      ///< x_in_camera = R x_in_world + t [length]
+  /// Brightness falls as 1 / (1 + vignetting tan^2 a)^2 at the angle a to the axis: 0 not at all, 1
+  /// as cos^4 a. Of central cameras.
+  double vignetting = 0;
+  /// log of how much larger the red and the blue picture are than the green one, about (cx, cy).
+  Eigen::Vector2d colour_zoom = Eigen::Vector2d::Zero();
+  bool fit_vignetting = false, fit_colour_zoom = false;  ///< not told
+  Place lens_place;                                      ///< where one of these stands
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();       ///< camera_from_world rotation
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();  ///< x_in_camera = R x_in_world + t [length]
 
   using Jacobian3 = Eigen::Matrix<double, 2, 3>;
   using Jacobian7 = Eigen::Matrix<double, 2, 7>;
@@ -68,6 +75,8 @@ struct Camera {
   Camera moved(const Eigen::Vector3d& w_rad, const Eigen::Vector3d& v) const;
   /// fx, fy and skew times exp(log_factor).
   Camera zoomed(double log_factor) const;
+  /// That of one of the colours red, green and blue.
+  Camera of_colour(int colour) const;
   /// Intrinsics of the same picture with `factor` times as many pixels along its sides; leaves
   /// `width` and `height`. Pixel centres are integers: coordinate c becomes (c + 1/2) factor - 1/2.
   Camera resized(double factor) const;

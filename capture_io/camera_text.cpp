@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace hookeye {
@@ -10,6 +11,21 @@ namespace {
 
 std::string list(const Eigen::Vector3d& v) {
   return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
+}
+
+/// What the lens does to brightness and colour.
+std::string lens_text(const Camera& camera) {
+  std::string out;
+  if (camera.fit_vignetting)
+    out += "    vignetting: fit\n";
+  else if (camera.vignetting != 0.0)
+    out += fmt::format("    vignetting: {}\n", camera.vignetting);
+  if (camera.fit_colour_zoom)
+    out += "    chromatic_shift: fit\n";
+  else if (!camera.colour_zoom.isZero(0.0))
+    out += fmt::format("    chromatic_shift: {{red: {}, blue: {}}}\n",
+                       std::exp(camera.colour_zoom[0]), std::exp(camera.colour_zoom[1]));
+  return out;
 }
 
 }  // namespace
@@ -28,10 +44,11 @@ std::string camera_text(const Camera& camera) {
   for (int i = 0; i < 3; ++i) rows += (i ? ", " : "") + list(camera.R.row(i).transpose());
   return fmt::format(
       "  {}:\n    size: [{}, {}]\n    projection: {}\n"
-      "    intrinsics: {}\n"
+      "    intrinsics: {}\n{}"
       "    pose:\n      rotation: [{}]\n      translation: {}\n",
       yaml_name(camera.name), camera.width, camera.height, camera.model->name(),
-      intrinsics_text(camera, [](double x) { return fmt::format("{}", x); }), rows, list(camera.t));
+      intrinsics_text(camera, [](double x) { return fmt::format("{}", x); }), lens_text(camera),
+      rows, list(camera.t));
 }
 
 }  // namespace hookeye

@@ -54,6 +54,39 @@ void check_references(const Capture& capture) {
   }
 }
 
+/// A lens is fitted from photos that show what it does.
+void check_lenses(const Capture& capture) {
+  const auto any_photo = [&](const Camera& camera, const auto& shows) {
+    for (const ExampleSpec& example : capture.examples)
+      for (const PhotoSpec& photo : example.photos)
+        if (photo.camera == camera.name && photo.kind == PhotoSpec::Kind::image && shows(photo))
+          return true;
+    return false;
+  };
+  const bool from_photos = capture.body.texture == BodySpec::Texture::rest;
+  for (const Camera& camera : capture.cameras) {
+    const Place place = camera.lens_place;
+    if ((camera.fit_vignetting || camera.fit_colour_zoom) && from_photos)
+      throw InputError(
+          place,
+          fmt::format("the lens of camera `{}` is in the photos of the texture", camera.name),
+          "leave it out, or give `texture: {image: FILE}`");
+    if (camera.fit_vignetting && !any_photo(camera, [](const PhotoSpec&) { return true; }))
+      throw InputError(
+          place,
+          fmt::format("no photo by camera `{}` shows brightness to fit its vignetting to",
+                      camera.name),
+          "leave it out: a silhouette has none");
+    if ((camera.fit_colour_zoom || !camera.colour_zoom.isZero(0.0)) &&
+        !any_photo(camera, [](const PhotoSpec& photo) { return photo.rgb; }))
+      throw InputError(place,
+                       fmt::format("no photo by camera `{}` is compared by its colours, which "
+                                   "`chromatic_shift` tells apart",
+                                   camera.name),
+                       "write `channels: rgb` for its photos, or leave the shift out");
+  }
+}
+
 /// A title stands on one line, so that none can add lines to what is said below it.
 std::string one_line(std::string text) {
   std::replace_if(
@@ -91,6 +124,7 @@ void check_version(const YamlSection& top) {
 
 void check_together(const Capture& capture) {
   check_references(capture);
+  check_lenses(capture);
   check_field_starts(capture);
   check_file_names(capture);
 }

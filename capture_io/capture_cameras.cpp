@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "capture_io/camera_pose.h"
 #include "capture_io/capture_reader.h"
@@ -71,6 +72,44 @@ void read_pose(const YamlNode& node, Camera& camera) {
   if (!fault.empty())
     throw InputError(rotation.place, fmt::format("rotation{} {}", of, fault), rotation_rule);
   camera.t = read_vector3(pose.need("translation", right), "translation" + of);
+}
+
+/// `fit`, which is true; else what stands there is read as numbers.
+bool asks_for_fit(const YamlNode& node, const std::string& what, const char* numbers) {
+  if (node.kind != YamlNode::Kind::scalar) return false;
+  if (node.text == "fit") return true;
+  unexpected(node, what, fmt::format("`fit` is expected, or {}", numbers));
+}
+
+/// What the lens does to brightness and colour.
+void read_lens_light(const YamlSection& section, Camera& camera) {
+  const auto of = [&](const char* what) {
+    return fmt::format("{} of camera `{}`", what, camera.name);
+  };
+  const YamlNode::Entry* falls = section.entry("vignetting");
+  const YamlNode::Entry* shift = section.entry("chromatic_shift");
+  if (falls || shift) camera.lens_place = (shift ? shift : falls)->place;
+  if (falls && !camera.model->central())
+    throw InputError(falls->place, of("vignetting") + " goes by the angle to the axis",
+                     "leave it out: all rays of this camera are parallel");
+  if (falls && falls->value.text == "fit")
+    camera.fit_vignetting = true;
+  else if (falls)
+    camera.vignetting = read_not_negative(falls->value, of("vignetting"));
+  if (!shift) return;
+  const std::string what = of("chromatic_shift");
+  if ((camera.fit_colour_zoom = asks_for_fit(shift->value, what, "`{red: 1.0003, blue: 0.9998}`")))
+    return;
+  const YamlSection colours(shift->value, what, {"red", "blue"});
+  const char* const names[] = {"red", "blue"};
+  for (int i = 0; i < 2; ++i)
+    if (const YamlNode* size = colours.find(names[i])) {
+      const double factor = read_positive(*size, fmt::format("{} of {}", names[i], what));
+      if (std::abs(factor - 1.0) > 0.05)
+        unexpected(*size, fmt::format("{} of {}", names[i], what),
+                   "the size of that colour's picture over the green one's is expected, near 1");
+      camera.colour_zoom[i] = std::log(factor);
+    }
 }
 
 /// The calibration file's camera.
@@ -150,8 +189,9 @@ void read_projection(const YamlNode& node, bool calibrated, Camera& camera) {
 
 Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
   const std::string what = fmt::format("camera `{}`", entry.key);
-  const YamlSection section(entry.value, what,
-                            {"size", "projection", "intrinsics", "pose", "calibration"});
+  const YamlSection section(
+      entry.value, what,
+      {"size", "projection", "intrinsics", "pose", "calibration", "vignetting", "chromatic_shift"});
   Camera camera;
   bool has_pose = false;
   const YamlNode* calibration = section.find("calibration");
@@ -177,6 +217,7 @@ Camera read_camera(const YamlNode::Entry& entry, const CaptureFolder& folder) {
   else if (!has_pose)
     section.need("pose", "write `pose: {rotation: [...], translation: [...]}` (world to camera)");
   check_lens(camera, entry.place, what);
+  read_lens_light(section, camera);
   return camera;
 }
 

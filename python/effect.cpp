@@ -80,8 +80,8 @@ py::dict setup_info(const Model& model, double shear_modulus) {
   return out;
 }
 
-/// Adds what a row of photo() says: by PhotoColumn, those before kUneven.
-void change_photo(PhotoState& photo, const Eigen::Matrix<double, kUneven, 1>& by) {
+/// Adds what a row of photo() says: by PhotoColumn, those before kVignetting.
+void change_photo(PhotoState& photo, const Eigen::Matrix<double, kVignetting, 1>& by) {
   if (!by.head(kZoom).isZero(0.0))
     photo.camera = photo.camera.moved(by.segment<3>(kRotate), by.segment<3>(kMove));
   if (by[kZoom] != 0.0) photo.camera = photo.camera.zoomed(by[kZoom]);
@@ -104,7 +104,7 @@ void change_photos(const Bridge& bridge, const VectorXd& values, Model& model) {
     for (size_t e = 0; e < model.examples.size(); ++e)
       for (size_t k = 0; k < model.examples[e].photos.size(); ++k)
         shots.append(py::make_tuple(examples[e].name, examples[e].photos[k].camera, e));
-    return Bridge::rows_of(effect.attr("photos")(shots, array_of(values)), count, kUneven);
+    return Bridge::rows_of(effect.attr("photos")(shots, array_of(values)), count, kVignetting);
   });
   Eigen::Index next = 0;
   for (ExampleModel& one : model.examples)

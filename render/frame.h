@@ -57,8 +57,9 @@ void trace(const Frame& frame, const Vector2d* h, int count, Samples* out);
 /// triangle's corners are a DerivativeSegment::ByVertex.
 constexpr int by_position(int corner) { return 6 * corner; }    ///< unit vertex normals held
 constexpr int by_second(int corner) { return 6 * corner + 3; }  ///< unit normal; reference position
-constexpr int kByPhoto = 18;                 ///< by PhotoColumn, those before kBlur
-constexpr int kByUneven = kByPhoto + kBlur;  ///< from PhotoColumn kUneven on
+constexpr int kByPhoto = 18;  ///< by PhotoColumn, those before kBlur
+constexpr int kByVignetting = kByPhoto + kBlur;
+constexpr int kByUneven = kByVignetting + 1;  ///< from PhotoColumn kUneven on
 /// Multiples of four, as lanes.h asks; a row of whole vectors.
 constexpr int whole(int floats, int of) { return (floats + of - 1) / of * of; }
 constexpr int kFloatsWithoutPhoto = whole(kByPhoto, 4);

@@ -13,11 +13,12 @@
 namespace hookeye {
 
 /// The numbers of one photo with which its intensities change at fixed geometry.
-///   I = gain * blur_v[ albedo * (sky(n) * visibility + max(0, n.sun) * lit)
+///   I = gain * V * blur_v[ albedo * (sky(n) * visibility + max(0, n.sun) * lit)
 ///                      + specular * lit * |sun| * max(0, n.h)^shininess ]  on the body,
 ///   I = background elsewhere (before blur; background is not multiplied by gain).
-/// h: half vector between the directions to the sun and to the camera. sky(n): irradiance over pi
-/// of the even and the uneven light (capture_io/light_harmonics.h), not below zero.
+/// V: Camera::vignetting at the pixel, 1 where the body is not shaded. h: half vector between the
+/// directions to the sun and to the camera. sky(n): irradiance over pi of the even and the uneven
+/// light (capture_io/light_harmonics.h), not below zero.
 struct PhotoState {
   Camera camera;
   double gain = 1.0;
@@ -45,7 +46,8 @@ enum PhotoColumn {
   kSpecular = 12,
   kBlur = 13,  ///< blur variance [1/px^2]
   kBackground = 14,
-  kUneven = 15,  ///< 8
+  kVignetting = 15,  ///< of the camera
+  kUneven = 16,      ///< 8
   kPhotoColumns = kUneven + kUnevenNumbers
 };
 

@@ -190,6 +190,7 @@ class PixelSum {
     if (task_.frame.options.photo_derivative)
       part_->photo.back().head<kBlur>() +=
           Eigen::Map<const Eigen::Matrix<float, kBlur, 1>>(at + kByPhoto);
+    if (task_.frame.options.photo_derivative) part_->photo.back()[kVignetting] += at[kByVignetting];
     if (!part_->uneven.empty())
       part_->uneven.back() += Eigen::Map<const UnevenDerivative>(at + kByUneven);
     part_->segments.push_back(

@@ -25,11 +25,12 @@ struct RenderOptions {
   bool derivatives = true;
   bool photo_derivative =
       true;  ///< false: Part::photo stays empty, and kBlur and kSpecular with it
-  bool gloss_derivative = true;   ///< false: kSpecular of a body without gloss stays zero
-  bool blur_derivative = true;    ///< false: kBlur stays zero
-  bool uneven_derivative = true;  ///< false: Part::uneven stays empty
-  bool centres = true;            ///< false: Rendering::triangle and uv stay empty
-  bool parallel = false;          ///< on the cores of the caller's arena (oneTBB)
+  bool gloss_derivative = true;       ///< false: kSpecular of a body without gloss stays zero
+  bool blur_derivative = true;        ///< false: kBlur stays zero
+  bool vignetting_derivative = true;  ///< false: kVignetting stays zero
+  bool uneven_derivative = true;      ///< false: Part::uneven stays empty
+  bool centres = true;                ///< false: Rendering::triangle and uv stay empty
+  bool parallel = false;              ///< on the cores of the caller's arena (oneTBB)
 };
 
 /// Derivative of one pixel by the vertices of one triangle. A pixel's derivative is the sum of its

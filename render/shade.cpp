@@ -81,8 +81,11 @@ Sky sky(const Frame& f, V3 n) {
   return out;
 }
 
-/// I = gain (albedo diffuse + gloss).
+/// I = gain (albedo diffuse + gloss). The gain is the photo's times V = 1 / (1 + v r)^2 with the
+/// camera's vignetting v and r = h.h.
 struct Light {
+  V gain;
+  V falling;  ///< of V: -2 / (1 + v r), by v r its relative change
   V diffuse, visibility, share;
   Sky sky;
   Mask sunny;  ///< lit, and turned to the sun
@@ -90,11 +93,22 @@ struct Light {
   bool glossy;
 };
 
+/// tan^2 of the angle between ray and axis.
+V off_axis(const Samples& s, size_t at) {
+  const V hx = load(s.h[0] + at), hy = load(s.h[1] + at);
+  return hx * hx + hy * hy;
+}
+
 Light light(const Frame& f, const Samples& s, const V* b, V3 n, bool derivatives, size_t at) {
   Light out;
   out.glossy = false;
+  out.gain = set(static_cast<float>(f.photo.gain));
   out.diffuse = out.share = set(1);
   if (!f.photo.shaded) return out;
+  const V passed =
+      set(1) / (set(1) + set(static_cast<float>(f.photo.camera.vignetting)) * off_axis(s, at));
+  out.gain = out.gain * passed * passed;
+  out.falling = set(-2) * passed;
   const V3 visibility = load3(s.of_triangle + kVisibility, at);
   out.visibility = b[0] * visibility.x + b[1] * visibility.y + b[2] * visibility.z;
   // Of the hemisphere about the interpolated normal the part below the facet sends nothing:
@@ -144,7 +158,7 @@ void store_uneven(V by_sky, V3 n, Values& out, size_t at) {
 /// the triangle's own unit normal.
 V3 differentiate_light(const Frame& f, const Samples& s, const Albedo& a, const V* b,
                        const Normal& normal, const Light& l, V* by_bary, Values& out, size_t at) {
-  const V gain = set(static_cast<float>(f.photo.gain)), albedo = load(a.value + at);
+  const V gain = l.gain, albedo = load(a.value + at);
   const V3 n = normal.n, sun = set(f.photo.sun.cast<float>().eval());
   V3 by_n = only(l.sunny, (gain * albedo) * sun);
   V3 by_sun = only(l.sunny, (gain * albedo) * n);
@@ -229,14 +243,19 @@ void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V*
   if (!f.options.photo_derivative) return;
   if (l.glossy && f.photo.specular != 0) {
     // The camera turns, and the direction to it with it: d(to camera) = -w x (to camera).
-    const V gain = set(static_cast<float>(f.photo.gain));
-    const V3 eye = l.gloss.eye, by_eye = gain * l.gloss.by_eye;
+    const V3 eye = l.gloss.eye, by_eye = l.gain * l.gloss.by_eye;
     turn = turn + cross(by_eye, eye);
     if (f.view.central) {
       const V inverse = inverse_norm({hx, hy, set(1)});
       const V3 seen = {inverse * zx, inverse * zy, set(0)};
       by_zoom = by_zoom + dot(by_eye, seen - dot(eye, seen) * eye);
     }
+  }
+  if (f.photo.shaded && f.photo.camera.vignetting != 0) {
+    // the pixel's ray comes nearer to the axis: h.h falls by twice this
+    const V nearer = hx * zx + hy * zy, I = load(out[kByPhoto + kLogGain] + at);
+    const V strength = set(static_cast<float>(-2 * f.photo.camera.vignetting));
+    by_zoom = by_zoom + strength * nearer * l.falling * I;
   }
   store3(turn, kByPhoto + kRotate, out, at);
   store3(g, kByPhoto + kMove, out, at);
@@ -246,27 +265,30 @@ void differentiate_motion(const Frame& f, const Samples& s, const V* b, const V*
 void shade_lanes(const Frame& f, const Samples& s, const Albedo& a, bool derivatives,
                  Shading* out) {
   alignas(64) Values value;
-  const V gain = set(static_cast<float>(f.photo.gain));
   for (size_t at = 0; at < kLanes; at += hn::Lanes(Tag())) {
     const V b[3] = {load(s.bary[0] + at), load(s.bary[1] + at), load(s.bary[2] + at)};
     const Normal normal = shading_normal(f, s, b, at);
     const Light l = light(f, s, b, normal.n, derivatives, at);
     V I = load(a.value + at) * l.diffuse;
     if (l.glossy) I = I + l.gloss.I;
-    I = gain * I;
+    I = l.gain * I;
     store(I, out->I + at);
     if (!derivatives) continue;
     const V3 none = {set(0), set(0), set(0)};
     for (int k = 0; k < 3; ++k) store3(none, by_second(k), value, at);
     for (int k = kByPhoto; k < wanted_floats(f); ++k) store(set(0), value[k] + at);
-    if (f.options.photo_derivative) store(I, value[kByPhoto + kLogGain] + at);
+    if (f.options.photo_derivative) {
+      store(I, value[kByPhoto + kLogGain] + at);
+      if (f.photo.shaded && f.options.vignetting_derivative)
+        store(l.falling * off_axis(s, at) * I, value[kByVignetting] + at);
+    }
     V by_bary[3];
-    for (int k = 0; k < 3; ++k) by_bary[k] = gain * l.diffuse * load(a.by_bary[k] + at);
+    for (int k = 0; k < 3; ++k) by_bary[k] = l.gain * l.diffuse * load(a.by_bary[k] + at);
     V3 by_facet = none;
     if (f.photo.shaded)
       by_facet = differentiate_light(f, s, a, b, normal, l, by_bary, value, at);
     else if (f.spline)
-      store_second((gain * l.diffuse) * load3(a.by_reference, at), b, value, at);
+      store_second((l.gain * l.diffuse) * load3(a.by_reference, at), b, value, at);
     differentiate_motion(f, s, b, by_bary, by_facet, l, value, at);
   }
   if (!derivatives) return;

@@ -11,6 +11,7 @@
 
 #include "core/memory_left.h"
 #include "core/work_clock.h"
+#include "estimation/images/unresolved.h"
 
 namespace hookeye {
 
@@ -187,6 +188,13 @@ PhotoState state_of_tile(const PhotoState& read, const PhotoReading& reading, co
   return out;
 }
 
+/// Of a tile that is compared with a photo; else empty: it is the tile's own.
+Image sigma_of(const PhotoPlane& photo, const Texture& texture, const Scene& scene) {
+  if (texture.source != Texture::Source::photo) return {};
+  return sigma_beside_photo(photo.sigma, unresolved_variance(photo.I, photo.sigma),
+                            scene.limits->fit.unresolved);
+}
+
 void add_sums(CondensedPhoto sums, CondensedPhoto* all) {
   if (all->JtJ.size() == 0) {
     all->JtJ = std::move(sums.JtJ), all->Jtr = std::move(sums.Jtr);
@@ -209,9 +217,11 @@ TakenPhotos taken_photos(const ExampleView& view, int photo) {
 }
 
 PhotoEvaluation compare_taken(ExampleView& view, int k, int plane, const TakenPhotos& taken,
-                              const PhotoPlane& read, Texture texture, FollowedBrightness& followed,
-                              const EvaluationOptions& options, Rendering* rendering) {
-  const PhotoState& state = view.model().examples[view.example()].photos[k];
+                              const PhotoPlane& read, const Image& read_sigma, Texture texture,
+                              FollowedBrightness& followed, const EvaluationOptions& options,
+                              Rendering* rendering) {
+  PhotoState state = view.model().examples[view.example()].photos[k];
+  state.camera = camera_of_plane(view.scene(), view.example(), k, plane, state.camera);
   const PhotoReading& reading = reading_of(view.scene(), state.camera.name);
   const bool mask = view.is_mask(k), rim = view.shows_rim(k);
   if (texture.source == Texture::Source::photo) {
@@ -236,14 +246,14 @@ PhotoEvaluation compare_taken(ExampleView& view, int k, int plane, const TakenPh
     if (mask) here = coverage_state(here);
     view.render(texture, here, how, rim, here.blur_variance > 0.0 ? nullptr : &*tile.photo.valid,
                 rendering);
-    Image larger_sigma;
-    const Image& sigma = compared_sigma(tile.photo, texture, &larger_sigma);
+    const Image beside = sigma_of(tile.photo, texture, view.scene());
+    const Image& sigma = beside.values.empty() ? *tile.photo.sigma : beside;
     const auto brightness = followed.by(tile.photo, texture, side, rendering);
     const Comparison comparison = compare_pixels(*rendering, tile.photo, sigma, {rim, mask}, here);
     one.taken_r2 += comparison.r2, one.taken_count += comparison.count;
     one.sums.r2 += loss(comparison.residual, options.huber);
     if (view.derivatives()) {
-      const VertexSensitivity& S = view.sensitivity(k, texture, 1.0 / side);
+      const VertexSensitivity& S = view.sensitivity(k, plane, texture, 1.0 / side);
       const Working part(WorkPart::sums);
       add_sums(condense(*rendering, comparison.residual, sigma, view.mesh(), here, options.huber,
                         brightness ? &*brightness : nullptr, S),
@@ -252,12 +262,10 @@ PhotoEvaluation compare_taken(ExampleView& view, int k, int plane, const TakenPh
     pictures.add(tile, reading.halvings, *rendering, sigma, comparison.residual);
   }
   one.r2 = pictures.r2, one.count = pictures.count;
-  Image larger_sigma;
-  const Image& sigma = compared_sigma(read, texture, &larger_sigma);
   const Registration registered =
-      registration(pictures.model, read, pictures.residual, sigma, mask);
+      registration(pictures.model, read, pictures.residual, read_sigma, mask);
   one.motion_px = registered.rms_px;
-  add_flow(pictures.model, registered, sigma, mask, &one);
+  add_flow(pictures.model, registered, read_sigma, mask, &one);
   one.triangle = std::move(pictures.triangle);
   one.model = std::move(pictures.model);
   one.residual = std::move(pictures.residual);

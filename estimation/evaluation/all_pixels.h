@@ -45,7 +45,8 @@ TakenPhotos taken_photos(const ExampleView& view, int photo);
 /// One plane. Sums are of all pixels of the photo as it was taken; r2, count and pictures of all
 /// pixels of the size that is read, where chi means what it does in the fit.
 PhotoEvaluation compare_taken(ExampleView& view, int photo, int plane, const TakenPhotos& taken,
-                              const PhotoPlane& read, Texture texture, FollowedBrightness& followed,
-                              const EvaluationOptions& options, Rendering* rendering);
+                              const PhotoPlane& read, const Image& read_sigma, Texture texture,
+                              FollowedBrightness& followed, const EvaluationOptions& options,
+                              Rendering* rendering);
 
 }  // namespace hookeye

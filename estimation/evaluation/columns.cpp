@@ -33,7 +33,7 @@ VectorXd placement_numbers(const Model& model) {
 }  // namespace
 
 VectorXd photo_difference(const PhotoState& a, const PhotoState& b) {
-  VectorXd d = VectorXd::Zero(kPhotoColumns);
+  VectorXd d = VectorXd::Zero(kPhotoNumbers);
   const Eigen::Matrix3d turn = b.camera.R * a.camera.R.transpose();
   // acos loses small angles; the skew part does not.
   const Eigen::Matrix3d skew = 0.5 * (turn - turn.transpose());
@@ -47,7 +47,9 @@ VectorXd photo_difference(const PhotoState& a, const PhotoState& b) {
   d[kSpecular] = b.specular - a.specular;
   d[kBlur] = b.blur_variance - a.blur_variance;
   d[kBackground] = b.background - a.background;
+  d[kVignetting] = b.camera.vignetting - a.camera.vignetting;
   d.segment<kUnevenNumbers>(kUneven) = b.uneven - a.uneven;
+  d.segment<2>(kColourZoom) = b.camera.colour_zoom - a.camera.colour_zoom;
   return d;
 }
 
@@ -113,7 +115,7 @@ ExampleColumns ColumnSet::of_example(const Model& model, int example,
   ExampleColumns out;
   out.dR.setZero(equilibrium.q.size(), m);
   out.dqc.setZero(static_cast<int>(present.loading.prescribed.size()), m);
-  out.dphoto.assign(present.photos.size(), Eigen::MatrixXd::Zero(kPhotoColumns, m));
+  out.dphoto.assign(present.photos.size(), Eigen::MatrixXd::Zero(kPhotoNumbers, m));
   out.d_offset.setZero(3, m);
   out.d_placement.setZero(12, m);
   out.d_calibration.setZero(model.calibration.size(), m);

@@ -11,7 +11,7 @@ namespace hookeye {
 struct ExampleColumns {
   Eigen::MatrixXd dR;                   ///< 3n x m [force / parameter]
   Eigen::MatrixXd dqc;                  ///< prescribed unknowns x m
-  std::vector<Eigen::MatrixXd> dphoto;  ///< per photo kPhotoColumns x m
+  std::vector<Eigen::MatrixXd> dphoto;  ///< per photo kPhotoNumbers x m
   Eigen::Matrix3Xd d_offset;            ///< 3 x m, force_offset
   /// d(placement x) at fixed x for position measurements: 12 x m (linear column by column, then
   /// translation).

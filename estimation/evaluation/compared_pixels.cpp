@@ -26,11 +26,13 @@ double loss(const Image& residual, double huber) {
   return sum;
 }
 
-const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Image* larger) {
-  if (texture.source != Texture::Source::photo) return photo.sigma;
-  *larger = photo.sigma;
-  for (float& s : larger->values) s *= std::sqrt(2.0f);
-  return *larger;
+Image sigma_beside_photo(const Image& sigma, const Image& unresolved, double times) {
+  Image out = sigma;
+  for (size_t i = 0; i < out.values.size(); ++i) {
+    const float s = sigma.values[i];
+    out.values[i] = std::sqrt(2.0f * s * s + static_cast<float>(times) * unresolved.values[i]);
+  }
+  return out;
 }
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,

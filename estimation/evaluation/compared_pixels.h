@@ -16,9 +16,9 @@ struct Comparison {
 /// Sum of Huber's losses; huber 0: of squares.
 double loss(const Image& residual, double huber);
 
-/// sigma of a compared pixel: the reference photo's noise enters where it gives the texture.
-/// `larger` is its memory.
-const Image& compared_sigma(const PhotoPlane& photo, const Texture& texture, Image* larger);
+/// sigma of a pixel that is compared with a texture from a photo: that photo's noise enters, and
+/// what neither photo resolves (unresolved.h) times FitLimits::unresolved.
+Image sigma_beside_photo(const Image& sigma, const Image& unresolved, double times);
 
 /// How a photo is compared. `silhouette`: what is behind the body is known, so that its rim counts;
 /// `mask`: the photo is a silhouette.

@@ -163,7 +163,9 @@ class Workspace {
 /// together.
 std::vector<FlowStatistics> photo_statistics(const std::vector<PhotoEvaluation>& photos);
 
-/// The local numbers b - a of two photo states (kPhotoColumns).
+/// Camera::colour_zoom stands after what a picture of one colour depends on.
+constexpr int kColourZoom = kPhotoColumns, kPhotoNumbers = kColourZoom + 2;
+/// The local numbers b - a of two photo states (kPhotoNumbers).
 VectorXd photo_difference(const PhotoState& a, const PhotoState& b);
 
 /// Cameras and photos at a pyramid level.

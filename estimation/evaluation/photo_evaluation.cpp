@@ -1,12 +1,15 @@
 #include "estimation/evaluation/photo_evaluation.h"
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "core/work_clock.h"
 #include "estimation/evaluation/all_pixels.h"
 #include "estimation/evaluation/compared_pixels.h"
 #include "estimation/evaluation/photo_view.h"
+#include "estimation/images/unresolved.h"
 
 namespace hookeye {
 
@@ -15,6 +18,7 @@ struct PhotoComparer::Impl {
   int example;
   Renderer renderer;
   std::vector<std::vector<std::vector<PhotoPlane>>> pyramids;  ///< [photo][plane][level]
+  std::map<std::array<int, 3>, Image> beside_photo;            ///< the same: sigma_beside_photo()
   FollowedBrightness followed;
   static constexpr int kLevels = 6;
 
@@ -30,6 +34,22 @@ struct PhotoComparer::Impl {
         pyramids.push_back(std::move(planes));
       }
     return pyramids[photo][plane][std::min(level, kLevels - 1)];
+  }
+
+  /// Of what is compared with `texture`.
+  const Image& sigma(int photo, int plane, int level, const Texture& texture) {
+    const PhotoPlane& compared = this->plane(photo, plane, level);
+    if (texture.source != Texture::Source::photo) return compared.sigma;
+    const auto [at, fresh] = beside_photo.try_emplace({photo, plane, level});
+    if (!fresh) return at->second;
+    const PhotoPlane& whole = this->plane(photo, plane, 0);
+    Image unresolved = unresolved_variance(whole.I, whole.sigma);
+    for (int i = 0; i < std::min(level, kLevels - 1); ++i) {
+      unresolved = halved(unresolved);
+      for (float& variance : unresolved.values) variance /= 4.0f;  // as of independent pixels
+    }
+    at->second = sigma_beside_photo(compared.sigma, unresolved, scene->limits->fit.unresolved);
+    return at->second;
   }
 };
 
@@ -50,6 +70,8 @@ Rendering PhotoComparer::render(const Model& model, const VectorXd& q, const Vec
   if (q_reference) x_reference = surface.deformed(scene.body->mesh, *q_reference);
   PhotoState state = model.examples[impl_->example].photos[photo];
   const auto& photos = scene.photos[impl_->example];
+  if (photo < static_cast<int>(photos.size()))
+    state.camera = camera_of_plane(scene, impl_->example, photo, plane, state.camera);
   if (photo < static_cast<int>(photos.size()) && !photos[photo].backdrop.empty())
     state.backdrop = photos[photo].backdrop[plane].pointer();
   if (is_silhouette(scene, impl_->example, photo)) state = coverage_state(state);
@@ -62,10 +84,13 @@ namespace {
 
 /// One plane of one photo as it is read, at a pyramid level.
 PhotoEvaluation compare_read(ExampleView& view, int k, int plane, const PhotoPlane& photo,
-                             const Texture& texture, FollowedBrightness& followed,
-                             const EvaluationOptions& options, Rendering* rendering) {
+                             const Image& sigma, const Texture& texture,
+                             FollowedBrightness& followed, const EvaluationOptions& options,
+                             Rendering* rendering) {
   const bool mask_photo = view.is_mask(k), rim = view.shows_rim(k);
-  PhotoState state = state_at_level(view.model().examples[view.example()].photos[k], options.level);
+  PhotoState state = view.model().examples[view.example()].photos[k];
+  state.camera = camera_of_plane(view.scene(), view.example(), k, plane, state.camera);
+  state = state_at_level(state, options.level);
   state.backdrop = photo.backdrop;
   if (mask_photo) state = coverage_state(state);
   // Where there is blur, masked pixels are seen in their neighbours. A motion is looked for in
@@ -73,8 +98,6 @@ PhotoEvaluation compare_read(ExampleView& view, int k, int plane, const PhotoPla
   const bool all_pixels = state.blur_variance > 0.0 || options.registered;
   view.render(texture, state, view.rendering(k, texture, {options.level, false}, options), rim,
               all_pixels ? nullptr : &*photo.valid, rendering);
-  Image larger_sigma;
-  const Image& sigma = compared_sigma(photo, texture, &larger_sigma);
   const std::optional<Brightness> brightness = followed.by(photo, texture, 1.0, rendering);
   const Comparison comparison = compare_pixels(*rendering, photo, sigma, {rim, mask_photo}, state);
   PhotoEvaluation one;
@@ -89,7 +112,7 @@ PhotoEvaluation compare_read(ExampleView& view, int k, int plane, const PhotoPla
   if (registered) one.motion_px = registered->rms_px;
   const Image& residual = registered ? registered->linear : comparison.residual;
   if (view.derivatives()) {
-    const VertexSensitivity& S = view.sensitivity(k, texture, std::exp2(options.level));
+    const VertexSensitivity& S = view.sensitivity(k, plane, texture, std::exp2(options.level));
     const Working part(WorkPart::sums);
     one.sums = condense(*rendering, residual, sigma, view.mesh(), state, options.huber,
                         brightness ? &*brightness : nullptr, S);
@@ -131,10 +154,11 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       if (!choose_texture(scene, model, e, k, plane, size, texture)) continue;
       const PhotoPlane& photo = impl_->plane(k, plane, whole ? 0 : options.level);
       if (whole && taken.empty()) taken = taken_photos(view, k);
-      all.push_back(whole ? compare_taken(view, k, plane, taken, photo, texture, impl_->followed,
-                                          options, &rendering)
-                          : compare_read(view, k, plane, photo, texture, impl_->followed, options,
-                                         &rendering));
+      const Image& sigma = impl_->sigma(k, plane, whole ? 0 : options.level, texture);
+      all.push_back(whole ? compare_taken(view, k, plane, taken, photo, sigma, texture,
+                                          impl_->followed, options, &rendering)
+                          : compare_read(view, k, plane, photo, sigma, texture, impl_->followed,
+                                         options, &rendering));
     }
   }
   return all;

@@ -41,6 +41,16 @@ PhotoState state_at_level(const PhotoState& state, int level) {
   return coarse;
 }
 
+bool by_colour(const Scene& scene, int example, int photo) {
+  return scene.capture.examples[example].photos[photo].rgb &&
+         scene.photos[example][photo].planes.size() == 3;
+}
+
+Camera camera_of_plane(const Scene& scene, int example, int photo, int plane,
+                       const Camera& camera) {
+  return by_colour(scene, example, photo) ? camera.of_colour(plane) : camera;
+}
+
 bool is_silhouette(const Scene& scene, int example, int photo) {
   return scene.capture.examples[example].photos[photo].kind == PhotoSpec::Kind::silhouette;
 }
@@ -116,13 +126,15 @@ bool choose_texture(const Scene& scene, const Model& model, int example, int pho
   texture.source = Texture::Source::photo;
   texture.photo = source.planes[plane].pointer();
   texture.photo_valid = source.valid.pointer();
-  texture.reference_camera = model.examples[reference].photos[k].camera;
+  texture.reference_camera =
+      camera_of_plane(scene, reference, k, plane, model.examples[reference].photos[k].camera);
   texture.reference_gain = model.examples[reference].photos[k].gain;
   return true;
 }
 
 PhotoState coverage_state(PhotoState state) {
   state.gain = 1.0;
+  state.camera.vignetting = 0.0;
   state.shaded = false;
   state.sun.setZero();
   state.specular = 0.0;
@@ -224,6 +236,7 @@ RenderOptions ExampleView::rendering(int photo, const Texture& texture, PhotoSiz
   out.photo_derivative = columns_ && (texture_gain || !columns_->dphoto[photo].isZero(0.0));
   out.gloss_derivative = moves(kSpecular);
   out.blur_derivative = moves(kBlur);
+  out.vignetting_derivative = moves(kVignetting);
   out.uneven_derivative = moves(kUneven, kUnevenNumbers);
   return out;
 }
@@ -235,8 +248,12 @@ void ExampleView::render(const Texture& texture, const PhotoState& state,
                    count, out);
 }
 
-const VertexSensitivity& ExampleView::sensitivity(int photo, const Texture& texture, double scale) {
-  S_.photo = columns_->dphoto[photo];
+const VertexSensitivity& ExampleView::sensitivity(int photo, int plane, const Texture& texture,
+                                                  double scale) {
+  const Eigen::MatrixXd& numbers = columns_->dphoto[photo];
+  S_.photo = numbers.topRows(kPhotoColumns);
+  if (by_colour(scene_, example_, photo) && plane != 1)
+    S_.photo.row(kZoom) += numbers.row(kColourZoom + plane / 2);
   S_.photo.row(kBlur) /= scale * scale;  // px^2
   if (reference_.columns && texture.source == Texture::Source::photo) {
     S_.second = second_on_vertices_;

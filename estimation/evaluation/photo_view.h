@@ -24,6 +24,11 @@ RenderOptions at_level(RenderOptions options, int level, int halvings, const Tex
 
 PhotoState state_at_level(const PhotoState& state, int level);
 
+/// Whether the photo is compared by its colours, a plane each.
+bool by_colour(const Scene& scene, int example, int photo);
+/// The camera as the plane has it.
+Camera camera_of_plane(const Scene& scene, int example, int photo, int plane, const Camera& camera);
+
 bool is_silhouette(const Scene& scene, int example, int photo);
 
 /// Index of the reference example's photo by the same camera, -1: none.
@@ -58,9 +63,9 @@ class ExampleView {
                           const EvaluationOptions& options) const;
   void render(const Texture& texture, const PhotoState& state, const RenderOptions& options,
               bool rim, const std::vector<unsigned char>* count, Rendering* out) const;
-  /// Of one photo; holds until the next is asked for. `scale`: side of a pixel in pixels of the
-  /// read photo.
-  const VertexSensitivity& sensitivity(int photo, const Texture& texture, double scale);
+  /// Of one plane of a photo; holds until the next is asked for. `scale`: side of a pixel in pixels
+  /// of the read photo.
+  const VertexSensitivity& sensitivity(int photo, int plane, const Texture& texture, double scale);
 
  private:
   const Scene& scene_;

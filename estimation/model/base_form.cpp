@@ -121,6 +121,7 @@ ModelForm base_form(std::shared_ptr<const Scene> scene) {
     form.ingredients.push_back(albedo_ingredient());
   if (shaded && !capture.light.given) form.ingredients.push_back(light_ingredient(*scene));
   if (auto levels = background_ingredient(*scene)) form.ingredients.push_back(levels);
+  if (auto lenses = lens_ingredient(*scene)) form.ingredients.push_back(lenses);
   if (auto cameras = calibration_ingredient(*scene)) form.ingredients.push_back(cameras);
   if (capture.body.fit_placement) form.ingredients.push_back(placement_ingredient(*scene));
   // Gravity last: it is told in the world, and the placement turns the body against it.

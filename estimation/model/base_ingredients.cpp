@@ -148,6 +148,45 @@ class Harmonics final : public Ingredient {
   }
 };
 
+/// What lenses do to brightness and colour.
+class Lenses final : public Ingredient {
+ public:
+  explicit Lenses(std::vector<Camera> cameras) : cameras_(std::move(cameras)) {}
+  std::string name() const override { return "lenses"; }
+  std::vector<Parameter> parameters() const override {
+    std::vector<Parameter> all;
+    for (const Camera& camera : cameras_) {
+      const std::string of = " of camera '" + camera.name + "'";
+      if (camera.fit_vignetting)
+        all.push_back(
+            {"vignetting." + camera.name, "", "vignetting" + of, 0.0, 0.0, 100.0, 1.0, false});
+      for (const char* colour : {"red", "blue"})
+        if (camera.fit_colour_zoom)
+          all.push_back({fmt::format("{}_shift.{}", colour, camera.name), "",
+                         fmt::format("log size of the {} picture over the green one{}", colour, of),
+                         0.0, -0.05, 0.05, 0.001, false});
+    }
+    return all;
+  }
+  Touches touches() const override { return {.photos = true}; }
+  void apply(const Eigen::VectorXd& values, Model& model) const override {
+    Eigen::Index at = 0;
+    for (const Camera& camera : cameras_) {
+      const auto each = [&](const auto& change) {
+        for (auto& example : model.examples)
+          for (auto& photo : example.photos)
+            if (photo.camera.name == camera.name) change(photo.camera);
+      };
+      if (camera.fit_vignetting) each([&](Camera& seen) { seen.vignetting = values[at]; }), at += 1;
+      if (camera.fit_colour_zoom)
+        each([&](Camera& seen) { seen.colour_zoom = values.segment<2>(at); }), at += 2;
+    }
+  }
+
+ private:
+  std::vector<Camera> cameras_;
+};
+
 class Albedo final : public Ingredient {
  public:
   std::string name() const override { return "albedo"; }
@@ -318,6 +357,14 @@ std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene) {
 std::shared_ptr<const Ingredient> light_ingredient(const Scene& scene) {
   if (scene.capture.light.fit_harmonics) return std::make_shared<Harmonics>();
   return std::make_shared<Light>();
+}
+
+std::shared_ptr<const Ingredient> lens_ingredient(const Scene& scene) {
+  std::vector<Camera> cameras;
+  for (const Camera& camera : scene.capture.cameras)
+    if (camera.fit_vignetting || camera.fit_colour_zoom) cameras.push_back(camera);
+  if (cameras.empty()) return nullptr;
+  return std::make_shared<Lenses>(std::move(cameras));
 }
 
 std::shared_ptr<const Ingredient> albedo_ingredient() { return std::make_shared<Albedo>(); }

@@ -18,6 +18,9 @@ std::shared_ptr<const Ingredient> rigid_support_ingredient(const Scene& scene);
 /// Ambient and sun (vector), or the sky's harmonics where they are asked for, common to all photos;
 /// light was not told.
 std::shared_ptr<const Ingredient> light_ingredient(const Scene& scene);
+/// Of each camera what is asked for: vignetting, and the sizes of the red and the blue picture.
+/// Null: nothing is.
+std::shared_ptr<const Ingredient> lens_ingredient(const Scene& scene);
 /// One uniform albedo.
 std::shared_ptr<const Ingredient> albedo_ingredient();
 /// One background level a camera, of its photos with `background: fit`. Null: there are none.

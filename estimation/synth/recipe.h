@@ -50,6 +50,7 @@ struct CameraRecipe {
   double focal = 0.0;             ///< [px]
   std::vector<std::string> projection{"perspective"};      ///< names of camera models, in turn
   std::vector<double> distortion;                          ///< of all whose rays meet in a point
+  double vignetting = 0.0;                                 ///< the same
   double azimuth = 20.0, spread = 70.0, elevation = 15.0;  ///< [degrees]
   double look_at = 0.5;                   ///< height of the point looked at, in body heights
   std::optional<Vector3d> look_at_point;  ///< of a surface; empty: the middle of its bounding box

@@ -62,7 +62,7 @@ void read_models(const YamlSection& section, CameraRecipe& cameras) {
 void read_cameras(const YamlNode& node, Recipe& recipe) {
   const YamlSection section(node, "cameras",
                             {"count", "size", "distance", "focal", "projection", "distortion",
-                             "azimuth", "spread", "elevation", "look_at"});
+                             "vignetting", "azimuth", "spread", "elevation", "look_at"});
   CameraRecipe& cameras = recipe.cameras;
   cameras.place = node.place;
   maybe(section, "count", cameras.count, 1, 16);
@@ -77,6 +77,7 @@ void read_cameras(const YamlNode& node, Recipe& recipe) {
   maybe(section, "distance", cameras.distance, 1.0, 1000.0);
   cameras.focal = read_positive(section.need("focal", "focal: 1500, in px"), "focal of cameras");
   read_models(section, cameras);
+  maybe(section, "vignetting", cameras.vignetting, 0.0, 100.0);
   maybe(section, "azimuth", cameras.azimuth, read_number);
   maybe(section, "spread", cameras.spread, read_number);
   maybe(section, "elevation", cameras.elevation, -80.0, 80.0);

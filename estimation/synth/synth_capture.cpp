@@ -159,7 +159,8 @@ std::vector<Camera> make_cameras(const Recipe& recipe) {
     // Parallel rays: as large a picture as the focal length makes at the rig's distance.
     camera.fx = camera.fy =
         camera.model->central() ? rig.focal : rig.focal / (rig.distance * height);
-    if (camera.model->central()) camera.distortion = rig.distortion;
+    if (camera.model->central())
+      camera.distortion = rig.distortion, camera.vignetting = rig.vignetting;
     camera.cx = 0.5 * (rig.width - 1);
     camera.cy = 0.5 * (rig.height - 1);
     const Vector3d forward = -from;

@@ -73,6 +73,9 @@ void write_stage(const Truth& truth, const fs::path& albedo, const fs::path& sta
       if (!state.uneven.isZero(0.0))
         throw InputError({stage.string()}, "another photographer does not know our harmonics",
                          "a recipe with `ambient` in place of `harmonics`");
+      if (state.camera.vignetting != 0.0)
+        throw InputError({stage.string()}, "another photographer does not know our vignetting",
+                         "a recipe without `vignetting`");
       const CameraModel& model = *state.camera.model;
       if (!state.camera.straight() || !model.central())
         throw InputError(

@@ -43,6 +43,27 @@ const BrokenCase broken_cameras[] = {
      "capture.yaml:24:40: distortion of camera `top` has 14 numbers\n"
      "  0, 4, 5, 8 or 12 are expected, in OpenCV's order, for lengths in place of x/z (k1 in "
      "1/length^2)"},
+    {"VignettingOfParallelRays",
+     swap("projection: orthographic", "vignetting: fit\n    projection: orthographic"),
+     "capture.yaml:23:5: vignetting of camera `top` goes by the angle to the axis\n"
+     "  leave it out: all rays of this camera are parallel"},
+    {"VignettingBrightens", swap("left: {calibration", "left: {vignetting: -0.2, calibration"),
+     "capture.yaml:20:22: vignetting of camera `left` is `-0.2`\n"
+     "  zero or a number above it is expected"},
+    {"ColoursOfGreyPhotos", swap("left: {calibration", "left: {chromatic_shift: fit, calibration"),
+     "capture.yaml:20:10: no photo by camera `left` is compared by its colours, which "
+     "`chromatic_shift` tells apart\n"
+     "  write `channels: rgb` for its photos, or leave the shift out"},
+    {"ColourFarOff", swap("left: {calibration", "left: {chromatic_shift: {red: 1.5}, calibration"),
+     "capture.yaml:20:33: red of chromatic_shift of camera `left` is `1.5`\n"
+     "  the size of that colour's picture over the green one's is expected, near 1"},
+    {"LensInTheTexture",
+     [](CaptureFixture& c) {
+       c.replace("{image: albedo.png, encoding: srgb}", "{from: rest}");
+       c.replace("left: {calibration", "left: {vignetting: fit, calibration");
+     },
+     "capture.yaml:20:10: the lens of camera `left` is in the photos of the texture\n"
+     "  leave it out, or give `texture: {image: FILE}`"},
     {"SkewIsNoNumber", swap("fx: 11,", "skew: leaning, fx: 11,"),
      "capture.yaml:18:24: skew of camera `front` is `leaning`\n"
      "  a number is expected"},
@@ -162,7 +183,8 @@ const BrokenCase broken_cameras[] = {
      "  photos are compared at the size that the camera was calibrated for"},
     {"CameraNull", swap("  left: {calibration: left.yml}", "  left:"),
      "capture.yaml:21:3: camera `left` is empty\n"
-     "  write a map with the keys size, projection, intrinsics, pose, calibration"},
+     "  write a map with the keys size, projection, intrinsics, pose, calibration, vignetting, "
+     "chromatic_shift"},
     {"PhotoUnknownCamera", swap("      front: photos/pull.png", "      fornt: photos/pull.png"),
      "capture.yaml:55:7: example `pull` has a photo of the unknown camera `fornt`\n"
      "  did you mean `front`?"},

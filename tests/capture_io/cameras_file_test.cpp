@@ -66,7 +66,7 @@ const Damage damages[] = {
      "# by hand\ncameras:\n  front: {size: [8, 6], lens: 5}\n",
      {},
      "cameras.yaml:3:25: camera `front` has no key `lens`\n"
-     "  known here: size, projection, intrinsics, pose, calibration"},
+     "  known here: size, projection, intrinsics, pose, calibration, vignetting, chromatic_shift"},
     {"no file of that name",
      nullptr,
      {"from: cameras.yaml", "from: camera.yaml"},

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "capture_io/camera_text.h"
 #include "capture_io/capture_folder.h"
 #include "capture_io/yaml_tree.h"
 #include "support/shared_data.h"
@@ -221,6 +222,38 @@ TEST(CaptureTest, LightOfHarmonics) {
   EXPECT_FALSE(fitted.given);
   EXPECT_TRUE(fitted.fit_harmonics);
   EXPECT_NEAR(fitted.sun.norm(), 0.6, 1e-15);
+}
+
+TEST(CaptureTest, LensesAreToldOrFitted) {
+  CaptureFixture fixture;
+  fixture.replace("left: {calibration: left.yml}",
+                  "left: {calibration: left.yml, vignetting: 1.5, chromatic_shift: {red: 1.001}}");
+  fixture.write_grey("photos/colours.png", 8, 6, 0.5f, 3);
+  fixture.replace("left: photos/rest.png}", "left: {file: photos/colours.png, channels: rgb}}");
+  const Camera told = read_fixture(fixture).camera("left");
+  EXPECT_EQ(told.vignetting, 1.5);
+  EXPECT_NEAR(told.colour_zoom[0], std::log(1.001), 1e-15);
+  EXPECT_EQ(told.colour_zoom[1], 0.0);
+  EXPECT_FALSE(told.fit_vignetting || told.fit_colour_zoom);
+  EXPECT_NEAR(told.of_colour(0).fx, 1.001 * told.fx, 1e-12);
+  EXPECT_EQ(told.of_colour(1).fx, told.fx);
+  CaptureFixture again;
+  again.replace("  left: {calibration: left.yml}\n", camera_text(told));
+  again.write_grey("photos/colours.png", 8, 6, 0.5f, 3);
+  again.replace("left: photos/rest.png}", "left: {file: photos/colours.png, channels: rgb}}");
+  const Camera written = read_fixture(again).camera("left");
+  EXPECT_EQ(written.vignetting, 1.5);
+  EXPECT_NEAR(written.colour_zoom[0], told.colour_zoom[0], 1e-15);
+
+  CaptureFixture open;
+  open.replace("left: {calibration: left.yml}",
+               "left: {calibration: left.yml, vignetting: fit, chromatic_shift: fit}");
+  open.write_grey("photos/colours.png", 8, 6, 0.5f, 3);
+  open.replace("left: photos/rest.png}", "left: {file: photos/colours.png, channels: rgb}}");
+  const Camera fitted = read_fixture(open).camera("left");
+  EXPECT_TRUE(fitted.fit_vignetting && fitted.fit_colour_zoom);
+  EXPECT_NE(camera_text(fitted).find("    vignetting: fit\n    chromatic_shift: fit\n"),
+            std::string::npos);
 }
 
 TEST(CaptureTest, SimulationNeedsNoPictures) {

@@ -207,6 +207,32 @@ TEST_P(ShadedInterior, uneven_light) {
   }
 }
 
+/// By the number itself, and by what else changes a pixel's ray or what it meets.
+TEST_P(ShadedInterior, vignetting) {
+  if (!state.camera.model->central()) return;
+  state.camera.vignetting = 2.5;
+  const Rendering r = render(x, x_reference, state, true);
+  choose_pixels(r);
+  const auto check = [&](int column, double h, const auto& changed) {
+    const auto f = [&](double by) { return pick(render(x, x_reference, changed(by), false).I); };
+    const VectorXd unit = VectorXd::Unit(kPhotoColumns, column);
+    expect_derivative(f, pick(test::directional(renderer, r, x, nullptr, nullptr, unit)), h,
+                      tolerance, "column " + std::to_string(column));
+  };
+  check(kVignetting, 0.05, [&](double by) {
+    PhotoState s = state;
+    s.camera.vignetting += by;
+    return s;
+  });
+  for (const int column : {kRotate + 1, kMove + 0, int(kZoom)})
+    check(column, column == kMove ? 0.004 : 1e-4,
+          [&](double by) { return test::with_camera(state, column, by); });
+  const VectorXd dark = pick(r.I);
+  state.camera.vignetting = 0.0;
+  const VectorXd bright = pick(render(x, x_reference, state, true).I);
+  EXPECT_LT(dark.sum(), 0.99 * bright.sum());
+}
+
 /// As positions_where_facets_matter, with nothing to see but the sky: facets and normals turn.
 TEST_P(ShadedInterior, positions_under_uneven_light) {
   light_unevenly();

@@ -165,6 +165,7 @@ class Test:
         for path, value in ((("body", "mesh", "edge"), -1), (("model", "material"), {"law": "neo-hookean", "mu": 1}),
                             (("cameras", "front", "projection"), "pinhole"), (("examples", "pull", "use"), "train"),
                             (("regions", "base"), {}), (("light",), {"sun": 1}),
+                            (("cameras", "front", "vignetting"), -1), (("cameras", "front", "chromatic_shift"), {"green": 1}),
                             (("light", "harmonics"), "fit"), (("light",), {"harmonics": [1, 2]}),
                             (("examples",), {"from": "cases.txt"})):
             document = captures.full_capture()
@@ -178,6 +179,11 @@ class Test:
             document = {**captures.full_capture(), "light": {"harmonics": harmonics}}
             if not jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
                 self.fault(f"capture.json refuses light of harmonics: {harmonics}")
+        for lens in ({"vignetting": "fit"}, {"vignetting": 1.2, "chromatic_shift": {"red": 1.0003}}, {"chromatic_shift": "fit"}):
+            document = captures.full_capture()
+            document["cameras"]["front"].update(lens)
+            if not jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
+                self.fault(f"capture.json refuses a lens: {lens}")
         for section in ("cameras", "examples"):
             document = {**captures.full_capture(), section: {"from": "parts/of_it.yaml"}}
             if not jsonschema.Draft7Validator(self.schemas["capture"]).is_valid(document):
