@@ -189,10 +189,14 @@ PhotoState state_of_tile(const PhotoState& read, const PhotoReading& reading, co
 }
 
 /// Of a tile that is compared with a photo; else empty: it is the tile's own.
-Image sigma_of(const PhotoPlane& photo, const Texture& texture, const Scene& scene) {
+Image sigma_of(const PhotoPlane& photo, const Texture& texture, const PhotoState& state,
+               const Scene& scene) {
   if (texture.source != Texture::Source::photo) return {};
-  return sigma_beside_photo(photo.sigma, unresolved_variance(photo.I, photo.sigma),
-                            scene.limits->fit.unresolved);
+  Image out = sigma_beside_photo(photo.sigma, unresolved_variance(photo.I, photo.sigma),
+                                 scene.limits->fit.unresolved);
+  const auto factor = static_cast<float>(sigma_of_blur(state.blur_variance).factor);
+  for (float& value : out.values) value *= factor;
+  return out;
 }
 
 void add_sums(CondensedPhoto sums, CondensedPhoto* all) {
@@ -246,7 +250,7 @@ PhotoEvaluation compare_taken(ExampleView& view, int k, int plane, const TakenPh
     if (mask) here = coverage_state(here);
     view.render(texture, here, how, rim, here.blur_variance > 0.0 ? nullptr : &*tile.photo.valid,
                 rendering);
-    const Image beside = sigma_of(tile.photo, texture, view.scene());
+    const Image beside = sigma_of(tile.photo, texture, here, view.scene());
     const Image& sigma = beside.values.empty() ? *tile.photo.sigma : beside;
     const auto brightness = followed.by(tile.photo, texture, side, rendering);
     const Comparison comparison = compare_pixels(*rendering, tile.photo, sigma, {rim, mask}, here);
@@ -255,6 +259,9 @@ PhotoEvaluation compare_taken(ExampleView& view, int k, int plane, const TakenPh
     if (view.derivatives()) {
       const VertexSensitivity& S = view.sensitivity(k, plane, texture, 1.0 / side);
       const Working part(WorkPart::sums);
+      if (texture.source == Texture::Source::photo && how.blur_derivative)
+        add_sigma_of_blur(sigma_of_blur(here.blur_variance), comparison.residual, sigma,
+                          &rendering->dI);
       add_sums(condense(*rendering, comparison.residual, sigma, view.mesh(), here, options.huber,
                         brightness ? &*brightness : nullptr, S),
                &one.sums);

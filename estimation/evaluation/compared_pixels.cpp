@@ -4,6 +4,8 @@
 #include <limits>
 #include <optional>
 
+#include "estimation/images/unresolved.h"
+
 namespace hookeye {
 
 namespace {
@@ -33,6 +35,22 @@ Image sigma_beside_photo(const Image& sigma, const Image& unresolved, double tim
     out.values[i] = std::sqrt(2.0f * s * s + static_cast<float>(times) * unresolved.values[i]);
   }
   return out;
+}
+
+SigmaOfBlur sigma_of_blur(double blur_variance_px2) {
+  const auto [share, by_variance] = blurred_noise(blur_variance_px2);
+  return {std::sqrt((1.0 + share) / 2.0), by_variance / (2.0 * (1.0 + share))};
+}
+
+void add_sigma_of_blur(const SigmaOfBlur& sigma_falls, const Image& residual, const Image& sigma,
+                       ImageDerivative* dI) {
+  for (ImageDerivative::Part& part : dI->parts)
+    for (size_t i = 0; i < part.photo.size(); ++i) {
+      const auto pixel = static_cast<size_t>(part.pixel[i]);
+      if (std::isnan(residual.values[pixel])) continue;
+      part.photo[i][kBlur] -= static_cast<float>(sigma_falls.log_by_blur) * residual.values[pixel] *
+                              sigma.values[pixel];
+    }
 }
 
 Comparison compare_pixels(const Rendering& rendering, const PhotoPlane& photo, const Image& sigma,

@@ -20,6 +20,17 @@ double loss(const Image& residual, double huber);
 /// what neither photo resolves (unresolved.h) times FitLimits::unresolved.
 Image sigma_beside_photo(const Image& sigma, const Image& unresolved, double times);
 
+/// A blurred picture of a photo has less of that photo's noise, so that sigma falls with the blur
+/// [px^2]: else any blur would seem to fit, as it removes noise.
+struct SigmaOfBlur {
+  double factor;       ///< of sigma_beside_photo()
+  double log_by_blur;  ///< derivative of its log [1/px^2]
+};
+SigmaOfBlur sigma_of_blur(double blur_variance_px2);
+/// Adds what sigma's fall does to the residual's derivative by kBlur.
+void add_sigma_of_blur(const SigmaOfBlur& sigma_falls, const Image& residual, const Image& sigma,
+                       ImageDerivative* dI);
+
 /// How a photo is compared. `silhouette`: what is behind the body is known, so that its rim counts;
 /// `mask`: the photo is a silhouette.
 struct ComparedAs {

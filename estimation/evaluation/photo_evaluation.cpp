@@ -19,6 +19,7 @@ struct PhotoComparer::Impl {
   Renderer renderer;
   std::vector<std::vector<std::vector<PhotoPlane>>> pyramids;  ///< [photo][plane][level]
   std::map<std::array<int, 3>, Image> beside_photo;            ///< the same: sigma_beside_photo()
+  Image blurred_sigma;
   FollowedBrightness followed;
   static constexpr int kLevels = 6;
 
@@ -36,10 +37,20 @@ struct PhotoComparer::Impl {
     return pyramids[photo][plane][std::min(level, kLevels - 1)];
   }
 
-  /// Of what is compared with `texture`.
-  const Image& sigma(int photo, int plane, int level, const Texture& texture) {
+  /// Of what is compared with `texture`, blurred by `blur` [px^2 of that level]. A blurred one
+  /// holds until the next is asked for.
+  const Image& sigma(int photo, int plane, int level, const Texture& texture, double blur) {
+    if (texture.source != Texture::Source::photo) return this->plane(photo, plane, level).sigma;
+    const Image& sharp = sigma_of_sharp(photo, plane, level);
+    if (blur == 0.0) return sharp;
+    blurred_sigma = sharp;
+    const auto factor = static_cast<float>(sigma_of_blur(blur).factor);
+    for (float& value : blurred_sigma.values) value *= factor;
+    return blurred_sigma;
+  }
+
+  const Image& sigma_of_sharp(int photo, int plane, int level) {
     const PhotoPlane& compared = this->plane(photo, plane, level);
-    if (texture.source != Texture::Source::photo) return compared.sigma;
     const auto [at, fresh] = beside_photo.try_emplace({photo, plane, level});
     if (!fresh) return at->second;
     const PhotoPlane& whole = this->plane(photo, plane, 0);
@@ -96,8 +107,8 @@ PhotoEvaluation compare_read(ExampleView& view, int k, int plane, const PhotoPla
   // Where there is blur, masked pixels are seen in their neighbours. A motion is looked for in
   // whole pictures.
   const bool all_pixels = state.blur_variance > 0.0 || options.registered;
-  view.render(texture, state, view.rendering(k, texture, {options.level, false}, options), rim,
-              all_pixels ? nullptr : &*photo.valid, rendering);
+  const RenderOptions how = view.rendering(k, texture, {options.level, false}, options);
+  view.render(texture, state, how, rim, all_pixels ? nullptr : &*photo.valid, rendering);
   const std::optional<Brightness> brightness = followed.by(photo, texture, 1.0, rendering);
   const Comparison comparison = compare_pixels(*rendering, photo, sigma, {rim, mask_photo}, state);
   PhotoEvaluation one;
@@ -114,6 +125,8 @@ PhotoEvaluation compare_read(ExampleView& view, int k, int plane, const PhotoPla
   if (view.derivatives()) {
     const VertexSensitivity& S = view.sensitivity(k, plane, texture, std::exp2(options.level));
     const Working part(WorkPart::sums);
+    if (texture.source == Texture::Source::photo && how.blur_derivative)
+      add_sigma_of_blur(sigma_of_blur(state.blur_variance), residual, sigma, &rendering->dI);
     one.sums = condense(*rendering, residual, sigma, view.mesh(), state, options.huber,
                         brightness ? &*brightness : nullptr, S);
   }
@@ -154,7 +167,10 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       if (!choose_texture(scene, model, e, k, plane, size, texture)) continue;
       const PhotoPlane& photo = impl_->plane(k, plane, whole ? 0 : options.level);
       if (whole && taken.empty()) taken = taken_photos(view, k);
-      const Image& sigma = impl_->sigma(k, plane, whole ? 0 : options.level, texture);
+      const int level = whole ? 0 : options.level;
+      const double blur =
+          model.examples[static_cast<size_t>(e)].photos[i].blur_variance * std::pow(0.25, level);
+      const Image& sigma = impl_->sigma(k, plane, level, texture, blur);
       all.push_back(whole ? compare_taken(view, k, plane, taken, photo, sigma, texture,
                                           impl_->followed, options, &rendering)
                           : compare_read(view, k, plane, photo, sigma, texture, impl_->followed,

@@ -54,4 +54,21 @@ Image unresolved_variance(const Image& image, const Image& sigma) {
   return out;
 }
 
+BlurredNoise blurred_noise(double blur_variance_px2) {
+  // Power of a wave over all parts of a pixel: B-splines of order 7 over those of order 3, squared
+  // (Unser 1999). blur() leaves exp(-v (1 - cos w)) of its amplitude along each axis.
+  constexpr int kSteps = 512;
+  double all = 0.0, left = 0.0, by_variance = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double w = M_PI * (i + 0.5) / kSteps, falls = 2.0 * (1.0 - std::cos(w));
+    const double power =
+        (2416.0 + 2382.0 * std::cos(w) + 240.0 * std::cos(2.0 * w) + 2.0 * std::cos(3.0 * w)) /
+        5040.0 / std::pow((2.0 + std::cos(w)) / 3.0, 2);
+    const double kept = power * std::exp(-blur_variance_px2 * falls);
+    all += power, left += kept, by_variance -= falls * kept;
+  }
+  left /= all, by_variance /= all;
+  return {left * left, 2.0 * left * by_variance};
+}
+
 }  // namespace hookeye

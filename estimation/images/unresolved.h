@@ -13,4 +13,11 @@ namespace hookeye {
 /// by less where a lens blurs (tests/estimation/images/unresolved_test.cpp).
 Image unresolved_variance(const Image& image, const Image& sigma);
 
+/// Of the noise of a photo that is interpolated by cubic B-splines, over all parts of a pixel.
+struct BlurredNoise {
+  double share;        ///< of its variance that blur() leaves
+  double by_variance;  ///< derivative of that [1/px^2]
+};
+BlurredNoise blurred_noise(double blur_variance_px2);
+
 }  // namespace hookeye
