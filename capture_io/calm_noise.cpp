@@ -98,8 +98,11 @@ std::vector<Band> calm_bands(const std::vector<Patch>& patches) {
   if (patches.size() < fewest_in_band) return {};
   std::vector<float> level;
   for (const Patch& patch : patches) level.push_back(patch.intensity);
-  std::sort(level.begin(), level.end());
-  const double low = level[level.size() / 100], high = level[level.size() - 1 - level.size() / 100];
+  const auto at = [&](size_t place) {
+    std::nth_element(level.begin(), level.begin() + static_cast<long>(place), level.end());
+    return double(level[place]);
+  };
+  const double low = at(level.size() / 100), high = at(level.size() - 1 - level.size() / 100);
   const size_t count = std::clamp<size_t>(patches.size() / 1000, 3, 8);
   std::vector<std::vector<Patch>> in_band(count);
   for (const Patch& patch : patches) {

@@ -69,9 +69,8 @@ void read_photo_keys(const YamlSection& section, const CaptureFolder& folder, Ph
     photo.background = read_background(*background, folder);
 }
 
-void check_same_size(const Place& place, const std::string& what, const fs::path& file,
+void check_same_size(const Place& place, const std::string& what, const ImageHeader& header,
                      const Camera& camera) {
-  const ImageHeader header = read_image_header(file);
   if (header.width != camera.width || header.height != camera.height)
     throw InputError(
         place,
@@ -102,16 +101,18 @@ PhotoSpec read_photo_of(const YamlNode::Entry& entry, const std::string& example
   }
   photo.file = read_file_path(*file, what, folder);
   const ImageHeader header = header_at(*file, photo.file);
-  check_same_size(file->place, what, photo.file, camera);
+  check_same_size(file->place, what, header, camera);
   if (photo.rgb && header.channels != 3)
     throw InputError(file->place, what + " is grey but `channels: rgb` is asked for",
                      "write `channels: luminance` or hand over a colour picture");
   if (photo.rgb && photo.kind == PhotoSpec::Kind::silhouette)
     throw InputError(photo.place, what + " is a silhouette but `channels: rgb` is asked for",
                      "a silhouette has one channel: remove `channels`");
-  if (!photo.mask.empty()) check_same_size(mask_place, "mask of " + what, photo.mask, camera);
+  if (!photo.mask.empty())
+    check_same_size(mask_place, "mask of " + what, read_image_header(photo.mask), camera);
   if (photo.background.kind == BackgroundSpec::Kind::photo)
-    check_same_size(photo.place, "background of " + what, photo.background.photo, camera);
+    check_same_size(photo.place, "background of " + what, read_image_header(photo.background.photo),
+                    camera);
   return photo;
 }
 

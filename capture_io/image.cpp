@@ -85,25 +85,36 @@ std::string to_levels(const Image& image, const Encoding& encoding) {
   return bytes_of(levels);
 }
 
-Image unpack_image(Unpacker& from) {
-  Image image;
-  from.get(image.width);
-  from.get(image.height);
-  from.get(image.channels);
-  from.get(image.values);
-  const bool sized = image.width > 0 && image.height > 0 &&
-                     (image.channels == 1 || image.channels == 3) &&
-                     image.values.size() == image.pixels() * static_cast<size_t>(image.channels);
-  if (!sized) throw WireFault();
-  return image;
+void undo(const Encoding& encoding, std::vector<float>* values) {
+  if (encoding.kind == Encoding::Kind::linear) return;
+  for (float& value : *values) value = static_cast<float>(decode(value, encoding));
 }
 
-/// The picture as its file holds it.
-Image read_stored(const fs::path& file, Encoding& stored_as) {
-  return ask_helper(request("read", file), [&](Unpacker& from) {
-    if (from.take<bool>()) stored_as.kind = Encoding::Kind::srgb;
-    return unpack_image(from);
-  });
+template <class Code>
+std::vector<float> looked_up(const std::vector<Code>& codes, const std::vector<float>& meaning) {
+  std::vector<float> values(codes.size());
+  for (size_t i = 0; i < codes.size(); ++i) values[i] = meaning[codes[i]];
+  return values;
+}
+
+enum class Holes { no, yes };
+
+/// Empty `encoding`: what is usual for such a file. `holes`: of floats, pixels that are no numbers.
+Image decoded(const fs::path& file, std::optional<Encoding> encoding, Holes holes) {
+  ReadPicture read = ask_helper(request("read", file), unpack_read);
+  if (!encoding) encoding = Encoding{read.srgb ? Encoding::Kind::srgb : Encoding::Kind::linear};
+  Image image{read.width, read.height, read.channels, {}};
+  if (read.meaning.empty()) {
+    image.values = std::move(read.floats);
+    if (holes == Holes::no) check_finite(file, image);
+    undo(*encoding, &image.values);
+    return image;
+  }
+  // Once a code, not once a pixel.
+  undo(*encoding, &read.meaning);
+  image.values = read.words.empty() ? looked_up(read.bytes, read.meaning)
+                                    : looked_up(read.words, read.meaning);
+  return image;
 }
 
 }  // namespace
@@ -113,19 +124,10 @@ ImageHeader read_image_header(const fs::path& file) {
                     [](Unpacker& from) { return from.take<ImageHeader>(); });
 }
 
-Image read_image_with_holes(const fs::path& file) {
-  Encoding ignored;
-  return read_stored(file, ignored);
-}
+Image read_image_with_holes(const fs::path& file) { return decoded(file, Encoding{}, Holes::yes); }
 
 Image read_image(const fs::path& file, std::optional<Encoding> encoding) {
-  Encoding used;
-  Image image = read_stored(file, used);
-  check_finite(file, image);
-  if (encoding) used = *encoding;
-  if (used.kind != Encoding::Kind::linear)
-    for (float& value : image.values) value = static_cast<float>(decode(value, used));
-  return image;
+  return decoded(file, encoding, Holes::no);
 }
 
 Image read_image(const NamedFile& file, std::optional<Encoding> encoding) {

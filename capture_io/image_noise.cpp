@@ -29,39 +29,48 @@ constexpr double same_answer = 0.75, sure_answer = 0.5, sure_pixels = 8000;
 constexpr int reach = 2;                                         ///< of the filter [px]
 constexpr double difference[2 * reach + 1] = {1, -4, 6, -4, 1};  ///< squares sum to 70
 
-/// The residual at a pixel, with the standard deviation of the noise.
-double residual_at(const Image& image, int x, int y, int channel) {
-  double sum = 0;
-  for (int dy = -reach; dy <= reach; ++dy) {
-    double row = 0;
-    for (int dx = -reach; dx <= reach; ++dx)
-      row += difference[dx + reach] * image.at(x + dx, y + dy, channel);
-    sum += difference[dy + reach] * row;
-  }
-  return sum / 70;
-}
-
 struct Block {
   double intensity;
   double variance;
 };
+
+/// Mean square of the residuals of the block from (x0, y0), each with the standard deviation of the
+/// noise.
+double residual_variance(const Image& image, int x0, int y0, int channel) {
+  double along[block + 2 * reach][block];  // differences along the rows
+  for (int j = 0; j < block + 2 * reach; ++j)
+    for (int i = 0; i < block; ++i) {
+      double row = 0;
+      for (int dx = -reach; dx <= reach; ++dx)
+        row += difference[dx + reach] * image.at(x0 + i + dx, y0 + j - reach, channel);
+      along[j][i] = row;
+    }
+  double squares = 0;
+  for (int j = 0; j < block; ++j)
+    for (int i = 0; i < block; ++i) {
+      double sum = 0;
+      for (int dy = 0; dy <= 2 * reach; ++dy) sum += difference[dy] * along[j + dy][i];
+      squares += (sum / 70) * (sum / 70);
+    }
+  return squares / (block * block);
+}
 
 /// Mean and residual variance of every block without clipped pixels.
 std::vector<Block> calm_blocks(const Image& image, int channel) {
   std::vector<Block> blocks;
   for (int y0 = reach; y0 + block + reach <= image.height; y0 += block) {
     for (int x0 = reach; x0 + block + reach <= image.width; x0 += block) {
-      double sum = 0, squares = 0;
+      double sum = 0;
       bool clipped = false;
-      for (int y = y0; y < y0 + block; ++y) {
+      for (int y = y0; y < y0 + block && !clipped; ++y) {
         for (int x = x0; x < x0 + block; ++x) {
           const double value = image.at(x, y, channel);
           clipped |= value <= 0 || value >= 0.999;
           sum += value;
-          squares += std::pow(residual_at(image, x, y, channel), 2);
         }
       }
-      if (!clipped) blocks.push_back({sum / (block * block), squares / (block * block)});
+      if (!clipped)
+        blocks.push_back({sum / (block * block), residual_variance(image, x0, y0, channel)});
     }
   }
   return blocks;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
 
 #include "capture_io/capture.h"
-#include "capture_io/unweighed_photo.h"
+#include "capture_io/photo_reader.h"
 
 namespace hookeye {
 namespace {
@@ -78,47 +81,91 @@ NoiseModel estimated_noise(const Image& image, const ImageHeader& header) {
   return noise;
 }
 
+/// Masks and photos of what is behind the body, which many photos share.
+using Planes = std::vector<SharedValue<Image>>;
+
+/// The part of a photo that counts, where a mask is told.
+Planes mask_of(const PhotoSpec& spec) {
+  return {luminance(read_image(NamedFile{spec.mask, spec.place}, Encoding{}))};
+}
+
+/// The empty scene, taken as the photo was: by channels or in grey.
+Planes planes_behind(const PhotoSpec& spec, bool by_channel) {
+  Image empty = read_image(NamedFile{spec.background.photo, spec.place}, spec.encoding);
+  if (empty.channels == 1) return {std::move(empty)};
+  if (!by_channel) return {luminance(empty)};
+  return {plane_of(empty, 0), plane_of(empty, 1), plane_of(empty, 2)};
+}
+
+}  // namespace
+
+struct PhotoReader::Shared {
+  /// File, how it is read, and how it is decoded.
+  using Key = std::tuple<std::filesystem::path, int, int, double>;
+  std::mutex mutex;
+  std::map<Key, Planes> known;
+
+  template <class Read>
+  Planes planes(const Key& key, const Read& read) {
+    const std::lock_guard lock(mutex);
+    const auto found = known.find(key);
+    return found != known.end() ? found->second : known.emplace(key, read()).first->second;
+  }
+};
+
+namespace {
+
 void mark_invalid(const PhotoSpec& spec, const Camera& camera, const Image& image, bool floating,
-                  Photo& photo) {
+                  PhotoReader::Shared& shared, Photo& photo) {
   std::vector<unsigned char>& valid = photo.valid.own();
   valid.assign(image.pixels(), 1);
   if (!floating && photo.kind == PhotoSpec::Kind::image)
     for (size_t i = 0; i < image.values.size(); ++i)
       if (image.values[i] >= saturated) valid[i / image.channels] = 0;
   if (spec.mask.empty()) return;
-  const Image mask = luminance(read_image(NamedFile{spec.mask, spec.place}, Encoding{}));
+  const Planes planes = shared.planes({spec.mask, 0, 0, 1.0}, [&] { return mask_of(spec); });
+  const Image& mask = planes.front();
   check_size(spec, "the mask", mask, camera);
   for (size_t p = 0; p < mask.pixels(); ++p)
     if (mask.values[p] < 0.5f) valid[p] = 0;
 }
 
 /// The empty scene, taken as the photo was: by planes like the photo's own.
-std::vector<SharedValue<Image>> backdrop_of(const PhotoSpec& spec, const Camera& camera,
-                                            bool by_channel) {
+Planes backdrop_of(const PhotoSpec& spec, const Camera& camera, bool by_channel,
+                   PhotoReader::Shared& shared) {
   if (spec.background.kind != BackgroundSpec::Kind::photo) return {};
-  const Image empty = read_image(NamedFile{spec.background.photo, spec.place}, spec.encoding);
-  check_size(spec, "the photo of the background", empty, camera);
-  if (!by_channel || empty.channels != 3)
-    return std::vector<SharedValue<Image>>(by_channel ? 3 : 1, luminance(empty));
-  return {plane_of(empty, 0), plane_of(empty, 1), plane_of(empty, 2)};
+  const int usual = -1;
+  const int kind = spec.encoding ? static_cast<int>(spec.encoding->kind) : usual;
+  const double gamma = spec.encoding ? spec.encoding->gamma : 1.0;
+  Planes planes = shared.planes({spec.background.photo, by_channel ? 3 : 1, kind, gamma},
+                                [&] { return planes_behind(spec, by_channel); });
+  check_size(spec, "the photo of the background", planes.front(), camera);
+  if (by_channel && planes.size() == 1) planes.resize(3, planes.front());
+  return planes;
 }
 
 }  // namespace
 
-namespace {
+ImageHeader header_of(const PhotoSpec& spec) {
+  try {
+    return read_image_header(spec.file);
+  } catch (const InputError& error) {
+    throw told_at(spec.place, error);
+  }
+}
 
-/// What of each pixel's noise is worked out.
-enum class Weighed { no, yes };
+PhotoReader::PhotoReader() : shared_(std::make_unique<Shared>()) {}
+PhotoReader::~PhotoReader() = default;
 
-Photo read_as(const PhotoSpec& spec, const Camera& camera, Weighed weighed) {
+Photo PhotoReader::read(const PhotoSpec& spec, const Camera& camera, Weighed weighed) {
   Photo photo;
   photo.camera = spec.camera;
   photo.kind = spec.kind;
-  const ImageHeader header = read_image_header(spec.file);
+  const ImageHeader header = header_of(spec);
   const bool silhouette = spec.kind == PhotoSpec::Kind::silhouette;
   std::optional<Encoding> encoding = spec.encoding;
   if (silhouette && !encoding) encoding = Encoding{};  // a coverage, not a brightness
-  const Image image = read_image(NamedFile{spec.file, spec.place}, encoding);
+  Image image = read_image(NamedFile{spec.file, spec.place}, encoding);
   check_size(spec, "the photo", image, camera);
   if (spec.noise)
     photo.noise = *spec.noise;
@@ -126,8 +173,8 @@ Photo read_as(const PhotoSpec& spec, const Camera& camera, Weighed weighed) {
     photo.noise = {0.0, binary_sigma, true};
   else
     photo.noise = estimated_noise(image, header);
-  mark_invalid(spec, camera, image, header.floating, photo);
-  photo.backdrop = backdrop_of(spec, camera, spec.rgb && image.channels == 3);
+  mark_invalid(spec, camera, image, header.floating, *shared_, photo);
+  photo.backdrop = backdrop_of(spec, camera, spec.rgb && image.channels == 3, *shared_);
   if (spec.rgb && image.channels == 3) {
     photo.channel_weights = {1, 1, 1};
     for (int c = 0; c < 3; ++c) {
@@ -139,20 +186,14 @@ Photo read_as(const PhotoSpec& spec, const Camera& camera, Weighed weighed) {
   }
   photo.channel_weights = {1};
   if (image.channels == 3) photo.channel_weights = {0.2126, 0.7152, 0.0722};
-  photo.planes = {luminance(image)};
   if (weighed == Weighed::yes)
-    photo.sigma = {luminance_sigma(image, photo.noise, photo.channel_weights)};
+    photo.sigma.emplace_back(luminance_sigma(image, photo.noise, photo.channel_weights));
+  photo.planes.emplace_back(image.channels == 1 ? std::move(image) : luminance(image));
   return photo;
 }
 
-}  // namespace
-
 Photo read_photo(const PhotoSpec& spec, const Camera& camera) {
-  return read_as(spec, camera, Weighed::yes);
-}
-
-Photo read_unweighed_photo(const PhotoSpec& spec, const Camera& camera) {
-  return read_as(spec, camera, Weighed::no);
+  return PhotoReader().read(spec, camera, Weighed::yes);
 }
 
 }  // namespace hookeye

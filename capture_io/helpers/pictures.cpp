@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 
 #include "capture_io/image.h"
 #include "capture_io/png_chunks.h"
@@ -41,8 +42,11 @@ std::string one_line(std::string text) {
 /// JPEG readers fill the missing rest of a truncated file with grey and only warn. A complete file
 /// has its end marker (FF D9) after the last scan marker (FF DA); cameras may append data after it.
 bool jpeg_is_complete(const fs::path& file) {
+  std::error_code error;
+  const auto size = fs::file_size(file, error);
+  std::string bytes(error ? 0 : size, '\0');
   std::ifstream stream(file, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  if (error || !stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return false;
   const size_t scan = bytes.rfind("\xFF\xDA");
   const size_t end = bytes.rfind("\xFF\xD9");
   return scan != std::string::npos && end != std::string::npos && end > scan;
@@ -128,17 +132,19 @@ ImageHeader header_of(const OIIO::ImageSpec& spec) {
 }
 
 /// Channels `spec.nchannels` of all pixels to the first one or three colours.
-Image keep_colours(const std::vector<float>& all, const OIIO::ImageSpec& spec) {
-  const ImageHeader header = header_of(spec);
-  Image image{header.width, header.height, header.channels, {}};
-  image.values.resize(image.pixels() * image.channels);
-  int source[3], found = 0;
-  for (int c = 0; c < spec.nchannels && found < image.channels; ++c)
-    if (c != spec.alpha_channel) source[found++] = c;
-  for (size_t p = 0; p < image.pixels(); ++p)
-    for (int c = 0; c < found; ++c)
-      image.values[p * image.channels + c] = all[p * spec.nchannels + source[c]];
-  return image;
+template <class Value>
+std::vector<Value> keep_colours(std::vector<Value> all, const OIIO::ImageSpec& spec) {
+  const auto channels = static_cast<size_t>(header_of(spec).channels);
+  const auto stored = static_cast<size_t>(spec.nchannels);
+  if (channels == stored) return all;
+  const size_t pixels = all.size() / stored;
+  std::vector<Value> kept(pixels * channels);
+  size_t source[3], found = 0;
+  for (size_t c = 0; c < stored && found < channels; ++c)
+    if (static_cast<int>(c) != spec.alpha_channel) source[found++] = c;
+  for (size_t p = 0; p < pixels; ++p)
+    for (size_t c = 0; c < found; ++c) kept[p * channels + c] = all[p * stored + source[c]];
+  return kept;
 }
 
 /// The whole picture in floats, in the library, in the answer and in between.
@@ -148,27 +154,57 @@ void allow_pixels(const OIIO::ImageSpec& spec) {
   allow(least.memory + 6.0 * sizeof(float) * values, least.seconds + 1e-6 * values);
 }
 
-Image read_stored(const fs::path& file, bool& srgb) {
+/// All values as `type`; what the library complains of is in input.geterror().
+template <class Value>
+std::vector<Value> read_values(OIIO::ImageInput& input, OIIO::TypeDesc type, bool* complete) {
+  const OIIO::ImageSpec spec = input.spec();
+  std::vector<Value> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
+  try {
+    *complete = input.read_image(0, 0, 0, spec.nchannels, type, all.data());
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    *complete = false;
+  }
+  return keep_colours(std::move(all), spec);
+}
+
+/// What each code of one or two bytes stands for, by the library that would read floats.
+std::vector<float> meaning_of_codes(OIIO::TypeDesc type) {
+  std::vector<uint16_t> codes(type.size() == 1 ? 256 : 65536);
+  std::iota(codes.begin(), codes.end(), uint16_t{0});
+  const std::vector<uint8_t> bytes(codes.begin(), codes.end());
+  std::vector<float> meaning(codes.size());
+  const void* from = type.size() == 1 ? static_cast<const void*>(bytes.data()) : codes.data();
+  OIIO::convert_pixel_values(type, from, OIIO::TypeDesc::FLOAT, meaning.data(),
+                             static_cast<int>(codes.size()));
+  return meaning;
+}
+
+ReadPicture read_stored(const fs::path& file) {
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
   const OIIO::ImageSpec spec = input->spec();
   const std::string format = input->format_name();
   if ((format == "jpeg" && !jpeg_is_complete(file)) || (format == "png" && !png_is_intact(file)))
     unreadable(file, "the picture is truncated or damaged");
   allow_pixels(spec);
-  std::vector<float> all(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
+  ReadPicture out;
+  const ImageHeader header = header_of(spec);
+  out.width = header.width, out.height = header.height, out.channels = header.channels;
+  out.srgb = !is_floating(spec) && spec.format.size() == 1;
   bool complete = false;
-  try {
-    complete = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data());
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception&) {
-    complete = false;
-  }
+  const bool codes = spec.channelformats.empty();
+  if (codes && spec.format == OIIO::TypeDesc::UINT8)
+    out.bytes = read_values<uint8_t>(*input, spec.format, &complete);
+  else if (codes && spec.format == OIIO::TypeDesc::UINT16)
+    out.words = read_values<uint16_t>(*input, spec.format, &complete);
+  else
+    out.floats = read_values<float>(*input, OIIO::TypeDesc::FLOAT, &complete);
+  if (out.floats.empty()) out.meaning = meaning_of_codes(spec.format);
   const std::string why = one_line(input->geterror());
   input->close();
   if (!complete || !why.empty()) unreadable(file, "the picture is truncated or damaged");
-  srgb = !is_floating(spec) && spec.format.size() == 1;
-  return keep_colours(all, spec);
+  return out;
 }
 
 ImageHeader read_header(const fs::path& file) {
@@ -230,9 +266,7 @@ std::string answer(Unpacker& request) {
   Packer out;
   if (task == "header") return out.put(read_header(file)).take();
   if (task == "time") return out.put(time_of(file)).take();
-  bool srgb = false;
-  const Image image = read_stored(file, srgb);
-  out.put(srgb).put(image.width).put(image.height).put(image.channels).put(image.values);
+  pack(out, read_stored(file));
   return out.take();
 }
 

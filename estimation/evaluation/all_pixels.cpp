@@ -6,12 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include "core/memory_left.h"
 #include "core/work_clock.h"
 #include "estimation/images/unresolved.h"
+#include "estimation/model/photo_again.h"
 
 namespace hookeye {
 
@@ -61,33 +60,11 @@ const PhotoReading& reading_of(const Scene& scene, const std::string& camera) {
   return scene.readings.at(camera);
 }
 
-/// Byte for byte.
-bool same(const Image& a, const Image& b) {
-  return a.values.size() == b.values.size() &&
-         std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
-}
-
-/// One photo of the capture as it was taken. Its halved pixels are those that the fit has seen, or
-/// somebody has written another one meanwhile.
+/// One photo of the capture as it was taken, cut to what is read of it.
 Photo taken_photo(const Scene& scene, int example, int photo) {
-  const Working part(WorkPart::reading);
-  const PhotoSpec& spec = scene.capture.examples[example].photos[photo];
-  const PhotoReading& reading = reading_of(scene, spec.camera);
-  Camera camera = scene.capture.camera(spec.camera);
-  camera.width = reading.taken_width, camera.height = reading.taken_height;
-  const MemoryClaim claim(decoding_bytes(camera));
-  Photo out = read_photo(spec, camera);
-  PhotoReading all_tiles = reading;
-  all_tiles.share = 1.0;
-  const Photo again = as_read(out, all_tiles, "");
-  const Photo& seen = scene.photos[example][photo];
-  for (size_t plane = 0; plane < seen.planes.size(); ++plane)
-    if (plane >= again.planes.size() || !same(*again.planes[plane], *seen.planes[plane]))
-      throw InputError(
-          spec.place,
-          fmt::format("the photo {} has changed since it was read", spec.file.filename().string()),
-          "leave photos alone while a command works on them, and run it again");
-  const Camera& read = scene.capture.camera(spec.camera);
+  Photo out = read_again(scene, example, photo, Weighed::yes);
+  const PhotoReading& reading = reading_of(scene, out.camera);
+  const Camera& read = scene.capture.camera(out.camera);
   const int side = 1 << reading.halvings;
   cut(out,
       {reading.window.x * side, reading.window.y * side, read.width * side, read.height * side});

@@ -5,6 +5,8 @@
 #include <map>
 #include <numeric>
 
+#include "estimation/model/photo_again.h"
+
 namespace hookeye::inspection {
 
 namespace {
@@ -33,7 +35,7 @@ std::vector<Codes> stored_codes(const Sight& sight) {
   });
   for (const PhotoIndex& photo : photos) {
     const PhotoSpec& spec = sight.spec(photo);
-    const ImageHeader header = read_image_header(spec.file);
+    const ImageHeader header = header_of(spec);
     if (header.floating || spec.kind != PhotoSpec::Kind::image) continue;
     Codes& codes = by_camera[spec.camera];
     if (codes.photos == kPhotos) continue;
@@ -44,6 +46,7 @@ std::vector<Codes> stored_codes(const Sight& sight) {
     }
     if (codes.bits != (header.bits <= 8 ? 8 : 16)) continue;
     add(read_image(NamedFile{spec.file, spec.place}, Encoding{}), &codes);
+    read_again(sight.scene(), photo.first, photo.second, Weighed::no);  // it is the one looked at
     ++codes.photos;
   }
   std::vector<Codes> out;

@@ -17,7 +17,8 @@ struct Codes {
   int used_between(int low, int high) const;  ///< codes of [low, high) that occur
 };
 
-/// One a camera that has integer photos (silhouettes aside). Photos are read again.
+/// One a camera that has integer photos (silhouettes aside). Photos are read again: throws
+/// InputError where one has gone or changed meanwhile.
 std::vector<Codes> stored_codes(const Sight& sight);
 
 }  // namespace hookeye::inspection

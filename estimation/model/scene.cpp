@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <map>
+#include <mutex>
 #include <set>
 
-#include "capture_io/unweighed_photo.h"
+#include "capture_io/photo_reader.h"
 #include "core/memory_left.h"
 #include "core/work_clock.h"
 #include "estimation/model/field_points.h"
@@ -93,11 +95,47 @@ std::map<std::string, const PhotoSpec*> deciding_photos(const std::vector<Wanted
   return out;
 }
 
+/// What several photos of a camera have alike, in one copy: which pixels count (all, or those of a
+/// mask), and what is behind the body. Any thread.
+class HeldOnce {
+ public:
+  void share(Photo* photo) {
+    const std::lock_guard lock(mutex_);
+    Kept& kept = kept_[photo->camera];
+    one_of(&kept.valid, &photo->valid);
+    kept.backdrop.resize(std::max(kept.backdrop.size(), photo->backdrop.size()));
+    for (size_t k = 0; k < photo->backdrop.size(); ++k)
+      one_of(&kept.backdrop[k], &photo->backdrop[k]);
+  }
+
+ private:
+  struct Kept {
+    SharedValue<std::vector<unsigned char>> valid;
+    std::vector<SharedValue<Image>> backdrop;
+  };
+  static bool alike(const std::vector<unsigned char>& a, const std::vector<unsigned char>& b) {
+    return a == b;
+  }
+  static bool alike(const Image& a, const Image& b) {
+    return a.width == b.width && a.height == b.height && a.values == b.values;
+  }
+  template <class Value>
+  static void one_of(SharedValue<Value>* kept, SharedValue<Value>* own) {
+    if (alike(**kept, **own))
+      *own = *kept;
+    else
+      *kept = *own;
+  }
+
+  std::mutex mutex_;
+  std::map<std::string, Kept> kept_;
+};
+
 /// In the order of `all`, a few at a time: a photo of 12 Mpx takes some hundred MB until it is
 /// halved. The first of several faults is the one told.
 struct ReadAs {
   PhotoReadings readings;
-  bool sigma = true;    ///< nobody weighs the residuals of what is looked at
+  Weighed weighed = Weighed::yes;
   PhotosRead progress;  ///< may be empty
 };
 std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& capture,
@@ -107,6 +145,8 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
   std::vector<std::exception_ptr> faults(all.size());
   std::atomic<bool> failed = false;
   std::atomic<int> done = 0;
+  PhotoReader reader;
+  HeldOnce held;
   const auto read = [&](size_t i) {
     if (failed) return;
     const Working part(WorkPart::reading);
@@ -115,11 +155,12 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
       const Camera& camera = capture.camera(spec.camera);
       check_large_enough(spec, camera);
       const MemoryClaim claim(decoding_bytes(camera));
-      out[i] = as.sigma ? read_photo(spec, camera) : read_unweighed_photo(spec, camera);
+      out[i] = reader.read(spec, camera, as.weighed);
       const auto reading = as.readings.find(spec.camera);
       if (reading != as.readings.end())
         out[i] =
             as_read(std::move(out[i]), reading->second, all[i].example->name + "/" + spec.camera);
+      held.share(&out[i]);
     } catch (...) {
       faults[i] = std::current_exception();
       failed = true;
@@ -201,12 +242,16 @@ ReadPhotos read_as_needed(const Capture& capture, const Body& body, const FitLim
       if (all[i].spec == deciding) first = own.size();
       own.push_back(all[i]), place.push_back(i);
     }
-    std::vector<Photo> photos = read_all(own, capture, {{{name, halved_only}}, true, {}});
+    std::vector<Photo> photos = read_all(own, capture, {{{name, halved_only}}, Weighed::yes, {}});
     if (large) reading.window = window_of(photos, first, camera, reading.halvings, body, capture);
     PhotoReading rest = reading;
     rest.halvings = 0;
-    for (size_t k = 0; k < own.size(); ++k)
-      out.photos[place[k]] = as_read(std::move(photos[k]), rest, own[k].example->name + "/" + name);
+    HeldOnce held;
+    for (size_t k = 0; k < own.size(); ++k) {
+      Photo& photo = out.photos[place[k]];
+      photo = as_read(std::move(photos[k]), rest, own[k].example->name + "/" + name);
+      held.share(&photo);
+    }
     if (!reading.whole()) out.readings[name] = reading;
   }
   return out;
@@ -299,7 +344,7 @@ std::shared_ptr<const Scene> load_scene_to_look_at(const Capture& capture, int l
       ++reading.halvings;
     if (reading.halvings > 0) readings[camera.name] = reading;
   }
-  scene->photos = photos_of(capture, {readings, false, progress});
+  scene->photos = photos_of(capture, {readings, Weighed::no, progress});
   take_readings(std::move(readings), scene.get());
   return scene;
 }
@@ -319,7 +364,7 @@ std::shared_ptr<const Scene> with_tests(const Scene& scene, const Capture& whole
     check_gauges(*out, example);
     check_sensors(tests, example);
   }
-  for (auto& photos : photos_of(tests, {scene.readings, true, {}}))
+  for (auto& photos : photos_of(tests, {scene.readings, Weighed::yes, {}}))
     out->photos.push_back(std::move(photos));
   return out;
 }

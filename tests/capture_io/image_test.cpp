@@ -135,6 +135,31 @@ INSTANTIATE_TEST_SUITE_P(
                     FormatCase{"f.exr", OIIO::TypeDesc::FLOAT, 0, 0, 32},
                     FormatCase{"g.exr", OIIO::TypeDesc::HALF, 0, 5e-4, 16}));
 
+/// The values of a file in floats, by the library.
+std::vector<float> by_library(const fs::path& file, size_t count) {
+  std::vector<float> values(count);
+  const auto input = OIIO::ImageInput::open(file.string());
+  EXPECT_TRUE(input && input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, values.data()));
+  return values;
+}
+
+/// Codes are looked up in a table: to the last bit what the library and the formula say.
+TEST(ImageTest, CodesStandForWhatTheLibraryReads) {
+  const TemporaryFolder folder;
+  Image all{256, 256, 1, std::vector<float>(65536)};  // every code of 16 bits, and of 8
+  for (size_t i = 0; i < all.values.size(); ++i) all.values[i] = static_cast<float>(i) / 65535.0f;
+  const Encoding gamma{Encoding::Kind::gamma, 2.2};
+  for (const char* name : {"a.png", "b.tif"})
+    for (const auto type : {OIIO::TypeDesc::UINT8, OIIO::TypeDesc::UINT16}) {
+      const fs::path file = folder / name;
+      store(file, all, type);
+      std::vector<float> values = by_library(file, all.values.size());
+      EXPECT_EQ(read_image(file, Encoding{}).values, values) << name;
+      for (float& value : values) value = static_cast<float>(std::pow(double(value), 2.2));
+      EXPECT_EQ(read_image(file, gamma).values, values) << name;
+    }
+}
+
 TEST(ImageTest, JpegIsReadWithinItsLoss) {
   const TemporaryFolder folder;
   for (const int channels : {1, 3}) {

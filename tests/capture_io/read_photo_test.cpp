@@ -4,6 +4,7 @@
 
 #include "capture_io/capture.h"
 #include "capture_io/capture_folder.h"
+#include "capture_io/photo_reader.h"
 #include "support/shared_data.h"
 
 namespace hookeye::test {
@@ -100,6 +101,30 @@ TEST(ReadPhotoTest, SizeIsTheCamerasSize) {
                  "capture.yaml:7:3: the photo has 2 x 1 pixels, camera `front` has 1 x 2\n"
                  "  photos are compared at the size that the camera was calibrated for");
   }
+}
+
+TEST(PhotoReaderTest, WhatPhotosShareIsReadOnceAndHeldOnce) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.exr", "b.exr", "empty.exr"}) write_image(folder / name, colours);
+  write_image(folder / "mask.png", {2, 1, 1, {0, 1}});
+  PhotoSpec spec = spec_of(folder / "a.exr");
+  spec.mask = folder / "mask.png";
+  spec.background.kind = BackgroundSpec::Kind::photo;
+  spec.background.photo = folder / "empty.exr";
+  PhotoReader reader;
+  const Photo first = reader.read(spec, camera_of(2, 1), Weighed::yes);
+  std::filesystem::remove(folder / "mask.png");
+  std::filesystem::remove(folder / "empty.exr");
+  spec.file = folder / "b.exr";
+  const Photo second = reader.read(spec, camera_of(2, 1), Weighed::no);
+  EXPECT_EQ(*second.valid, (std::vector<unsigned char>{0, 1}));
+  EXPECT_EQ(second.backdrop.at(0).pointer(), first.backdrop.at(0).pointer());
+  EXPECT_EQ(second.backdrop[0]->values, second.planes[0]->values);
+  EXPECT_EQ(second.planes[0]->values, first.planes[0]->values);
+  EXPECT_TRUE(second.sigma.empty());
+  // By channels it is read another way.
+  spec.rgb = true;
+  EXPECT_THROW(reader.read(spec, camera_of(2, 1), Weighed::no), InputError);
 }
 
 /// Photos of another program. To the law that was added come rounding and whatever the renderer's

@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   Unpacker from({reinterpret_cast<const char*>(data) + 1, size - 1});
   try {
-    switch (data[0] % 4) {
+    switch (data[0] % 5) {
       case 0:
         detail::unpack_volume(from);
         break;
@@ -19,6 +19,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         break;
       case 2:
         unpack_stored(from);
+        break;
+      case 3:
+        unpack_read(from);
         break;
       default:
         unpack_stored_values(from);
