@@ -176,8 +176,9 @@ void add_common_options(CLI::App& command, Session& session) {
 }
 
 /// Of a process in company: the commands that share their work, each with a folder of its own.
-void keep_to(const Company& company, CLI::App& app) {
+void keep_to(const Company& company, CLI::App& app, std::string& solver) {
   if (company.commands.empty()) return;
+  if (!company.solvers.empty()) solver = company.solvers.front();
   for (CLI::App* command : app.get_subcommands({})) {
     if (std::ranges::find(company.commands, command->get_name()) == company.commands.end()) {
       app.remove_subcommand(command);
@@ -185,6 +186,9 @@ void keep_to(const Company& company, CLI::App& app) {
     }
     if (CLI::Option* others = command->get_option_no_throw("--workers"))
       command->remove_option(others);
+    if (!company.solvers.empty())
+      command->add_option("--solver", solver, "auto, direct or multigrid (default: by memory)")
+          ->check(CLI::IsMember(company.solvers));
     if (!company.own_folder) continue;
     for (const char* folder : {"--out", "RUN"})
       if (CLI::Option* option = command->get_option_no_throw(folder))
@@ -196,6 +200,7 @@ int run_program(int argc, char** argv, const Company& company) {
   Session session;
   session.handed_on = take_handed_on(argc, argv);
   CommandBody chosen;
+  std::string solver;
   CLI::App app{
       "Finds the elastic model whose pictures match the photos of a soft object,\n"
       "and names the physical effect that the model lacks."};
@@ -206,7 +211,7 @@ int run_program(int argc, char** argv, const Company& company) {
       "\nExit status: 0 done, 1 internal error, 2 bad input, 3 the numbers failed,\n"
       "130 stopped by Ctrl-C (all that is finished is kept).");
   for (const AddCommand add : kCommands) add(app, chosen);
-  keep_to(company, app);
+  keep_to(company, app, solver);
   add_common_options(app, session);  // people write them before the command, too
   for (CLI::App* command : app.get_subcommands({})) add_common_options(*command, session);
   try {
@@ -225,7 +230,12 @@ int run_program(int argc, char** argv, const Company& company) {
     threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   if (company.begins) company.begins(static_cast<int>(threads));
-  return run(chosen, session);
+  return run(
+      [&](Session& told) {
+        if (company.solve_by) company.solve_by(solver);
+        chosen(told);
+      },
+      session);
 }
 
 }  // namespace

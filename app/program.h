@@ -16,6 +16,10 @@ struct Company {
   int threads = 0;                    ///< where the user tells none; 0: all cores
   /// Where this process keeps what the user wants in that folder. Null: there.
   std::function<std::string(const std::string& folder)> own_folder;
+  /// What --solver may be, its default first; none: there is no such option.
+  std::vector<std::string> solvers;
+  /// Told what it is before anything is solved. Throws InputError.
+  std::function<void(const std::string& solver)> solve_by;
   /// The command line is understood, nothing is done yet.
   std::function<void(int threads)> begins;
 };

@@ -7,6 +7,7 @@
 # Inside estimation/ (all of them on images and model, but for images itself):
 #   images <- model <- evaluation <- fit <- diagnosis <- search, plan <- output
 #             model <- effects <- diagnosis, synth     evaluation <- inspection
+# simulation/petsc is a library of its own, for app/mpi alone;
 # and a third-party library is touched in one .cpp only, so that it can be replaced there. A library
 # that layers beside each other use for different ends is touched in one .cpp of each.
 cmake_minimum_required(VERSION 3.25)
@@ -41,7 +42,7 @@ set(below_synth images model evaluation effects fit)
 set(below_output images model evaluation effects fit diagnosis plan search)
 # First part of the header's path, as a regular expression.
 set(libraries OpenImageIO yaml-cpp tetgen cholmod metis gmsh CGAL pugixml zlib embree3 ceres httplib
-    boost xxhash sqlite3)
+    boost xxhash sqlite3 petscksp petscmat petscvec petscsys)
 set(layers_of_ceres estimation calibration placing)  # one .cpp in each; other libraries: in one of all
 
 set(faults "")
@@ -61,6 +62,8 @@ foreach(layer IN LISTS layers)
         fault("${source} includes ${path}: write the path from the top folder")
       elseif(first IN_LIST layers AND NOT first STREQUAL layer AND NOT first IN_LIST below_${layer})
         fault("${source} includes ${path}: ${layer} stands on (${below_${layer}})")
+      elseif(path MATCHES "^simulation/petsc/" AND NOT source MATCHES "^(simulation/petsc|app/mpi)/")
+        fault("${source} includes ${path}: PETSc and MPI are known to (simulation/petsc app/mpi) alone")
       elseif(layer STREQUAL "exporters" AND path MATCHES "^estimation/" AND NOT path MATCHES "^estimation/(images|model|evaluation)/")
         fault("${source} includes ${path}: of estimation exporters stands on (evaluation) and what is below it")
       elseif(layer STREQUAL "placing" AND path MATCHES "^estimation/" AND

@@ -1,5 +1,6 @@
 # One library a folder: hookeye_layer(render LINK meshing ... PRIVATE embree ...). Sources are all
-# .cpp files below the folder, but for those of helpers/.
+# .cpp files below the folder, but for those of helpers/ and of the folder WITHOUT, which is a library
+# of its own.
 function(hookeye_flags target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic)
   if(HOOKEYE_WERROR)
@@ -20,9 +21,12 @@ endfunction()
 
 # FROM FOLDER: sources of that folder below; PCH_OF TARGET: with that target's precompiled header.
 function(hookeye_layer name)
-  cmake_parse_arguments(L "UNITY" "FROM;PCH_OF" "LINK;PRIVATE" ${ARGN})
+  cmake_parse_arguments(L "UNITY" "FROM;PCH_OF;WITHOUT" "LINK;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${L_FROM}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/helpers/")
+  if(L_WITHOUT)
+    list(FILTER sources EXCLUDE REGEX "/${L_WITHOUT}/")
+  endif()
   add_library(${name} STATIC ${sources})
   # The Python module is linked from the same objects.
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ON

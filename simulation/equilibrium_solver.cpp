@@ -58,13 +58,17 @@ VectorXd prescribed_jump(const Problem& problem, const VectorXd& rest, const Vec
   return jump;
 }
 
+/// What iterations may leave of a predicted motion, which is that of a linear body.
+constexpr double kPredicted = 1e-3;
+
 /// Motion of all unknowns when the prescribed ones jump and the load grows: the jump, and on the
 /// free ones -K_ff^-1 (R(s_new) + K_fc jump) with the factor at hand.
 VectorXd predict(const Problem& problem, const NewtonState& state, const SparseMatrix& K,
                  const VectorXd& q, double s, const VectorXd& jump) {
   const VectorXd R = problem.residual(q, s) + K * jump;
   VectorXd x;
-  state.factor->solve(-select(R, state.free), x);
+  if (!state.factor->solve_within(-select(R, state.free), kPredicted, x))
+    state.factor->solve(-select(R, state.free), x);
   VectorXd d = jump;
   for (size_t i = 0; i < state.free.size(); ++i) d[state.free[i]] = x[static_cast<Eigen::Index>(i)];
   return d;
@@ -198,10 +202,11 @@ NewtonOutcome EquilibriumSolver::Impl::climb(const Problem& at_once,
       reached = 1.0;
       return {true, 0.0, ""};
     }
-    if (!state.factorize()) {
+    if (!state.factorize(0.0, true)) {
       if (problem.held_by) return failed("held where it was, the body is not stable");
       problem.tangent(x, s, true, state.K);
-      if (!state.factorize()) return failed("the tangent is singular: something is not held");
+      if (!state.factorize(0.0, true))
+        return failed("the tangent is singular: something is not held");
     }
     const VectorXd jump = prescribed_jump(problem, rest, from, x, next);
     const VectorXd d = predict(problem, state, state.K, x, next, jump);
@@ -234,7 +239,7 @@ Result<Equilibrium> EquilibriumSolver::Impl::finish(const Problem& problem, bool
   Equilibrium e;
   e.R = problem.residual(x, 1.0);
   if (factored) {
-    e.stable = state.factorize();  // newton() left the true tangent at x in K
+    e.stable = state.factorize(0.0, true);  // newton() left the true tangent at x in K
     if (!e.stable && !state.factor->factorize_indefinite(state.K))
       return no_result(
           {problem.loading.name, 1.0,

@@ -58,9 +58,11 @@ LineSearch search(const Problem& problem, double s, const VectorXd& q, const Vec
   return out;
 }
 
-/// K_ff x = b with the true tangent on the factor at hand, of whichever tangent. -1: not reached.
+/// K_ff x = b with the true tangent on the factor at hand, of whichever tangent. -1: not reached,
+/// or a new tangent's is had for less.
 int solve_iteratively(const NewtonState& state, const VectorXd& b, double tolerance,
                       int max_iterations, VectorXd& x) {
+  if (state.W_ff.nonZeros() == 0 && state.factor->iterates()) return -1;
   if (state.W_ff.nonZeros() == 0)
     return conjugate_gradients(state.K, *state.factor, b, tolerance, max_iterations, x);
   return gmres(sum(state.K, state.W), *state.factor, b, tolerance, max_iterations, x);
@@ -68,21 +70,20 @@ int solve_iteratively(const NewtonState& state, const VectorXd& b, double tolera
 
 /// A descent direction from the true tangent (unless `project` says that it will be indefinite),
 /// else from the projected one, else from that with a growing shift. False: nothing factorizes.
+/// `forcing`: what iterations leave of b.
 bool direction_by_factor(const Problem& problem, const NewtonGoal& goal, NewtonState& state,
-                         const VectorXd& q, const VectorXd& b, bool& project, VectorXd& x) {
-  if (!project && state.factorize()) {
-    state.factor->solve(b, x);
-    return x.allFinite();
-  }
+                         const VectorXd& q, const VectorXd& b, double forcing, bool& project,
+                         VectorXd& x) {
+  const auto solved = [&](double shift) {
+    return state.factorize(shift, false) && state.factor->solve_within(b, forcing, x);
+  };
+  if (!project && solved(0.0)) return x.allFinite();
   project = true;
   problem.tangent(q, goal.s, true, state.K);
   double shift = 0;
   const double diagonal = state.K.diagonal().cwiseAbs().mean();
   for (int i = 0; i < 12; ++i) {
-    if (state.factorize(shift)) {
-      state.factor->solve(b, x);
-      return x.allFinite();
-    }
+    if (solved(shift)) return x.allFinite();
     shift = shift == 0 ? 1e-6 * diagonal : 10 * shift;
   }
   return false;
@@ -98,7 +99,7 @@ std::shared_ptr<const SymbolicFactor> SymbolicFactors::of(const SparseMatrix& K,
   for (const auto& factor : known_)
     if (const auto alive = factor.lock(); alive && alive->fits(K, free)) found = alive;
   if (!found) {
-    found = std::make_shared<const SymbolicFactor>(K, free);
+    found = std::make_shared<const SymbolicFactor>(K, free, ends_);
     known_.push_back(found);
   }
   std::erase(last_, found);
@@ -109,20 +110,23 @@ std::shared_ptr<const SymbolicFactor> SymbolicFactors::of(const SparseMatrix& K,
 
 void NewtonState::set_tangent(const Problem& problem, const VectorXd& q, double s) {
   problem.tangent(q, s, false, K);
+  at = q;
   stiffest = K.diagonal().cwiseAbs().maxCoeff();
   W = problem.skew_tangent(q, s);
   W_ff = free_block(W, free);
 }
 
-bool NewtonState::factorize(double shift) {
+bool NewtonState::factorize(double shift, bool surely) {
   if (!symbolic || !symbolic->fits(K, free)) {
     symbolic = shared ? shared->of(K, free) : std::make_shared<const SymbolicFactor>(K, free);
     factor.reset();
   }
-  if (!factor || factor.use_count() > 1 || factor->symbolic() != symbolic)
+  if (!factor || factor->symbolic() != symbolic)
     factor = std::make_shared<TangentFactor>(symbolic);
+  else if (factor.use_count() > 1)
+    factor = factor->another();
   ++factorizations;
-  return factor->factorize(K, shift);
+  return factor->factorize(K, shift, at, surely);
 }
 
 double relative_error(const Problem& problem, const NewtonState& state, const VectorXd& R,
@@ -150,7 +154,7 @@ void step_on_factor(const Problem& problem, const NewtonGoal& goal, NewtonState&
   for (int i = 0; i < goal.max_iterations && error > goal.tolerance; ++i) {
     if (goal.cancelled && goal.cancelled()) return;
     ++state.iterations;
-    state.factor->solve(-select(R, state.free), x);
+    if (!state.factor->solve_within(-select(R, state.free), 0.1 * kChord, x)) return;
     VectorXd there = q + spread(x, state.free, q.size());
     if (!(problem.assembly.smallest_J(there) > 0)) return;
     VectorXd R_there = problem.residual(there, goal.s);
@@ -206,7 +210,7 @@ NewtonOutcome newton(const Problem& problem, const NewtonGoal& goal, NewtonState
     if (!iterated) {
       // Far from the solution an indefinite tangent is followed by others.
       projected = projected && out.error > kNear;
-      if (!direction_by_factor(problem, goal, state, q, b, projected, x))
+      if (!direction_by_factor(problem, goal, state, q, b, forcing, projected, x))
         return {false, out.error, "the tangent is singular: something is not held"};
     }
     reuse = (iterated || !projected) && (iterated || out.error < kNear);

@@ -13,10 +13,14 @@ namespace hookeye {
 /// The symbolic factors that solvers of one mesh have: examples held alike share theirs.
 class SymbolicFactors {
  public:
+  /// `ends`: of the mesh (large_solver.h); none: factors only.
+  explicit SymbolicFactors(Eigen::Matrix2Xi ends = Eigen::Matrix2Xi(2, 0))
+      : ends_(std::move(ends)) {}
   /// One that fits, else a new one. Any thread; a second one waits for the first.
   std::shared_ptr<const SymbolicFactor> of(const SparseMatrix& K, const std::vector<int>& free);
 
  private:
+  Eigen::Matrix2Xi ends_;
   std::mutex mutex_;
   std::vector<std::weak_ptr<const SymbolicFactor>> known_;
   /// Two that were asked for last: one solver may go to and fro between examples held in two ways.
@@ -30,6 +34,7 @@ struct NewtonState {
   std::shared_ptr<const SymbolicFactor> symbolic;
   std::shared_ptr<TangentFactor> factor;  ///< of some earlier tangent; null: none
   SparseMatrix K;                         ///< last tangent assembled, its symmetric part
+  VectorXd at;                            ///< where it was
   double stiffest = 0.0;                  ///< largest on the diagonal of one; 0: none was assembled
   SparseMatrix W;                         ///< its skew part; no values: none
   SparseMatrix W_ff;                      ///< that of K_ff; no values: K_ff is symmetric
@@ -38,7 +43,8 @@ struct NewtonState {
   /// Assembles the true tangent at q.
   void set_tangent(const Problem& problem, const VectorXd& q, double s);
   /// Factor of the K at hand: reuses the memory of `factor` unless an Equilibrium holds it.
-  bool factorize(double shift = 0.0);
+  /// `surely`: TangentFactor::factorize().
+  bool factorize(double shift, bool surely);
 };
 
 struct NewtonGoal {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/memory_left.h"
+#include "simulation/large_solver.h"
 
 namespace hookeye {
 namespace {
@@ -25,13 +26,6 @@ std::string what_would_fit(const TetMesh& mesh, double needed, double there) {
                      rounded_up(ratio * edge), rounded_up(ratio * edge), edge);
 }
 
-/// What a body takes [bytes]: its elements, tangent and analysis, in proportion to the unknowns,
-/// and the factor of a block, which has 14 million values at 30,000 unknowns.
-double estimate(const TetMesh& mesh) {
-  const double unknowns = 3.0 * mesh.nodes();
-  return 2500.0 * unknowns + 130.0 * std::pow(unknowns, 4.0 / 3.0);
-}
-
 }  // namespace
 
 NumericalFailure no_memory(const TetMesh& mesh, const Loading& loading, const std::bad_alloc& error,
@@ -39,7 +33,7 @@ NumericalFailure no_memory(const TetMesh& mesh, const Loading& loading, const st
   const auto* told = dynamic_cast<const OutOfMemory*>(&error);
   const MemoryLeft left = told ? told->left() : memory_left();
   const double asked = told ? told->needed() : 0.0;
-  double needed = std::max(asked, estimate(mesh));
+  double needed = std::max(asked, factor_estimate(3.0 * mesh.nodes()));
   if (symbolic) needed = told ? asked : symbolic->memory().factor + symbolic->memory().beside;
   std::string reason =
       fmt::format("out of memory: {} unknowns need {}{} more, and {} has {} left", 3 * mesh.nodes(),

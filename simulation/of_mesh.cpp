@@ -3,7 +3,16 @@
 #include <mutex>
 #include <vector>
 
+#include "simulation/large_solver.h"
+
 namespace hookeye {
+
+OfMesh::OfMesh(const TetMesh& mesh)
+    : assembly(mesh),
+      symbolic(large_solvers().make ? std::make_shared<SymbolicFactors>(ends_of(mesh))
+                                    : std::make_shared<SymbolicFactors>()) {
+  assembly.find_pattern();
+}
 
 namespace {
 

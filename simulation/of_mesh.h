@@ -11,9 +11,9 @@ namespace hookeye {
 /// A capture has one solver a load case.
 struct OfMesh {
   Assembly assembly;
-  std::shared_ptr<SymbolicFactors> symbolic = std::make_shared<SymbolicFactors>();
+  std::shared_ptr<SymbolicFactors> symbolic;
   /// With its pattern built, so that nothing changes it any more.
-  explicit OfMesh(const TetMesh& mesh) : assembly(mesh) { assembly.find_pattern(); }
+  explicit OfMesh(const TetMesh& mesh);
 };
 
 /// The one that another solver of this mesh has, else a new one. A mesh that its pointer does not

@@ -1,7 +1,5 @@
-// The only file that touches CHOLMOD and METIS.
+// The only file that touches CHOLMOD.
 //
-// The order is METIS's nested dissection of the graph of nodes, expanded to unknowns: the same fill
-// as on the unknowns' graph at half the time, and 2-3 times less work than AMD at 30,000 unknowns.
 // Factors have CHOLMOD's long indices: 32 bits end at 2^31 values, and a block of 1.5 million
 // unknowns has some 4e9. K and the graph of nodes have less than that, and METIS's own indices are
 // short. CHOLMOD's supernodal loop opens OpenMP threads that fight over the cores, so it runs with
@@ -9,36 +7,21 @@
 #include "simulation/sparse_factor.h"
 
 #include <cholmod.h>
-#include <metis.h>
-#include <omp.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <atomic>
-#include <mutex>
 #include <stdexcept>
 
 #include "core/memory_left.h"
-
-// Weak: another BLAS may stand in for OpenBLAS.
-extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+#include "simulation/dissection.h"
+#include "simulation/large_solver.h"
+#include "simulation/one_thread.h"
 
 namespace hookeye {
 namespace {
 
 using Long = SuiteSparse_long;
-
-/// Makes OpenMP regions run on the calling thread while it lives.
-class SerialOpenMp {
- public:
-  SerialOpenMp() : levels_(omp_get_max_active_levels()) {
-    omp_set_max_active_levels(0);
-    if (openblas_set_num_threads) openblas_set_num_threads(1);
-  }
-  ~SerialOpenMp() { omp_set_max_active_levels(levels_); }
-
- private:
-  int levels_;
-};
 
 struct Common {
   Common() {
@@ -62,64 +45,10 @@ struct Common {
   cholmod_common c;
 };
 
-/// METIS draws from the C library's one sequence of random numbers, which it starts anew. Examples
-/// that were dissected at the same time drew from one another's sequence: orders, and with them the
-/// last bits of every equilibrium, came out differently from run to run.
-int dissect_graph(idx_t n, std::vector<idx_t>& start, std::vector<idx_t>& near, idx_t* permutation,
-                  idx_t* inverse) {
-  static std::mutex one_at_a_time;
-  const std::lock_guard lock(one_at_a_time);
-  idx_t options[METIS_NOPTIONS];
-  METIS_SetDefaultOptions(options);
-  options[METIS_OPTION_SEED] = 0;
-  return METIS_NodeND(&n, start.data(), near.data(), nullptr, options, permutation, inverse);
-}
-
-/// Nested dissection of the nodes that have free unknowns; order[k] = index in `free`.
-std::vector<Long> dissect(const SparseMatrix& K, const std::vector<int>& free,
-                          const std::vector<int>& index) {
-  std::vector<int> nodes, compact(K.cols() / 3, -1);
-  for (int u : free)
-    if (nodes.empty() || nodes.back() != u / 3) {
-      compact[u / 3] = static_cast<int>(nodes.size());
-      nodes.push_back(u / 3);
-    }
-  std::vector<idx_t> start{0}, near;
-  for (int a : nodes) {
-    int last = -1;
-    for (int c = 0; c < 3; ++c) {  // the columns of a node share their pattern, save added terms
-      if (c > 0 && K.outerIndexPtr()[3 * a + c + 1] - K.outerIndexPtr()[3 * a + c] ==
-                       K.outerIndexPtr()[3 * a + 1] - K.outerIndexPtr()[3 * a])
-        continue;
-      for (SparseMatrix::InnerIterator it(K, 3 * a + c); it; ++it) {
-        const int b = static_cast<int>(it.row()) / 3;
-        if (b == last || b == a || compact[b] < 0) continue;
-        last = b;
-        near.push_back(compact[b]);
-      }
-    }
-    std::sort(near.begin() + start.back(), near.end());
-    near.erase(std::unique(near.begin() + start.back(), near.end()), near.end());
-    start.push_back(static_cast<idx_t>(near.size()));
-  }
-  const idx_t n = static_cast<idx_t>(nodes.size());
-  std::vector<idx_t> permutation(n), inverse(n);
-  if (near.empty()) {
-    for (idx_t i = 0; i < n; ++i) permutation[i] = i;
-  } else if (dissect_graph(n, start, near, permutation.data(), inverse.data()) != METIS_OK) {
-    throw std::runtime_error("METIS_NodeND failed on the node graph");
-  }
-  std::vector<Long> order;
-  order.reserve(free.size());
-  for (idx_t k = 0; k < n; ++k)
-    for (int c = 0; c < 3; ++c)
-      if (const int u = index[3 * nodes[permutation[k]] + c]; u >= 0) order.push_back(u);
-  return order;
-}
-
 }  // namespace
 
 struct SymbolicFactor::Impl {
+  std::shared_ptr<const LargeBody> large;  ///< null: there is a factor
   Common common;
   std::vector<int> free, index;  ///< unknown of a free one and back (-1: prescribed)
   std::vector<Long> start, row;  ///< K_ff, upper triangle by columns: CHOLMOD permutes it at once
@@ -130,6 +59,9 @@ struct SymbolicFactor::Impl {
   ~Impl() { cholmod_l_free_factor(&factor, &common.c); }
 
   void take_pattern(const SparseMatrix& K);
+  void analyse(const SparseMatrix& K);
+  void drop();
+  FactorMemory memory() const;
   /// Of the upper triangle, from K's lower one: where both halves differ in the last digit it
   /// counts.
   std::vector<double> values_of(const SparseMatrix& K, double shift) const;
@@ -188,7 +120,39 @@ static size_t fingerprint_of(const SparseMatrix& K) {
   return h;
 }
 
-SymbolicFactor::SymbolicFactor(const SparseMatrix& K, std::vector<int> free)
+void SymbolicFactor::Impl::analyse(const SparseMatrix& K) {
+  take_pattern(K);
+  const std::vector<std::int64_t> dissected = dissect(K, free, index);
+  std::vector<Long> order(dissected.begin(), dissected.end());
+  const OneThread serial;
+  cholmod_sparse A = view(nullptr);
+  factor = cholmod_l_analyze_p(&A, order.data(), nullptr, 0, &common.c);
+  common.demand_room(static_cast<double>(2 * sizeof(Long) * row.size()));
+  if (!factor) throw std::runtime_error("CHOLMOD cannot analyse the tangent");
+}
+
+void SymbolicFactor::Impl::drop() {
+  cholmod_l_free_factor(&factor, &common.c);
+  start = row = {};
+  gather = {};
+}
+
+/// Before anything is analysed, which at millions of unknowns takes gigabytes itself: a factor is
+/// not wanted, or a block of so many unknowns would not fit. (What is slender takes less. It may be
+/// factored if that is asked for.)
+static bool is_large(const SymbolicFactor::Impl& s) {
+  const SolverChoice when = large_solvers().when;
+  if (when != SolverChoice::automatic) return when == SolverChoice::multigrid;
+  const double estimate = factor_estimate(static_cast<double>(s.free.size()));
+  const double left = memory_left().bytes;
+  if (estimate <= left) return false;
+  spdlog::debug("{} unknowns by multigrid: a factor needs about {}, and there are {}",
+                s.free.size(), memory_text(estimate), memory_text(left));
+  return true;
+}
+
+SymbolicFactor::SymbolicFactor(const SparseMatrix& K, std::vector<int> free,
+                               const Eigen::Matrix2Xi& ends)
     : impl_(std::make_unique<Impl>()) {
   Impl& s = *impl_;
   s.free = std::move(free);
@@ -197,13 +161,18 @@ SymbolicFactor::SymbolicFactor(const SparseMatrix& K, std::vector<int> free)
   s.fingerprint = fingerprint_of(K);
   s.index.assign(K.cols(), -1);
   for (size_t i = 0; i < s.free.size(); ++i) s.index[s.free[i]] = static_cast<int>(i);
-  s.take_pattern(K);
-  std::vector<Long> order = dissect(K, s.free, s.index);
-  const SerialOpenMp serial;
-  cholmod_sparse A = s.view(nullptr);
-  s.factor = cholmod_l_analyze_p(&A, order.data(), nullptr, 0, &s.common.c);
-  s.common.demand_room(static_cast<double>(2 * sizeof(Long) * s.row.size()));
-  if (!s.factor) throw std::runtime_error("CHOLMOD cannot analyse the tangent");
+  if (ends.cols() > 0 && is_large(s)) s.large = std::make_shared<LargeBody>(s.free, ends);
+  if (s.large) return;
+  s.analyse(K);
+  const LargeSolvers& others = large_solvers();
+  if (ends.cols() == 0 || others.when != SolverChoice::automatic) return;
+  const FactorMemory needed = s.memory();
+  const double left = memory_left().bytes;
+  if (needed.factor + needed.beside <= left) return;
+  spdlog::debug("{} unknowns by multigrid: a factor needs {}, and there are {}", s.free.size(),
+                memory_text(needed.factor + needed.beside), memory_text(left));
+  s.drop();
+  s.large = std::make_shared<LargeBody>(s.free, ends);
 }
 
 SymbolicFactor::~SymbolicFactor() = default;
@@ -213,10 +182,14 @@ bool SymbolicFactor::fits(const SparseMatrix& K, const std::vector<int>& free) c
          fingerprint_of(K) == impl_->fingerprint;
 }
 
-FactorMemory SymbolicFactor::memory() const {
-  const Impl& s = *impl_;
-  const cholmod_factor& L = *s.factor;
-  const double n = static_cast<double>(s.free.size()), values = static_cast<double>(s.row.size());
+const std::shared_ptr<const LargeBody>& SymbolicFactor::large() const { return impl_->large; }
+FactorMemory SymbolicFactor::memory() const { return impl_->memory(); }
+
+FactorMemory SymbolicFactor::Impl::memory() const {
+  if (large)  // half the values of K, once in double and once in float, and an eighth of it below
+    return {static_cast<double>(nonzeros) * (6.0 + 1.5), 200.0 * static_cast<double>(free.size())};
+  const cholmod_factor& L = *factor;
+  const double n = static_cast<double>(free.size()), values = static_cast<double>(row.size());
   FactorMemory out;
   out.factor = sizeof(double) * static_cast<double>(L.xsize) +
                sizeof(Long) * (static_cast<double>(L.ssize + 3 * L.nsuper) + 2 * n);
@@ -234,6 +207,7 @@ std::atomic<int64_t> bytes_of_factors = 0;
 double memory_of_factors() { return static_cast<double>(bytes_of_factors); }
 
 struct TangentFactor::Impl {
+  std::unique_ptr<LargeSolver> large;  ///< null: a factor
   Common common;
   cholmod_factor* factor = nullptr;
   cholmod_dense *X = nullptr, *Y = nullptr, *E = nullptr;  ///< workspaces of solve2
@@ -257,20 +231,34 @@ struct TangentFactor::Impl {
 };
 
 TangentFactor::TangentFactor(std::shared_ptr<const SymbolicFactor> symbolic)
-    : symbolic_(std::move(symbolic)), impl_(std::make_unique<Impl>()) {}
+    : symbolic_(std::move(symbolic)), impl_(std::make_unique<Impl>()) {
+  if (symbolic_->large()) impl_->large = large_solvers().make(symbolic_->large());
+}
 TangentFactor::~TangentFactor() = default;
 bool TangentFactor::positive() const { return impl_->positive; }
+bool TangentFactor::iterates() const { return impl_->large != nullptr; }
 
-bool TangentFactor::factorize(const SparseMatrix& K, double shift) {
+std::shared_ptr<TangentFactor> TangentFactor::another() const {
+  auto out = std::make_shared<TangentFactor>(symbolic_);
+  if (impl_->large) out->impl_->large = impl_->large->another();
+  return out;
+}
+
+bool TangentFactor::factorize(const SparseMatrix& K, double shift, const VectorXd& q, bool surely) {
+  impl_->positive = false;
+  if (impl_->large) {
+    impl_->positive = impl_->large->set_up(K, shift, q, surely);
+    impl_->count(impl_->large->bytes());
+    return impl_->positive;
+  }
   SymbolicFactor::Impl& s = symbolic_->impl();
   cholmod_common& c = impl_->common.c;
-  impl_->positive = false;
   if (impl_->factor && !impl_->factor->is_super) impl_->drop();
   const FactorMemory memory = symbolic_->memory();
   const double needed = memory.beside + (impl_->factor ? 0.0 : memory.factor);
   const MemoryClaim claim(needed);
   std::vector<double> values = s.values_of(K, shift);
-  const SerialOpenMp serial;
+  const OneThread serial;
   if (!impl_->factor) {
     impl_->factor = cholmod_l_copy_factor(s.factor, &c);
     impl_->common.demand_room(needed);
@@ -284,6 +272,12 @@ bool TangentFactor::factorize(const SparseMatrix& K, double shift) {
 }
 
 bool TangentFactor::factorize_indefinite(const SparseMatrix& K) {
+  if (impl_->large) {
+    impl_->positive = false;
+    const bool regular = impl_->large->set_up_indefinite(K);
+    impl_->count(impl_->large->bytes());
+    return regular;
+  }
   SymbolicFactor::Impl& s = symbolic_->impl();
   cholmod_common& c = impl_->common.c;
   impl_->drop();
@@ -293,7 +287,7 @@ bool TangentFactor::factorize_indefinite(const SparseMatrix& K) {
       1.2 * (sizeof(double) + sizeof(Long)) * s.common.c.lnz + symbolic_->memory().beside;
   const MemoryClaim claim(needed);
   std::vector<double> values = s.values_of(K, 0.0);
-  const SerialOpenMp serial;
+  const OneThread serial;
   c.supernodal = CHOLMOD_SIMPLICIAL;
   c.final_ll = 0;
   cholmod_sparse A = s.view(values.data());
@@ -331,7 +325,11 @@ void solve_block(const double* b, double* x, Eigen::Index n, Eigen::Index m, cho
 void TangentFactor::solve(const MatrixXd& B, MatrixXd& X) const {
   X.resize(B.rows(), B.cols());
   if (B.rows() == 0) return;
-  const SerialOpenMp serial;
+  if (impl_->large) {
+    impl_->large->solve_exactly(B, X);
+    return;
+  }
+  const OneThread serial;
   Impl& w = *impl_;
   for (Eigen::Index j = 0; j < B.cols(); j += kColumnsAtOnce) {
     const Eigen::Index m = std::min(kColumnsAtOnce, B.cols() - j);
@@ -343,9 +341,26 @@ void TangentFactor::solve(const MatrixXd& B, MatrixXd& X) const {
 void TangentFactor::solve(const VectorXd& b, VectorXd& x) const {
   x.resize(b.size());
   if (b.size() == 0) return;
-  const SerialOpenMp serial;
+  if (impl_->large) {
+    MatrixXd X;
+    impl_->large->solve_exactly(b, X);
+    x = X;
+    return;
+  }
+  const OneThread serial;
   Impl& w = *impl_;
   solve_block(b.data(), x.data(), b.size(), 1, w.factor, &w.X, &w.Y, &w.E, &w.common.c);
+}
+
+bool TangentFactor::solve_within(const VectorXd& b, double tolerance, VectorXd& x) const {
+  if (!impl_->large) {
+    solve(b, x);
+    return true;
+  }
+  MatrixXd X;
+  impl_->positive = impl_->large->solve(b, tolerance, X);
+  if (impl_->positive) x = X;
+  return impl_->positive;
 }
 
 double TangentFactor::factor_nonzeros() const {

@@ -70,8 +70,11 @@ void solve_shared(LoadCaseShare& share, const Model& model, const std::string& t
     if (owner[i] == share.self()) own.push_back(i);
   }
   const auto keep = [&](int e, const Equilibrium& state) {
-    auto kept = std::make_shared<Equilibrium>(state);
-    kept->factor.reset();
+    auto kept = std::make_shared<Equilibrium>();
+    kept->q = state.q, kept->R = state.R;
+    kept->newton_iterations = state.newton_iterations;
+    kept->factorizations = state.factorizations;
+    kept->stable = state.stable;
     results[static_cast<size_t>(e)].evaluation.equilibrium = std::move(kept);
   };
   solve_some(model, own, title, keep, failures);
@@ -88,7 +91,7 @@ void solve_shared(LoadCaseShare& share, const Model& model, const std::string& t
 std::vector<Result<void>> solve_examples(const Model& model, const std::string& title,
                                          const Solved& done) {
   std::vector<Result<void>> failures(model.scene->capture.examples.size());
-  if (LoadCaseShare* share = load_case_share()) {
+  if (LoadCaseShare* share = load_case_share(); share && share->processes() > 1) {
     solve_shared(*share, model, title, done, failures);
     return failures;
   }

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "app/interrupt.h"
+#include "app/mpi/solver.h"
 #include "app/mpi/world.h"
 #include "app/program.h"
 #include "app/scratch_folder.h"
@@ -65,9 +66,13 @@ int run(World& world, int argc, char** argv) {
                  world.processes() == 1 ? "process has" : "processes share", threads,
                  threads == 1 ? "core" : "cores");
   };
+  auto solver = std::make_unique<Solver>();
+  company.solvers = Solver::names();
+  company.solve_by = [&](const std::string& name) { solver->choose(name); };
   share_load_cases(&world);
   const int status = program(argc, argv, company);
   const std::string told = behind && status != kDone ? behind->said() : "";
+  solver.reset();  // PETSc ends before MPI does
   behind.reset();  // nothing stays of it where another ends this one
   if (world.self() > 0) dup2(true_stderr, 2);
   return world.end(status, told);

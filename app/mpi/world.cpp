@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <stdexcept>
 #include <thread>
 
 #include "estimation/evaluation/load_case_bytes.h"
@@ -28,7 +29,10 @@ void send_from(int owner, std::string& bytes) {
 
 World::World(int& argc, char**& argv) {
   int provided = 0;
-  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &provided);
+  // PETSc computes on whatever thread has a load case, one at a time (simulation/petsc).
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
+  if (provided < MPI_THREAD_SERIALIZED)
+    throw std::runtime_error("this MPI serves one thread only (MPI_THREAD_SERIALIZED is needed)");
   MPI_Comm_size(MPI_COMM_WORLD, &processes_);
   MPI_Comm_rank(MPI_COMM_WORLD, &self_);
   MPI_Comm_dup(MPI_COMM_WORLD, &endings_);
@@ -39,6 +43,7 @@ World::World(int& argc, char**& argv) {
 }
 
 void World::exchange(const std::vector<int>& owner, std::vector<Result*> results) {
+  if (processes_ == 1) return;
   for (size_t i = 0; i < results.size(); ++i) {
     std::string bytes;
     if (owner[i] == self_) bytes = to_bytes(*results[i]);

@@ -9,7 +9,8 @@
 
 namespace hookeye {
 
-/// MPI from here to end(). One a process; used by the thread that made it (MPI_THREAD_FUNNELED).
+/// MPI from here to end(). One a process; used by the thread that made it, while
+/// no other calls MPI (MPI_THREAD_SERIALIZED).
 class World : public LoadCaseShare {
  public:
   World(int& argc, char**& argv);

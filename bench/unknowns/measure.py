@@ -78,6 +78,40 @@ def calculix(folder, memory):
     return told
 
 
+def solved_by(solver, program, folder, memory):
+    """Equilibrium and sensitivities by five parameters, by the functions that commands call."""
+    used, out, err = run([program, "body.vtu", solver, solver + ".bin"], folder, memory)
+    if used["exit"]:
+        return used | {"said": err.strip()[-300:]}
+    iterations = [int(line.split()[2]) for line in err.splitlines() if "multigrid:" in line and "iterations to" in line]
+    told = used | json.loads(out) | {"iterations": sum(iterations), "last": iterations[-1] if iterations else 0, "mumps": "MUMPS" in err}
+    both = [os.path.join(folder, one + ".bin") for one in ("direct", "multigrid")]
+    if all(map(os.path.exists, both)):
+        points = block.Vtu(os.path.join(folder, "body.vtu"))["Points"].ravel()
+        direct, other = (np.fromfile(one).reshape(6, -1) for one in both)
+        direct[0] -= points
+        other[0] -= points
+        apart = np.abs(direct - other).max(axis=1) / np.abs(direct).max(axis=1)
+        told |= {"apart": float(apart[0]), "sensitivities_apart": float(apart[1:].max())}
+    return told
+
+
+def solver_table(results):
+    rows = ["| unknowns | solver | equilibrium, CPU | Newton steps, tangents | iterations | five sensitivities, CPU | iterations of each | GB | displacement, sensitivities apart |",
+            "|---|---|---|---|---|---|---|---|---|"]
+    for _, result in sorted(results.items(), key=lambda item: float(item[0])):
+        for solver, r in result.get("solvers", {}).items():
+            if "said" in r:
+                rows.append("| – | %s | %s |" % (solver, r["said"].splitlines()[-1]))
+                continue
+            steps = "%d, %d" % (r["newton"], r["factors"])
+            rows.append("| %s | %s | %.3g s | %s | %s | %.3g s | %s | %.2g | %s |" % (
+                format(r["unknowns"], ","), solver + (" (MUMPS)" if r["mumps"] else ""), r["equilibrium_s"], steps, r["iterations"] or "–",
+                r["sensitivities_s"], r["last"] or "–", r["gb"],
+                "%.0e, %.0e" % (r["apart"], r["sensitivities_apart"]) if "apart" in r else "–"))
+    return "\n".join(rows) if len(rows) > 2 else ""
+
+
 def keep(file, results):
     with open(file + ".part", "w") as there:
         json.dump(results, there, indent=1)
@@ -116,6 +150,7 @@ def main():
     ask.add_argument("out", help="folder for meshes and results")
     ask.add_argument("--unknowns", default="30e3,100e3,300e3", help="sizes, with commas")
     ask.add_argument("--ccx", default="30e3", help="sizes that CalculiX solves too")
+    ask.add_argument("--solver", default="", help="direct, multigrid (with commas): bench_unknowns instead of the command")
     ask.add_argument("--memory", type=float, help="GB that one program may take")
     told = ask.parse_args()
     sizes = {"%g" % float(x) for x in told.unknowns.split(",")}
@@ -131,6 +166,15 @@ def main():
         folder = os.path.join(os.path.abspath(told.out), size)
         os.makedirs(folder, exist_ok=True)
         result = results.setdefault(size, {})
+        for solver in [one for one in told.solver.split(",") if one]:
+            if "mesh" not in result:
+                result["mesh"] = mesh_of(program, folder, float(size), memory)
+            beside_app = os.path.join(os.path.dirname(program), "..", "bench", "bench_unknowns")
+            result.setdefault("solvers", {})[solver] = solved_by(solver, os.path.abspath(beside_app), folder, memory)
+            keep(file, results)
+            print(size, solver, json.dumps(result["solvers"][solver]), flush=True)
+        if told.solver:
+            continue
         if "hookeye" not in result or "said" in result["hookeye"]:
             if "mesh" not in result:
                 result["mesh"] = mesh_of(program, folder, float(size), memory)
@@ -141,7 +185,7 @@ def main():
             result["ccx"] = calculix(folder, memory)
             keep(file, results)
             print(size, "CalculiX", json.dumps(result["ccx"]), flush=True)
-    text = table(results)
+    text = "\n\n".join(filter(None, [table({k: r for k, r in results.items() if "hookeye" in r}), solver_table(results)]))
     with open(os.path.join(told.out, "table.md"), "w") as there:
         there.write(text + "\n")
     print(text)

@@ -9,6 +9,7 @@ namespace hookeye::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class Mpi : public WithSmallCapture {
  protected:
@@ -92,6 +93,30 @@ TEST_F(Mpi, ATextureFromPhotosIsSeenByAll) {
   const Result fitted = shared(3, "fit capture -o together");
   ASSERT_EQ(fitted.status, 0) << fitted.err;
   EXPECT_EQ(numbers("together"), numbers("alone"));
+}
+
+TEST_F(Mpi, SolverIsChosen) {
+  const auto simulated = [&](const std::string& solver) {
+    return shared(1, "simulate capture -o " + solver + " --json -v --solver " + solver);
+  };
+  const auto moved = [](const Result& result) {
+    return json::parse(result.out).at("examples").at(0).at("max_displacement").get<double>();
+  };
+  const Result direct = simulated("direct"), multigrid = simulated("multigrid");
+  ASSERT_EQ(direct.status, 0) << direct.err;
+  EXPECT_THAT(direct.err, Not(HasSubstr("iterations to")));
+#ifdef HOOKEYE_PETSC
+  ASSERT_EQ(multigrid.status, 0) << multigrid.err;
+  EXPECT_THAT(multigrid.err, HasSubstr("iterations to"));
+  EXPECT_GT(moved(direct), 0.0);
+  EXPECT_NEAR(moved(multigrid), moved(direct), 1e-8 * moved(direct));
+#else
+  EXPECT_EQ(multigrid.status, 2);
+  EXPECT_THAT(multigrid.err, HasSubstr("this hookeye-mpi was built without PETSc"));
+#endif
+  const Result wrong = simulated("fast");
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("fast not in {auto,direct,multigrid}"));
 }
 
 TEST_F(Mpi, BadInputIsToldOnce) {

@@ -1,0 +1,1 @@
+#include "simulation/petsc/multigrid.h"
