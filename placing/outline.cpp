@@ -143,9 +143,9 @@ std::vector<Outline> outlines_of(const Scene& scene, int look_px,
       const std::string& camera = example.photos[k].camera;
       if (std::any_of(out.begin(), out.end(), [&](const Outline& o) { return o.camera == camera; }))
         continue;
-      inspection::SmallPhoto small =
+      const inspection::SmallPhoto small =
           inspection::small_photo(scene, static_cast<int>(e), static_cast<int>(k), options);
-      if (small.foreground.inside.empty()) {
+      if (!small.foreground.known()) {
         if (why_not)
           why_not->push_back(fmt::format("{}: camera `{}`, example `{}`: {}",
                                          example.photos[k].place.str(), camera, example.name,
@@ -156,7 +156,7 @@ std::vector<Outline> outlines_of(const Scene& scene, int look_px,
       one.camera = camera, one.example = example.name;
       one.view = camera_at_level(scene.capture.camera(camera), small.level);
       one.px = small.px();
-      one.inside = std::move(small.foreground.inside);
+      one.inside = small.foreground.inside();
       one.image = example.photos[k].kind == PhotoSpec::Kind::image;
       if (one.image) set_at_half(small.I, &one.inside);
       one.counts = well_inside(small.valid, one.view.width, one.view.height);

@@ -231,18 +231,26 @@ struct CheckOptions {
   bool quick = false;
 };
 
-/// A bar for those who watch; empty: nobody does.
-std::function<void(int, int)> bar(const char* note, const Session& session) {
+/// A bar for those who watch; null: nobody does.
+std::shared_ptr<Progress> bar(const Session& session) {
   if (session.json || !Progress::on_terminal()) return {};
-  const auto progress = std::make_shared<Progress>("check", 0);
-  return [progress, note](int done, int of) { progress->set(done, of, note); };
+  return std::make_shared<Progress>("check", 0);
+}
+
+std::function<void(int, int)> told_by(const std::shared_ptr<Progress>& bar, const char* note) {
+  if (!bar) return {};
+  return [bar, note](int done, int of) { bar->set(done, of, note); };
 }
 
 /// Looks at the photos; draws where a folder is told.
 void look(const Scene& scene, const CheckOptions& options, Session& session) {
   InspectionOptions how;
   how.first_guess = !options.quick;
-  const Inspection seen = inspect(scene, how, options.out, bar("photos looked at", session));
+  const auto shown = bar(session);
+  const Inspection seen =
+      inspect(scene, how, options.out,
+              {told_by(shown, "load cases solved coarsely"), told_by(shown, "photos looked at"),
+               told_by(shown, "load cases compared with the body at rest")});
   describe_inspection(scene, seen, session);
   say_inspection(scene, seen, session);
   if (!options.out.empty() && !seen.sheet.empty())
@@ -265,8 +273,8 @@ void run_check(const CheckOptions& options, Session& session) {
                 {"force", capture.units.force},
                 {"stress", capture.units.stress()}};
   d["materials"] = describe_materials(capture);
-  const auto scene =
-      load_scene_to_look_at(capture, InspectionOptions{}.look_px, bar("photos read", session));
+  const auto scene = load_scene_to_look_at(capture, InspectionOptions{}.look_px,
+                                           told_by(bar(session), "photos read"));
   const ModelForm form = base_form(scene);
   const Model model = form.realise(form.initial());
   warn_of_doubts(*scene, session);

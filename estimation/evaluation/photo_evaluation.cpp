@@ -17,6 +17,7 @@ struct PhotoComparer::Impl {
   std::shared_ptr<const Scene> scene;
   int example;
   Renderer renderer;
+  PhotoPlane whole;  ///< the one that was asked for last, which shares the scene's pixels
   std::vector<std::vector<std::vector<PhotoPlane>>> pyramids;  ///< [photo][plane][level]
   std::map<std::array<int, 3>, Image> beside_photo;            ///< the same: sigma_beside_photo()
   Image blurred_sigma;
@@ -26,7 +27,13 @@ struct PhotoComparer::Impl {
   Impl(std::shared_ptr<const Scene> s, int e)
       : scene(std::move(s)), example(e), renderer(scene->body->surface.mesh), followed(*scene) {}
 
+  /// Until the next is asked for. Coarse levels are made when one of them is asked for, and go with
+  /// the first that is not: a fit ends with whole photos, and most commands see nothing else.
   const PhotoPlane& plane(int photo, int plane, int level) {
+    if (level == 0) {
+      pyramids = {};
+      return whole = photo_pyramid(scene->photos[example][photo], plane, 1).front();
+    }
     if (pyramids.empty())
       for (const Photo& one : scene->photos[example]) {
         std::vector<std::vector<PhotoPlane>> planes;

@@ -81,9 +81,10 @@ std::optional<Apart> apart(Sight& sight, PhotoIndex photo) {
   constexpr double kStill = 0.9;   // of a piece's pixels: noise and shadows of the body take some
   constexpr double kLeast = 0.01;  // of what either covers
   const SmallPhoto& seen = sight.small(photo);
-  if (seen.foreground.inside.empty()) return {};
+  if (!seen.foreground.known()) return {};
   const Pixels outline = sight.outline(photo, sight.shown(photo.first));
-  cv::Mat in_photo = as_mat(seen.foreground.inside, seen.I), in_model = as_mat(outline, seen.I);
+  const Pixels inside = seen.foreground.inside();
+  cv::Mat in_photo = as_mat(inside, seen.I), in_model = as_mat(outline, seen.I);
   if (!seen.valid->empty()) {
     const cv::Mat valid = as_mat(seen.valid, seen.I);
     in_photo &= valid, in_model &= valid;

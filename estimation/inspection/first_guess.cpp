@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -247,6 +248,7 @@ bool CoarseModel::needs_equilibrium(FirstGuess* guess) const {
 /// Of these examples, one after the other: each begins where the one before ended, as load cases of
 /// a series lie near one another, unless rest is as near.
 void CoarseModel::find_equilibria(std::span<const size_t> examples,
+                                  const std::function<void()>& done,
                                   std::vector<FirstGuess>* guesses) const {
   constexpr double kNear = 0.5;  // of the way from rest
   const TetMesh& mesh = scene_->body->mesh;
@@ -254,6 +256,7 @@ void CoarseModel::find_equilibria(std::span<const size_t> examples,
   const FirstGuess* before = nullptr;
   for (const size_t e : examples) {
     FirstGuess& guess = (*guesses)[e];
+    done();
     if (!needs_equilibrium(&guess)) continue;
     const Loading& loading = model_.examples[e].loading;
     const bool near =
@@ -283,21 +286,30 @@ void CoarseModel::find_equilibria(std::span<const size_t> examples,
   }
 }
 
-std::vector<FirstGuess> CoarseModel::solve(bool in_equilibrium) const {
+std::vector<FirstGuess> CoarseModel::solve(
+    const std::set<int>& nodes, const std::function<void(int done, int of)>& solved) const {
   // Of a few load cases each is found from rest, all at once.
   constexpr size_t kPieces = 16, kLongest = 16;
   const size_t count = model_.examples.size();
   std::vector<FirstGuess> all(count);
+  const auto asked = [&](size_t e) { return nodes.count(static_cast<int>(e)) > 0; };
   keep_at_rest();
   tbb::parallel_for(size_t{0}, count, [&](size_t e) {
     all[e] = to_first_order(static_cast<int>(e), model_.examples[e].loading);
+    if (!asked(e)) all[e].reaction = {};
   });
-  if (!in_equilibrium) return all;
   const std::vector<size_t> order = by_nearness(all, scene_->capture.examples);
   const size_t length = std::clamp(count / kPieces, size_t{1}, kLongest);
+  std::atomic<int> begun = 0;
+  const auto one_more = [&] {
+    if (solved) solved(++begun, static_cast<int>(order.size()));
+  };
   tbb::parallel_for(size_t{0}, (order.size() + length - 1) / length, [&](size_t piece) {
     const size_t first = piece * length;
-    find_equilibria(std::span(order).subspan(first, std::min(length, order.size() - first)), &all);
+    const auto here = std::span(order).subspan(first, std::min(length, order.size() - first));
+    find_equilibria(here, one_more, &all);
+    for (const size_t e : here)
+      if (!asked(e)) all[e].u = all[e].q = all[e].R = VectorXd();
   });
   return all;
 }

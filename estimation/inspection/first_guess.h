@@ -1,9 +1,11 @@
 // What each load case would do to the body at the told values: one coarse solve each.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -19,7 +21,7 @@ struct FirstGuess {
   /// To first order from rest: displacement of the render surface's vertices, 3 x nv [length]. Zero
   /// where nothing moves the body; empty where nothing holds it.
   Matrix3Xd linear;
-  VectorXd u;         ///< the same of the coarse mesh's nodes, 3n
+  VectorXd u;         ///< the same of the coarse mesh's nodes, 3n (empty: not asked for)
   VectorXd reaction;  ///< what supports exert on the body there, 3n; zero on free unknowns [force]
   double strain = 0.0;  ///< largest of an element, to first order: |sym grad u|
   /// A support turns by more than 30 degrees: nothing is right to first order.
@@ -44,8 +46,11 @@ class CoarseModel {
   const Scene& scene() const { return *scene_; }
   const Model& model() const { return model_; }
 
-  /// First guesses of all examples; `in_equilibrium`: not to first order alone.
-  std::vector<FirstGuess> solve(bool in_equilibrium) const;
+  /// First guesses of all examples, in equilibrium where it can be had. Of those that are not in
+  /// `nodes` what the nodes do is left out: of a thousand load cases it is more than their photos.
+  /// `solved` (may be empty, any thread): load cases in equilibrium that are done, of all.
+  std::vector<FirstGuess> solve(const std::set<int>& nodes,
+                                const std::function<void(int done, int of)>& solved) const;
   /// The first-order answer of example `e` to another loading than the told one.
   FirstGuess answer(int e, const Loading& loading) const;
 
@@ -65,7 +70,8 @@ class CoarseModel {
   void keep_at_rest() const;
   FirstGuess to_first_order(int e, const Loading& loading) const;
   bool needs_equilibrium(FirstGuess* guess) const;
-  void find_equilibria(std::span<const size_t> examples, std::vector<FirstGuess>* guesses) const;
+  void find_equilibria(std::span<const size_t> examples, const std::function<void()>& done,
+                       std::vector<FirstGuess>* guesses) const;
 
   InspectionOptions options_;
   std::string refused_;

@@ -100,15 +100,15 @@ GuessLook look_at_load(Sight& sight, int e) {
 }  // namespace inspection
 
 Inspection inspect(const Scene& scene, const InspectionOptions& options,
-                   const std::filesystem::path& folder,
-                   const std::function<void(int done, int of)>& looked) {
+                   const std::filesystem::path& folder, const InspectionProgress& progress) {
   using namespace inspection;
   Inspection out;
-  Sight sight(scene, options);
+  Sight sight(scene, options, progress);
   const std::vector<PhotoIndex> photos = sight.photos();
   for (const PhotoIndex& photo : photos) {
     out.photos.push_back(look_at(sight, photo));
-    if (looked) looked(static_cast<int>(out.photos.size()), static_cast<int>(photos.size()));
+    if (progress.looked)
+      progress.looked(static_cast<int>(out.photos.size()), static_cast<int>(photos.size()));
   }
   for (const PhotoIndex& photo : sight.references()) {
     out.cameras.push_back(look_at(sight, photo));

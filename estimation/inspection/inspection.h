@@ -3,13 +3,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/input_error.h"
 #include "estimation/inspection/options.h"
+#include "estimation/inspection/progress.h"
 #include "estimation/model/model.h"
 
 namespace hookeye {
@@ -81,10 +81,9 @@ struct Inspection {
 };
 
 /// Looks at every photo, then asks every question of estimation/inspection/questions. With `folder`
-/// (made where it is not there) draws EXAMPLE_CAMERA.png and contact_sheet.png into it. `looked`:
-/// photos that are looked at, of all; may be empty.
+/// (made where it is not there) draws EXAMPLE_CAMERA.png and contact_sheet.png into it.
 Inspection inspect(const Scene& scene, const InspectionOptions& options = {},
                    const std::filesystem::path& folder = {},
-                   const std::function<void(int done, int of)>& looked = {});
+                   const InspectionProgress& progress = {});
 
 }  // namespace hookeye

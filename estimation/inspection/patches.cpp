@@ -1,8 +1,11 @@
 #include "estimation/inspection/patches.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 namespace hookeye::inspection {
 
@@ -219,10 +222,14 @@ SoughtPatches::SoughtPatches(const Image& from, const std::vector<unsigned char>
   impl_->reach = static_cast<int>(std::ceil(reach));
   impl_->picture = picture_of(wrap(from), mask, options);
   const int half = options.patch_px / 2, side = 2 * half + 1;
-  for (const cv::Point& at : centres(mask, options)) {
-    Sought patch{at, {at.x - half, at.y - half, side, side}};
-    if (has_one_place(impl_->picture, options, &patch)) impl_->patches.push_back(patch);
-  }
+  const std::vector<cv::Point> places = centres(mask, options);
+  std::vector<std::optional<Sought>> kept(places.size());
+  tbb::parallel_for(size_t{0}, places.size(), [&](size_t i) {
+    Sought patch{places[i], {places[i].x - half, places[i].y - half, side, side}};
+    if (has_one_place(impl_->picture, options, &patch)) kept[i] = patch;
+  });
+  for (const auto& patch : kept)
+    if (patch) impl_->patches.push_back(*patch);
 }
 
 SoughtPatches::SoughtPatches(SoughtPatches&&) noexcept = default;
@@ -232,10 +239,13 @@ PatchField SoughtPatches::in(const Image& to) const {
   PatchField field;
   const InspectionOptions& options = impl_->options;
   const Picture other = picture_of(wrap(to), cv::Mat(), options);
-  for (const Sought& sought : impl_->patches) {
+  std::vector<std::optional<Patch>> sought(impl_->patches.size());
+  tbb::parallel_for(size_t{0}, sought.size(), [&](size_t i) {
     Patch patch;
-    if (seek(impl_->picture, other, sought, impl_->reach, &patch)) field.patches.push_back(patch);
-  }
+    if (seek(impl_->picture, other, impl_->patches[i], impl_->reach, &patch)) sought[i] = patch;
+  });
+  for (const auto& patch : sought)
+    if (patch) field.patches.push_back(*patch);
   for (size_t i = 0; i < field.patches.size(); ++i)
     field.patches[i].found =
         alike(field.patches[i], options) && moves_along(field.patches, i, options);

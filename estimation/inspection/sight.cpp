@@ -7,6 +7,7 @@
 
 #include "estimation/evaluation/evaluation.h"
 #include "estimation/inspection/load_case.h"
+#include "estimation/model/field_points.h"
 
 namespace hookeye::inspection {
 
@@ -17,10 +18,23 @@ const T& at(const std::vector<T>& values, int i) {
   return values[static_cast<size_t>(i)];
 }
 
+/// Load cases of which something was measured, or where a field begins: questions ask what the
+/// nodes of the coarse mesh do there.
+std::set<int> measured_somewhere(const Scene& scene) {
+  std::set<int> out;
+  for (size_t i = 0; i < scene.capture.examples.size(); ++i)
+    for (const MeasuredSpec& measured : scene.capture.examples[i].measured) {
+      out.insert(static_cast<int>(i));
+      if (measured.field) out.insert(start_index(scene, measured));
+    }
+  return out;
+}
+
 }  // namespace
 
-Sight::Sight(const Scene& scene, const InspectionOptions& options)
-    : scene_(scene), options_(options), view_(scene) {
+Sight::Sight(const Scene& scene, const InspectionOptions& options,
+             const InspectionProgress& progress)
+    : scene_(scene), options_(options), progress_(progress), view_(scene) {
   const ModelForm form = base_form(scene.shared_from_this());
   model_ = form.realise(form.initial());
 }
@@ -59,7 +73,8 @@ Camera Sight::camera(PhotoIndex photo) const {
 const CoarseModel* Sight::coarse() {
   if (!coarse_tried_ && options_.first_guess) {
     coarse_ = std::make_unique<CoarseModel>(scene_, options_);
-    if (coarse_->refused().empty()) guesses_ = coarse_->solve(true);
+    if (coarse_->refused().empty())
+      guesses_ = coarse_->solve(measured_somewhere(scene_), progress_.solved);
   }
   coarse_tried_ = true;
   return coarse_ && coarse_->refused().empty() ? coarse_.get() : nullptr;
@@ -83,7 +98,12 @@ const SoughtInReference& Sight::sought(PhotoIndex reference) {
 
 const LoadCase& Sight::load_case(int e) {
   auto& kept = load_cases_[e];
-  if (!kept) kept = std::make_unique<LoadCase>(inspection::load_case(*this, e));
+  if (!kept) {
+    kept = std::make_unique<LoadCase>(inspection::load_case(*this, e));
+    if (progress_.compared)
+      progress_.compared(static_cast<int>(load_cases_.size()),
+                         static_cast<int>(scene_.capture.examples.size()));
+  }
   return *kept;
 }
 
@@ -167,10 +187,14 @@ Agreement Sight::agreement(PhotoIndex photo, const Trial& trial) {
   const auto straight = [&](const std::vector<unsigned char>& values) {
     return turned(values, seen.I->width, seen.I->height, flip.turn);
   };
-  const auto valid = straight(seen.valid), inside = straight(seen.foreground.inside);
+  const auto valid = straight(seen.valid), inside = straight(seen.foreground.inside());
   const Matrix3Xd& x = shown(photo.first);
   Agreement out;
-  if (!inside.empty()) out.overlap = overlap(plain_look(camera, x).outline_of, inside, valid);
+  // A told texture covers what the body does: its picture, which is wanted anyway, has its outline.
+  const bool of_texture = scene_.capture.body.texture == BodySpec::Texture::image &&
+                          spec(photo).kind == PhotoSpec::Kind::image && trial.least_overlap == 0.0;
+  if (!inside.empty() && !of_texture)
+    out.overlap = overlap(plain_look(camera, x).outline_of, inside, valid);
   if (out.overlap < trial.least_overlap) return out;
   const int source = scene_.example_index(scene_.capture.body.texture_example);
   const double reach = options_.still_reach * std::hypot(I.width, I.height);
@@ -178,6 +202,7 @@ Agreement Sight::agreement(PhotoIndex photo, const Trial& trial) {
   for (const Paint& paint : paints(photo, trial)) {
     const BodyPicture picture =
         view_.look(camera, x, paint, source >= 0 ? &shown(source) : nullptr);
+    if (!inside.empty() && of_texture) out.overlap = overlap(picture.outline_of, inside, valid);
     std::vector<unsigned char> body = picture.body;
     for (size_t i = 0; i < body.size(); ++i) body[i] = body[i] && (valid.empty() || valid[i]);
     const double all = correlation(picture.I, I, body);

@@ -15,6 +15,7 @@
 #include "estimation/inspection/flip.h"
 #include "estimation/inspection/options.h"
 #include "estimation/inspection/patches.h"
+#include "estimation/inspection/progress.h"
 #include "estimation/inspection/small_photo.h"
 
 namespace hookeye::inspection {
@@ -53,7 +54,8 @@ struct SoughtInReference {
 
 class Sight {
  public:
-  Sight(const Scene& scene, const InspectionOptions& options);
+  Sight(const Scene& scene, const InspectionOptions& options,
+        const InspectionProgress& progress = {});
   ~Sight();
 
   const Scene& scene() const { return scene_; }
@@ -113,6 +115,7 @@ class Sight {
 
   const Scene& scene_;
   InspectionOptions options_;
+  InspectionProgress progress_;
   Model model_;
   BodyView view_;
   std::set<std::string> doubted_;

@@ -76,16 +76,17 @@ Mask differing(const Image& I, const Image* backdrop, float level, float by) {
 Foreground foreground_of(const PhotoSpec& spec, const PhotoPlane& plane, double sigma) {
   constexpr double kOfWhite = 0.02;  // what is behind is dark to 2 % of the picture's white
   Foreground out;
+  Mask inside;
   out.told = true;
   const auto by =
       static_cast<float>(std::max(5.0 * sigma, kOfWhite * quantile(plane.I->values, 0.99)));
   if (spec.kind == PhotoSpec::Kind::silhouette) {
-    out.inside.resize(plane.I->pixels());
-    for (size_t i = 0; i < out.inside.size(); ++i) out.inside[i] = plane.I->values[i] > 0.5f;
+    inside.resize(plane.I->pixels());
+    for (size_t i = 0; i < inside.size(); ++i) inside[i] = plane.I->values[i] > 0.5f;
   } else if (spec.background.kind == BackgroundSpec::Kind::level) {
-    out.inside = differing(plane.I, nullptr, static_cast<float>(spec.background.level), by);
+    inside = differing(plane.I, nullptr, static_cast<float>(spec.background.level), by);
   } else if (spec.background.kind == BackgroundSpec::Kind::photo && plane.backdrop) {
-    out.inside = differing(plane.I, plane.backdrop.get(), 0.0f, by);
+    inside = differing(plane.I, plane.backdrop.get(), 0.0f, by);
   } else {
     out.told = false;
     const Border border = even_border(plane.I, sigma);
@@ -94,13 +95,14 @@ Foreground foreground_of(const PhotoSpec& spec, const PhotoPlane& plane, double 
           "nothing is told of what is behind the body, and the photo's border is not even";
       return out;
     }
-    out.inside = differing(plane.I, nullptr, border.level, std::max(by, 1.5f * border.spread));
+    inside = differing(plane.I, nullptr, border.level, std::max(by, 1.5f * border.spread));
   }
-  const auto count = static_cast<double>(std::count(out.inside.begin(), out.inside.end(), 1));
+  const auto count = static_cast<double>(std::count(inside.begin(), inside.end(), 1));
   constexpr double kLeast = 0.003, kMost = 0.97;  // of the picture
-  if (count >= kLeast * double(out.inside.size()) && count <= kMost * double(out.inside.size()))
+  if (count >= kLeast * double(inside.size()) && count <= kMost * double(inside.size())) {
+    out.pixels.assign(inside.begin(), inside.end());
     return out;
-  out.inside.clear();
+  }
   out.unknown = count < 10.0 ? "nothing stands out from what is behind the body"
                              : "the body fills the photo, or nearly nothing of it";
   return out;

@@ -12,7 +12,10 @@ namespace hookeye::inspection {
 
 /// The pixels of a photo that show the body, told without the model.
 struct Foreground {
-  std::vector<unsigned char> inside;  ///< per pixel; empty: cannot be told
+  std::vector<bool> pixels;  ///< empty: cannot be told
+  bool known() const { return !pixels.empty(); }
+  /// 0 or 1 per pixel.
+  std::vector<unsigned char> inside() const { return {pixels.begin(), pixels.end()}; }
   bool told = false;  ///< by what the capture says to be behind the body; false: by an even border
   std::string unknown;  ///< why it cannot be told
 };

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <regex>
 
 #include "estimation/inspection/flip.h"
@@ -84,6 +86,53 @@ TEST(Inspection, DrawsTheBodyOverEveryPhoto) {
       orange += picture.values[3 * i] > 0.95f && picture.values[3 * i + 2] < 0.1f;
     EXPECT_GT(orange, 500) << look.picture;
   }
+}
+
+TEST(Inspection, TellsHowFarItIs) {
+  const InspectedCapture capture;
+  const auto scene = load_scene_to_look_at(read_capture(capture.folder()), 640);
+  std::mutex mutex;
+  std::map<std::string, std::pair<int, int>> most;
+  const auto count = [&](const char* what) {
+    return [&, what](int done, int of) {
+      const std::lock_guard lock(mutex);
+      most[what] = std::max(most[what], {done, of});
+    };
+  };
+  inspect(*scene, {}, {}, {count("solved"), count("looked"), count("compared")});
+  EXPECT_EQ(most, (std::map<std::string, std::pair<int, int>>{
+                      {"compared", {6, 6}}, {"looked", {12, 12}}, {"solved", {6, 6}}}));
+}
+
+TEST(Inspection, PhotosOfACameraShareWhatCounts) {
+  const InspectedCapture capture;
+  const auto scene = load_scene_to_look_at(read_capture(capture.folder()), 100);
+  for (const auto& photos : scene->photos)
+    EXPECT_EQ(photos.at(0).valid.pointer(), scene->photos[0][0].valid.pointer());
+}
+
+/// What the inspection of these photos ends with once something was done to one of them.
+std::string ended_by(const std::function<void(const std::filesystem::path& photo)>& change) {
+  const InspectedCapture capture;
+  const auto scene = load_scene_to_look_at(read_capture(capture.folder()), 640);
+  change(capture.folder() / "photos/press_cam0.png");
+  try {
+    inspect(*scene, {.first_guess = false});
+  } catch (const InputError& error) {
+    EXPECT_GT(error.place().line, 0);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Inspection, PhotosThatGoOrChangeMeanwhileAreNamed) {
+  EXPECT_THAT(ended_by([](const auto& photo) { std::filesystem::remove(photo); }),
+              HasSubstr("press_cam0.png: there is no such file"));
+  EXPECT_THAT(ended_by([](const auto& photo) {
+                std::filesystem::copy_file(photo.parent_path() / "pull_cam0.png", photo,
+                                           std::filesystem::copy_options::overwrite_existing);
+              }),
+              HasSubstr("press_cam0.png has changed since it was read"));
 }
 
 /// A camera that was knocked between its photos moves all of a picture: no load is blamed for it.

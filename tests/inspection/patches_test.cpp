@@ -3,6 +3,7 @@
 #include "estimation/inspection/patches.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <Eigen/Dense>
 
@@ -63,6 +64,22 @@ int wrong(const PatchField& field, const Moved& moved) {
   for (const Patch& patch : field.patches)
     out += patch.found && (moved.of(patch.at) - patch.at - patch.shift).norm() > 5.0;
   return out;
+}
+
+/// Patches are sought by all threads at once, and stand in the order of one.
+TEST(Patches, AreTheSameByOneThreadAndByMany) {
+  const auto all = [](size_t threads) {
+    const tbb::global_control most(tbb::global_control::max_allowed_parallelism, threads);
+    std::vector<double> out;
+    for (const Patch& patch : found_again({}, {0.1}).patches)
+      for (const double value : {patch.at.x(), patch.at.y(), patch.shift.x(), patch.shift.y(),
+                                 patch.likeness, patch.elsewhere, double(patch.found)})
+        out.push_back(value);
+    return out;
+  };
+  const auto one = all(1);
+  EXPECT_GT(one.size(), 70U);
+  EXPECT_EQ(all(4), one);
 }
 
 TEST(Patches, FaintTextureBesideBrightEdgesDoesNotSlideAlongThem) {

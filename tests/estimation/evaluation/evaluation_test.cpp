@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "estimation/effects/catalogue.h"
@@ -46,6 +47,22 @@ TEST(Evaluation, OfNoNumberFails) {
   const auto way = misfits(small, {0.02, std::numeric_limits<double>::quiet_NaN(), 0.021});
   EXPECT_EQ(way[1], 0.0);
   EXPECT_NEAR(way[2], misfits(small, {0.02, 0.021})[1], 1e-6 * way[2]);
+}
+
+/// Levels of photos are made when they are asked for, and go once whole photos are.
+TEST(Evaluation, CoarsePhotosAreThereAgainAfterWholeOnes) {
+  const SmallScene small({});
+  const ModelForm form = base_form(small.scene);
+  Workspace workspace(small.scene);
+  const auto at_level = [&](int level) {
+    EvaluationOptions options;
+    options.level = level;
+    return workspace.evaluate(form, form.initial(), options).value().chi(false);
+  };
+  const double coarse = at_level(2), whole = at_level(0), again = at_level(2);
+  EXPECT_GT(std::abs(coarse - whole), 1e-3 * whole);
+  EXPECT_NEAR(again, coarse, 1e-6 * coarse);
+  EXPECT_NEAR(at_level(0), whole, 1e-6 * whole);
 }
 
 int newton_iterations(const Evaluation& evaluation) {
