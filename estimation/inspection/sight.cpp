@@ -100,6 +100,7 @@ const LoadCase& Sight::load_case(int e) {
   auto& kept = load_cases_[e];
   if (!kept) {
     kept = std::make_unique<LoadCase>(inspection::load_case(*this, e));
+    freed_.after_one();
     if (progress_.compared)
       progress_.compared(static_cast<int>(load_cases_.size()),
                          static_cast<int>(scene_.capture.examples.size()));
@@ -223,7 +224,9 @@ Agreement Sight::agreement(PhotoIndex photo, const Trial& trial) {
 const Agreement& Sight::agreement(PhotoIndex photo) {
   const auto found = agreements_.find(photo);
   if (found != agreements_.end()) return found->second;
-  return agreements_.emplace(photo, agreement(photo, Trial{})).first->second;
+  const Agreement& kept = agreements_.emplace(photo, agreement(photo, Trial{})).first->second;
+  freed_.after_one();
+  return kept;
 }
 
 }  // namespace hookeye::inspection

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/freed_memory.h"
 #include "estimation/inspection/body_view.h"
 #include "estimation/inspection/first_guess.h"
 #include "estimation/inspection/flip.h"
@@ -116,6 +117,7 @@ class Sight {
   const Scene& scene_;
   InspectionOptions options_;
   InspectionProgress progress_;
+  FreedMemoryReturned freed_;
   Model model_;
   BodyView view_;
   std::set<std::string> doubted_;

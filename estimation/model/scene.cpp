@@ -10,6 +10,7 @@
 #include <set>
 
 #include "capture_io/photo_reader.h"
+#include "core/freed_memory.h"
 #include "core/memory_left.h"
 #include "core/work_clock.h"
 #include "estimation/model/field_points.h"
@@ -147,6 +148,7 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
   std::atomic<int> done = 0;
   PhotoReader reader;
   HeldOnce held;
+  FreedMemoryReturned freed;
   const auto read = [&](size_t i) {
     if (failed) return;
     const Working part(WorkPart::reading);
@@ -165,6 +167,7 @@ std::vector<Photo> read_all(const std::vector<Wanted>& all, const Capture& captu
       faults[i] = std::current_exception();
       failed = true;
     }
+    freed.after_one();
     if (as.progress) as.progress(++done, static_cast<int>(all.size()));
   };
   tbb::task_arena few(std::min(kAtOnce, tbb::this_task_arena::max_concurrency()));
