@@ -100,8 +100,9 @@ TEST_F(Mpi, SolverIsChosen) {
     return shared(1, "simulate capture -o " + solver + " --json -v --solver " + solver);
   };
   const auto moved = [](const Result& result) {
+    const json document = json::parse(result.out);
     double most = 0.0;  // the body at rest is an example, too
-    for (const auto& example : json::parse(result.out).at("examples"))
+    for (const auto& example : document.at("examples"))
       most = std::max(most, example.at("max_displacement").get<double>());
     return most;
   };
