@@ -32,6 +32,7 @@ struct PhotoComparer::Impl {
   const PhotoPlane& plane(int photo, int plane, int level) {
     if (level == 0) {
       pyramids = {};
+      std::erase_if(beside_photo, [](const auto& one) { return one.first[2] > 0; });
       return whole = photo_pyramid(scene->photos[example][photo], plane, 1).front();
     }
     if (pyramids.empty())
@@ -44,11 +45,12 @@ struct PhotoComparer::Impl {
     return pyramids[photo][plane][std::min(level, kLevels - 1)];
   }
 
-  /// Of what is compared with `texture`, blurred by `blur` [px^2 of that level]. A blurred one
-  /// holds until the next is asked for.
-  const Image& sigma(int photo, int plane, int level, const Texture& texture, double blur) {
-    if (texture.source != Texture::Source::photo) return this->plane(photo, plane, level).sigma;
-    const Image& sharp = sigma_of_sharp(photo, plane, level);
+  /// Of the plane that was asked for last, compared with `texture`, blurred by `blur` [px^2 of that
+  /// level]. Holds as long.
+  const Image& sigma(const PhotoPlane& compared, std::array<int, 3> of, const Texture& texture,
+                     double blur) {
+    if (texture.source != Texture::Source::photo) return compared.sigma;
+    const Image& sharp = sigma_of_sharp(compared, of);
     if (blur == 0.0) return sharp;
     blurred_sigma = sharp;
     const auto factor = static_cast<float>(sigma_of_blur(blur).factor);
@@ -56,12 +58,12 @@ struct PhotoComparer::Impl {
     return blurred_sigma;
   }
 
-  const Image& sigma_of_sharp(int photo, int plane, int level) {
-    const PhotoPlane& compared = this->plane(photo, plane, level);
-    const auto [at, fresh] = beside_photo.try_emplace({photo, plane, level});
+  const Image& sigma_of_sharp(const PhotoPlane& compared, std::array<int, 3> of) {
+    const auto [at, fresh] = beside_photo.try_emplace(of);
     if (!fresh) return at->second;
-    const PhotoPlane& whole = this->plane(photo, plane, 0);
-    Image unresolved = unresolved_variance(whole.I, whole.sigma);
+    const auto [photo, plane, level] = of;
+    const Photo& taken = scene->photos[example][photo];
+    Image unresolved = unresolved_variance(taken.planes[plane], taken.sigma[plane]);
     for (int i = 0; i < std::min(level, kLevels - 1); ++i) {
       unresolved = halved(unresolved);
       for (float& variance : unresolved.values) variance /= 4.0f;  // as of independent pixels
@@ -177,7 +179,7 @@ std::vector<PhotoEvaluation> PhotoComparer::compare(const Model& model,
       const int level = whole ? 0 : options.level;
       const double blur =
           model.examples[static_cast<size_t>(e)].photos[i].blur_variance * std::pow(0.25, level);
-      const Image& sigma = impl_->sigma(k, plane, level, texture, blur);
+      const Image& sigma = impl_->sigma(photo, {k, plane, level}, texture, blur);
       all.push_back(whole ? compare_taken(view, k, plane, taken, photo, sigma, texture,
                                           impl_->followed, options, &rendering)
                           : compare_read(view, k, plane, photo, sigma, texture, impl_->followed,
