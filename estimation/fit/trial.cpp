@@ -7,6 +7,7 @@
 #include "core/work_clock.h"
 #include "estimation/fit/archived.h"
 #include "estimation/fit/at_floor.h"
+#include "estimation/fit/fit.h"
 #include "estimation/fit/floor.h"
 
 namespace hookeye {
@@ -63,6 +64,22 @@ Result<TrialScale> scale_anew(Workspace& workspace, const ModelForm& form, const
                     floor.source.starts_with("rest") ? floor.chi : 0.0, measured_weight(floor)};
 }
 
+/// The trial with the numbers that concern held-out examples alone fitted to those: they suit the
+/// model before the step.
+Result<Trial> with_held_out(Workspace& workspace, const ModelForm& form, Trial trial,
+                            const FitOptions& options) {
+  const auto settled = settle_held_out(workspace, form, trial.p, options);
+  if (!settled) return failure_of(settled);
+  if (*settled == trial.p) return trial;
+  EvaluationOptions pictures = half_size(options);
+  pictures.held_out = true;
+  const auto seen = workspace.evaluate(form, *settled, pictures);
+  if (!seen) return failure_of(seen);
+  trial.p = *settled;
+  trial.chi_validate = seen->linear_chi(true);
+  return trial;
+}
+
 Result<Trial> step_anew(Workspace& workspace, const ModelForm& form, const VectorXd& start,
                         const TrialScale& scale, const FitOptions& options) {
   EvaluationOptions derivatives = half_size(options);
@@ -84,7 +101,9 @@ Result<Trial> step_anew(Workspace& workspace, const ModelForm& form, const Vecto
     seen = workspace.evaluate(form, p, pictures);
     if (seen)
       if (share == 0.0 || seen->linear_chi(false) < from)
-        return Trial{p, seen->linear_chi(false), seen->linear_chi(true), scale.floor};
+        return with_held_out(workspace, form,
+                             {p, seen->linear_chi(false), seen->linear_chi(true), scale.floor},
+                             options);
     if (options.cancel && options.cancel->load()) return stopped();
   }
   return failure_of(seen);  // not even the start: a held-out example
