@@ -175,7 +175,7 @@ TEST(Catalogue, TouchesSayWhatChangesInPhotos) {
         const VectorXd d =
             photo_difference(base_model().examples[e].photos[k], model.examples[e].photos[k]);
         moves = moves || !d.head(kLogGain).isZero(0.0);
-        shades = shades || !d.tail(kPhotoColumns - kLogGain).isZero(0.0);
+        shades = shades || !d.tail(kPhotoNumbers - kLogGain).isZero(0.0);
       }
     const Touches touches = c.ingredient->touches();
     EXPECT_EQ(touches.cameras, moves) << c.label();
