@@ -57,7 +57,7 @@ def full_capture():
         "cameras": {
             "front": {"size": list(SIZE), "projection": "perspective", "pose": pose,
                       "intrinsics": {"fx": 30, "fy": 31, "cx": 19.5, "cy": 15.5, "skew": 0, "distortion": [0.01, 0, 0, 0]}},
-            "left": {"calibration": "left.yml"},
+            "left": {"calibration": "left.yml", "vignetting": 1.2, "chromatic_shift": {"red": 1.0003, "blue": 0.9998}},
             "top": {"size": list(SIZE), "projection": "orthographic", "pose": pose,
                     "intrinsics": {"scale": 2, "cx": 19.5, "cy": 15.5}}},
         "camera_covariance": {"from": "known.yaml", "scale": 1},
@@ -110,6 +110,7 @@ def plain_capture():
 def full_recipes():
     """A drawn shape, and a surface of one's own: together every key."""
     cameras = {"count": 1, "size": [60, 80], "distance": 6, "focal": 300, "projection": ["perspective"], "distortion": [],
+               "vignetting": 1,
                "azimuth": 0, "spread": 70, "elevation": 10}
     texture = {"texel": 1, "speckle": 4, "cover": 0.5, "soft": 0.35, "dark": 0.2, "bright": 0.8}
     example = {"use": "fit", "region": "grip", "move": [0, 0, 0.02], "rotate": 5, "axis": [0, 0, 1]}
