@@ -10,7 +10,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   (void)ready;
   return fuzz::on_file("a.png", data, size, [](const auto& file) {
     read_header(file);
-    bool srgb = false;
-    read_stored(file, srgb);
+    read_stored(file);
   });
 }
