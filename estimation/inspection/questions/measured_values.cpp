@@ -1,153 +1,22 @@
-// Have measured forces, moments, travels and places the sign that the loads give them, and are
-// they those of their own example?
+// Have measured forces, moments, travels and places the axes, the sign and the unit that the loads
+// give them, and are they those of their own example?
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
+#include <numeric>
 
 #include "estimation/evaluation/sensor.h"
+#include "estimation/inspection/axes_read.h"
 #include "estimation/inspection/exchanges.h"
 #include "estimation/inspection/load_case.h"
 #include "estimation/inspection/question.h"
-#include "estimation/inspection/si.h"
+#include "estimation/inspection/readings.h"
 #include "estimation/model/session_sensors.h"
-#include "meshing/extent.h"
 
 namespace hookeye::inspection {
 
 namespace {
-
-/// One measurement of a load case, less that at rest where there is one.
-struct Reading {
-  int example = 0;
-  const MeasuredSpec* measured = nullptr;
-  VectorXd value, first_order, in_equilibrium;
-  bool less_shared = false;  ///< what all readings have, as a weight or a zero, is taken off
-};
-using Readings = std::vector<Reading>;
-
-/// The same sensor in several examples.
-std::tuple<int, std::string, std::vector<double>> sensor_of(const MeasuredSpec& measured) {
-  std::vector<double> where(measured.point.begin(), measured.point.end());
-  where.insert(where.end(), measured.direction.begin(), measured.direction.end());
-  return {static_cast<int>(measured.kind), measured.region, where};
-}
-
-/// What the coarse model's sensor shows with its nodes at `q` under the reactions `R`.
-VectorXd sensed(const CoarseModel& coarse, int e, const MeasuredSpec& measured, const VectorXd& q,
-                const VectorXd& R) {
-  Equilibrium state;
-  state.q = q, state.R = R;
-  return predicted(measured, {coarse.scene(), coarse.model(), e, state, Eigen::MatrixXd(), nullptr})
-      .value;
-}
-
-/// Nothing is said of a case without an equilibrium, or of one that another question doubts.
-bool can_be_read(Sight& sight, int e) {
-  const FirstGuess& guess = *sight.guess(e);
-  return guess.reaction.size() > 0 && guess.q.size() > 0 && !moved_by_unknown(sight.example(e)) &&
-         !sight.load_doubted(e);
-}
-
-Reading read(Sight& sight, int e, const MeasuredSpec& measured) {
-  const CoarseModel& coarse = *sight.coarse();
-  const FirstGuess& guess = *sight.guess(e);
-  const VectorXd X = coarse.scene().body->mesh.X.reshaped();
-  const VectorXd rest = sensed(coarse, e, measured, X, VectorXd::Zero(X.size()));
-  return {e,
-          &measured,
-          measured.value - rest,
-          sensed(coarse, e, measured, X + guess.u, guess.reaction) - rest,
-          sensed(coarse, e, measured, guess.q, guess.R) - rest,
-          false};
-}
-
-/// Where an angle is counted from is told by the value alone then.
-bool is_past_half_a_turn(const MeasuredSpec& measured) {
-  return measured.kind == MeasuredSpec::Kind::rotation_of && std::abs(measured.value[0]) >= 180.0;
-}
-
-/// Readings of one sensor; those at rest are taken off the others.
-std::vector<Readings> all_series(Sight& sight) {
-  std::map<std::tuple<int, std::string, std::vector<double>>, Readings> by_sensor;
-  for (size_t i = 0; i < sight.scene().capture.examples.size(); ++i) {
-    const int e = static_cast<int>(i);
-    if (!can_be_read(sight, e)) continue;
-    for (const MeasuredSpec& measured : sight.example(e).measured)
-      if (!measured.field && is_on_body(measured) && !is_past_half_a_turn(measured))
-        by_sensor[sensor_of(measured)].push_back(read(sight, e, measured));
-  }
-  std::vector<Readings> out;
-  for (auto& [sensor, series] : by_sensor) {
-    const auto rest = std::find_if(series.begin(), series.end(), [&](const Reading& one) {
-      return is_rest(sight.example(one.example));
-    });
-    if (rest != series.end()) {
-      const Reading off = *rest;
-      series.erase(rest);
-      for (Reading& one : series) {
-        one.value -= off.value;
-        one.first_order -= off.first_order, one.in_equilibrium -= off.in_equilibrium;
-        one.less_shared = true;
-      }
-    } else if (!is_reaction(*series.front().measured)) {
-      continue;  // a weight that the capture leaves out may have moved it
-    }
-    out.push_back(std::move(series));
-  }
-  return out;
-}
-
-double cosine(const VectorXd& a, const VectorXd& b) {
-  const double size = a.norm() * b.norm();
-  return size > 0.0 ? a.dot(b) / size : 0.0;
-}
-
-/// The least force or moment that a weight, which the capture leaves out, cannot be: of the body's
-/// told density, else of the heaviest soft body. Where what readings share is off, there is left
-/// what a weight changes as the body deforms.
-double beyond_weight(const Sight& sight, const Reading& one) {
-  const MeasuredSpec& measured = *one.measured;
-  const Capture& capture = sight.scene().capture;
-  const bool weighs = capture.gravity && capture.body.density > 0.0;
-  if (!is_reaction(measured) || weighs) return 0.0;
-  const TetMesh& mesh = sight.scene().body->mesh;
-  const double metre = capture.units.metre();
-  const double kg = sight.options().heaviest_soft * quality(mesh).volume / (metre * metre * metre);
-  const double own = capture.body.density * quality(mesh).volume * 9.81 * metre;
-  const double weight = own > 0.0 ? own : 9.81 * kg / newtons(capture.units);
-  const double share = one.less_shared ? sight.options().weight_moved : 1.0;
-  return share *
-         (measured.kind == MeasuredSpec::Kind::moment_on ? weight * extent(mesh.X) : weight);
-}
-
-/// Far enough from nothing, and expected alike to first order and in equilibrium: what second order
-/// alone gives, as a twist's axial force, has no sure sign here.
-bool sure(const Sight& sight, const Reading& one) {
-  const InspectionOptions& options = sight.options();
-  const double expected = one.in_equilibrium.norm();
-  if (!(expected > 0.0) || cosine(one.first_order, one.in_equilibrium) < options.sure_cosine)
-    return false;
-  const double times = one.value.norm() / expected;
-  return std::abs(std::log(times)) <= std::log(options.most_times_by_force) &&
-         one.measured->whitened(one.value).norm() >= options.sure_sigmas &&
-         one.value.norm() > beyond_weight(sight, one);
-}
-
-std::string told(const VectorXd& value) {
-  std::string out;
-  for (const double one : value) out += fmt::format("{}{:.3g}", out.empty() ? "" : ", ", one);
-  return value.size() == 1 ? out : "(" + out + ")";
-}
-
-std::string sensor_in_words(const Sight& sight, const MeasuredSpec& measured) {
-  const MeasuredKind& kind = kind_of(measured);
-  return measured.region.empty() ? fmt::format("`{}` of {} {}", kind.name, told(measured.point),
-                                               sight.scene().capture.units.length)
-                                 : fmt::format("`{}: {}`", kind.name, measured.region);
-}
 
 MotionSums sums_of(const VectorXd& seen, const VectorXd& expected) {
   MotionSums sums;
@@ -165,20 +34,28 @@ double reversed_left(ComparedWays compared, const Exchange& one) {
   return share_left(compared, one.places, one.places);
 }
 
-/// Told values that stand in one another's places; the readings that are left.
-Readings ask_for_exchanges(Sight& sight, const Readings& series, Warnings& warnings) {
+/// Of a prescribed motion the force is known but for the stiffness, of a force the motion.
+bool scaled_by_stiffness(const Sight& sight, const Reading& one) {
+  return is_reaction(*one.measured) != moved_by_forces(sight.example(one.example));
+}
+
+ComparedWays compared_readings(const Sight& sight, const Readings& series) {
   ComparedWays compared;
   compared.ways.resize(2);
   for (const Reading& one : series) {
-    // Of a prescribed motion the force is known but for the stiffness, of a force the motion.
-    compared.scaled.push_back(is_reaction(*one.measured) !=
-                              moved_by_forces(sight.example(one.example)));
+    compared.scaled.push_back(scaled_by_stiffness(sight, one));
     for (ComparedPlaces& way : compared.ways) way.emplace_back();
     for (const Reading& other : series) {
       compared.ways[0].back().push_back(sums_of(one.value, other.first_order));
       compared.ways[1].back().push_back(sums_of(one.value, other.in_equilibrium));
     }
   }
+  return compared;
+}
+
+/// Told values that stand in one another's places; the readings that are left.
+Readings ask_for_exchanges(Sight& sight, const Readings& series, Warnings& warnings) {
+  const ComparedWays compared = compared_readings(sight, series);
   std::vector<char> taken(series.size(), 0);
   for (const Exchange& one : exchanges({compared}, sight.options())) {
     std::string which;
@@ -319,13 +196,145 @@ void ask_for_their_sizes(const Sight& sight, const Readings& series, Warnings& w
                   times, units.force, units.stress()));
 }
 
+/// A reading's size over that which the first guess gives it; 0: it has no sure direction.
+double times_either_way(const Reading& one, const InspectionOptions& options) {
+  if (std::abs(cosine(one.value, one.in_equilibrium)) < options.sure_cosine ||
+      cosine(one.first_order, one.in_equilibrium) < options.sure_cosine)
+    return 0.0;
+  return one.value.norm() / one.in_equilibrium.norm();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Single values in another unit than the others of their sensor; the readings that are left.
+Readings ask_for_single_units(const Sight& sight, const Readings& series, Warnings& warnings) {
+  const InspectionOptions& options = sight.options();
+  std::vector<double> times, scaled;
+  for (const Reading& one : series) {
+    times.push_back(is_reaction(*one.measured) ? times_either_way(one, options) : 0.0);
+    if (times.back() > 0.0 && scaled_by_stiffness(sight, one)) scaled.push_back(times.back());
+  }
+  // Of two neither is the one that is off: three have a majority.
+  const double usual = scaled.size() > 2 ? median(scaled) : 0.0;
+  Readings rest;
+  for (size_t i = 0; i < series.size(); ++i) {
+    const Reading& one = series[i];
+    const double expected = scaled_by_stiffness(sight, one) ? usual : 1.0;
+    const double off = times[i] > 0.0 && expected > 0.0 ? times[i] / expected : 1.0;
+    if (std::abs(std::log(off)) <= std::log(options.most_times_by_force)) {
+      rest.push_back(one);
+      continue;
+    }
+    const Units& units = sight.scene().capture.units;
+    warnings.say(
+        one.measured->place,
+        fmt::format("{} of example `{}` is {}, {:.2g} times what the first guess gives it{}",
+                    sensor_in_words(sight, *one.measured), sight.example(one.example).name,
+                    told(one.measured->value), off,
+                    scaled_by_stiffness(sight, one) ? " beside the other examples"
+                                                    : ", where forces alone move the body"),
+        fmt::format("this value in {}: it seems to be in another unit",
+                    measured_unit(*one.measured, units)));
+  }
+  return rest;
+}
+
+/// Vectors of one sensor; none where it tells single numbers.
+ToldVectors vectors_of(const Sight& sight, const Readings& series) {
+  ToldVectors out;
+  const auto n = static_cast<Eigen::Index>(series.size());
+  out.told.resize(3, n), out.expected.assign(2, Matrix3Xd(3, n));
+  Vector3d sigmas2 = Vector3d::Zero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Reading& one = series[static_cast<size_t>(i)];
+    out.told.col(i) = one.value;
+    out.expected[0].col(i) = one.first_order, out.expected[1].col(i) = one.in_equilibrium;
+    out.scaled.push_back(scaled_by_stiffness(sight, one));
+    out.sure.push_back(one.measured->whitened(one.value).norm() >= sight.options().sure_sigmas &&
+                       one.value.norm() > beyond_weight(sight, one));
+    for (int k = 0; k < 3; ++k) {
+      const VectorXd along = one.value[k] * VectorXd::Unit(3, k);
+      if (std::abs(one.value[k]) > beyond_weight(sight, one))
+        sigmas2[k] += one.measured->whitened(along).squaredNorm();
+    }
+  }
+  for (int k = 0; k < 3; ++k)
+    out.sure_told[static_cast<size_t>(k)] =
+        sigmas2[k] >= sight.options().sure_sigmas * sight.options().sure_sigmas;
+  return out;
+}
+
+void say_axes(const Sight& sight, const Readings& series, const AxesRead& read,
+              const std::string& whose, Warnings& warnings) {
+  warnings.say(series.front().measured->place,
+               fmt::format("{} of {} is not as loads and supports give it by the first guess: on "
+                           "the axes in question {:.0f} % of the squares are left, and {:.2g} % if "
+                           "{}",
+                           sensor_in_words(sight, *series.front().measured), whose,
+                           100.0 * read.told, 100.0 * read.read, read.in_words()),
+               "`value` in the world's axes, as those of loads and supports");
+}
+
+/// What is left of all readings once those that stand in one another's places are exchanged.
+double left_by_exchanges(const Sight& sight, const Readings& series) {
+  const ComparedWays compared = compared_readings(sight, series);
+  std::vector<int> places(series.size());
+  std::iota(places.begin(), places.end(), 0);
+  std::vector<int> fits = places;
+  for (const Exchange& one : exchanges({compared}, sight.options()))
+    for (size_t i = 0; i < one.places.size(); ++i)
+      fits[static_cast<size_t>(one.places[i])] = one.fits[i];
+  return share_left(compared, places, fits);
+}
+
+/// Vectors in other axes than told, all of them or single ones: what leaves less. The readings that
+/// are left.
+Readings ask_for_their_axes(const Sight& sight, const Readings& series, Warnings& warnings) {
+  if (series.front().value.size() != 3) return series;
+  const ToldVectors vectors = vectors_of(sight, series);
+  ToldVectors by_singles = vectors, by_all = vectors;
+  std::vector<std::optional<AxesRead>> singles;
+  for (size_t i = 0; i < series.size(); ++i) {
+    const auto column = static_cast<int>(i);
+    singles.push_back(read_otherwise(vectors, {column}, sight.options()));
+    if (singles.back() && singles.back()->whole) singles.back().reset();
+    if (singles.back()) by_singles.told.col(column) = singles.back()->of(vectors.told.col(column));
+  }
+  const auto all = read_otherwise(vectors, {}, sight.options());
+  if (all && !all->whole && series.size() > 1) {
+    by_all.told = all->of(vectors.told);
+    const double left = share_left(by_all);
+    if (left < share_left(by_singles) && left < left_by_exchanges(sight, series)) {
+      say_axes(sight, series, *all, fmt::format("all {} examples", series.size()), warnings);
+      return {};
+    }
+  }
+  if (left_by_exchanges(sight, series) < share_left(by_singles)) return series;
+  Readings rest;
+  for (size_t i = 0; i < series.size(); ++i) {
+    if (singles[i])
+      say_axes(sight, {series[i]}, *singles[i],
+               fmt::format("example `{}`", sight.example(series[i].example).name), warnings);
+    else
+      rest.push_back(series[i]);
+  }
+  return rest;
+}
+
 }  // namespace
 
 void ask_measured_values(Sight& sight, Warnings& warnings) {
   if (!sight.coarse()) return;
   for (const Readings& series : all_series(sight)) {
     ask_for_their_sizes(sight, series, warnings);
-    ask_for_their_signs(sight, ask_for_exchanges(sight, series, warnings), warnings);
+    Readings left = ask_for_single_units(sight, series, warnings);
+    if (!left.empty()) left = ask_for_their_axes(sight, left, warnings);
+    if (!left.empty())
+      ask_for_their_signs(sight, ask_for_exchanges(sight, left, warnings), warnings);
   }
 }
 
