@@ -107,6 +107,26 @@ bool pair_by_column(const std::vector<long>& numbers, const MachineRecord& recor
       "complete the photos or the table, or pair by time: --set photo_column=none");
 }
 
+/// A told clock by which photos and machine do not begin to move together. `seconds` of the photos
+/// count from any time.
+void doubt_told_clock(const std::vector<double>& seconds, double told_first,
+                      const PhotoMotion& motion, const MachineRecord& record, Pairing& out) {
+  if (motion.moved == 0) return;
+  const ClockOffset offset = clock_offset(seconds, motion, record);
+  const double found = seconds.front() - offset.seconds;
+  if (std::abs(told_first - found) <= 3.0 * offset.error) return;
+  out.said.push_back(
+      fmt::format("the first photo is told to be at {:.6g} s of the table, but photos and machine "
+                  "begin to move together where it is at {:.6g} s (within {:.2g} s): every load "
+                  "may be that of another time",
+                  told_first, found, offset.error));
+}
+
+/// Where neither is still at first, nothing begins.
+PhotoMotion first_motion(const PhotoSeries& series, const MachineRecord& record) {
+  return record.still_rows > 0 ? photo_motion(series) : PhotoMotion{};
+}
+
 /// By the photos' clock; the offset is that which lets photos and machine begin to move together.
 bool pair_by_clock(const PhotoSeries& series, const MachineRecord& record, Questions& questions,
                    Pairing& out) {
@@ -117,7 +137,7 @@ bool pair_by_clock(const PhotoSeries& series, const MachineRecord& record, Quest
                            .text = "time of the first photo in the table, in s",
                            .standard = "",
                            .why = "no still start in photos and table to find it from"};
-  const PhotoMotion motion = record.still_rows > 0 ? photo_motion(series) : PhotoMotion{};
+  const PhotoMotion motion = first_motion(series, record);
   ClockOffset offset;
   if (motion.moved > 0) {
     offset = clock_offset(clock.seconds, motion, record);
@@ -134,6 +154,7 @@ bool pair_by_clock(const PhotoSeries& series, const MachineRecord& record, Quest
   const CaptureQuestion& asked = questions.all().back();
   if (!found && !asked.answered) return true;
   out.clock_error = asked.answered ? 0.0 : offset.error;
+  if (asked.answered) doubt_told_clock(clock.seconds, first, motion, record, out);
   out.how = asked.answered ? fmt::format("by the photos' clock, the first at {:.6g} s", first)
                            : fmt::format("by the photos' clock, the first at {:.6g} s: {}", first,
                                          question.why);
@@ -165,6 +186,7 @@ void pair_as_told(const PhotoSeries& series, const MachineRecord& record, Questi
   std::vector<double> times;
   for (const long number : numbers)
     times.push_back(*first + *pace * static_cast<double>(number - numbers.front()));
+  doubt_told_clock(times, *first, first_motion(series, record), record, out);
   out.how = fmt::format("as told: the first at {:.6g} s, then one each {:.6g} s", *first, *pace);
   pair_by_times(numbers, times, record, out);
 }

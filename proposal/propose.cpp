@@ -217,7 +217,8 @@ std::string capture_text(const Parts& parts, const Inventory& inventory, const f
   std::string out = "# A proposal of `hookeye new`. The format: docs/capture.md. Look at it by\n";
   out += comment("  hookeye check . -o look");
   out += comment("Photos are paired with rows of " + table + " " + parts.pairing.how + ".");
-  for (const std::string& said : parts.record.said) out += comment(said);
+  for (const auto* said : {&parts.pairing.said, &parts.record.said})
+    for (const std::string& one : *said) out += comment(one);
   out += fmt::format("hookeye: 1\ntitle: {}\n", yaml_name(inventory.folder.filename().string()));
   out += fmt::format("units: {{length: {}, force: N}}\n", parts.length);
   out += body_text(parts, folder);

@@ -83,6 +83,32 @@ TEST(Pairing, TheClocksAreTiedByTheFirstMotion) {
   EXPECT_EQ(proposal.cases.rest.number, 8);  // 8.6 s; the ninth is from 10.3 s
 }
 
+/// The first photo is from -3.3 s, by the photos' own clock or as told with their pace.
+TEST(Pairing, AToldClockIsHeldAgainstTheFirstMotion) {
+  const LabFolder lab;
+  const auto rows = ramp(20, 40, 0.7);
+  lab.write("machine.csv", plain_table(rows));
+  photograph(lab, rows, 3.3, 1.7, 18);
+  const std::string doubt = "photos and machine begin to move together where it is at -3.";
+  const Proposal wrong = lab.proposal({{"clock", "2"}});
+  EXPECT_TRUE(any_says(wrong.said, doubt));
+  EXPECT_THAT(wrong.yaml, testing::HasSubstr("# the first photo is told to be at 2 s"));
+  EXPECT_FALSE(any_says(lab.proposal({{"clock", "-3.3"}}).said, doubt));
+}
+
+TEST(Pairing, ToldTimesAreHeldAgainstTheFirstMotion) {
+  const LabFolder lab;
+  const auto rows = ramp(20, 40, 0.7);
+  lab.write("machine.csv", plain_table(rows));
+  for (int k = 0; k < 18; ++k)
+    for (const char* camera : {"cam0", "cam1"})
+      lab.photo(fmt::format("photos/{}_{:04}.tif", camera, k + 1),
+                0.8 * std::max(0.0, 1.7 * k - 3.3 - 9.5));
+  const std::string doubt = "photos and machine begin to move together where it is at -3.";
+  EXPECT_TRUE(any_says(lab.proposal({{"photo_times", "-1,1.7"}}).said, doubt));
+  EXPECT_FALSE(any_says(lab.proposal({{"photo_times", "-3.3,1.7"}}).said, doubt));
+}
+
 TEST(Pairing, TheFirstMotionIsFoundOrNone) {
   const LabFolder lab;
   for (int k = 0; k < 12; ++k)
