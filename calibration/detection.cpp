@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/helper.h"
+#include "calibration/ask_boards.h"
 
 namespace hookeye {
 namespace {
 
-/// Grey of 8 bits as eyes see it: detectors stand on contrasts of such pictures. The brightest
-/// thousandth may be cut, so that a glint does not darken the rest.
-std::string grey_of(const Image& photo) {
+/// The brightest thousandth may be cut, so that a glint does not darken the rest.
+std::string grey_of(const Image& photo, Grey how) {
+  const double power = how == Grey::as_seen ? 1 / 2.2 : 1.0;
   const Image grey = luminance(photo);
   std::vector<float> sorted;
   for (size_t i = 0; i < grey.values.size(); i += 1 + grey.values.size() / 100000)
@@ -25,29 +25,9 @@ std::string grey_of(const Image& photo) {
   for (size_t i = 0; i < bytes.size(); ++i) {
     const float share = grey.values[i] / white;
     const double value = std::isfinite(share) ? std::clamp(share, 0.0F, 1.0F) : 0.0;
-    bytes[i] = static_cast<char>(std::lround(255.0 * std::pow(value, 1 / 2.2)));
+    bytes[i] = static_cast<char>(std::lround(255.0 * std::pow(value, power)));
   }
   return bytes;
-}
-
-Packer request_of(const char* task, const Image& photo, const Board& board) {
-  Packer what;
-  what.put(task);
-  pack(what, board);
-  what.put(photo.width).put(photo.height).put(grey_of(photo));
-  return what;
-}
-
-template <class Unpack>
-auto ask(Packer& what, const std::string& file, const Unpack& unpack) {
-  HelperRequest request;
-  request.name = "boards";
-  request.content = what.take();
-  request.limits = {4.0 * (1 << 30), 120.0};
-  request.place = {file};
-  request.right = "another photo of the board, or a smaller one";
-  request.damaged = "OpenCV gave up on the photo";
-  return ask_helper(request, unpack);
 }
 
 bool on_a_line(const Board& board, const std::vector<int>& ids) {
@@ -61,11 +41,30 @@ bool on_a_line(const Board& board, const std::vector<int>& ids) {
 
 }  // namespace
 
+Packer boards_request(const char* task, const Image& photo, const Board& board, Grey grey) {
+  Packer what;
+  what.put(task);
+  pack(what, board);
+  what.put(photo.width).put(photo.height).put(grey_of(photo, grey));
+  return what;
+}
+
+HelperRequest to_boards(Packer& what, const std::string& file) {
+  HelperRequest request;
+  request.name = "boards";
+  request.content = what.take();
+  request.limits = {4.0 * (1 << 30), 120.0};
+  request.place = {file};
+  request.right = "another photo of the board, or a smaller one";
+  request.damaged = "OpenCV gave up on the photo";
+  return request;
+}
+
 bool boards_can_be_found() { return std::filesystem::exists(helper_folder() / "boards"); }
 
 Detection detect(const Image& photo, const Board& board, const std::string& file) {
-  Packer what = request_of("detect", photo, board);
-  Detection found = ask(what, file, [&](Unpacker& from) {
+  Packer what = boards_request("detect", photo, board);
+  Detection found = ask_boards(what, file, [&](Unpacker& from) {
     Detection got;
     from.get(got.ids);
     from.get(got.pixels);
@@ -88,14 +87,14 @@ Detection detect(const Image& photo, const Board& board, const std::string& file
 }
 
 std::string seen_instead(const Image& photo, const Board& board, const std::string& file) {
-  Packer what = request_of("instead", photo, board);
-  return ask(what, file, [](Unpacker& from) { return from.take<std::string>(); });
+  Packer what = boards_request("instead", photo, board);
+  return ask_boards(what, file, [](Unpacker& from) { return from.take<std::string>(); });
 }
 
 std::vector<DictionaryFit> try_dictionaries(const Image& photo, const Board& board,
                                             const std::string& file) {
-  Packer what = request_of("dictionaries", photo, board);
-  return ask(what, file, [](Unpacker& from) {
+  Packer what = boards_request("dictionaries", photo, board);
+  return ask_boards(what, file, [](Unpacker& from) {
     const auto names = from.take<std::vector<std::string>>();
     const auto markers = from.take<std::vector<uint64_t>>();
     const auto corners = from.take<std::vector<uint64_t>>();
@@ -107,8 +106,8 @@ std::vector<DictionaryFit> try_dictionaries(const Image& photo, const Board& boa
 }
 
 std::string markers_seen(const Image& photo, const Board& board, const std::string& file) {
-  Packer what = request_of("markers", photo, board);
-  return ask(what, file, [](Unpacker& from) { return from.take<std::string>(); });
+  Packer what = boards_request("markers", photo, board);
+  return ask_boards(what, file, [](Unpacker& from) { return from.take<std::string>(); });
 }
 
 std::vector<ViewPose> start_camera(Camera& camera, const Board& board,
@@ -119,7 +118,7 @@ std::vector<ViewPose> start_camera(Camera& camera, const Board& board,
   what.put(camera.width).put(camera.height).put<uint64_t>(photos.size());
   for (const Detection* photo : photos) what.put(photo->ids).put(photo->pixels);
   std::vector<ViewPose> poses(photos.size());
-  ask(what, "camera " + camera.name, [&](Unpacker& from) {
+  ask_boards(what, "camera " + camera.name, [&](Unpacker& from) {
     const auto numbers = from.take<Eigen::Matrix<double, 6, 1>>();
     const auto found = from.take<Eigen::Matrix<double, 6, Eigen::Dynamic>>();
     if (!numbers.allFinite() || !found.allFinite() ||

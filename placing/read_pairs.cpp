@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <sstream>
 
-#include "core/text_file.h"
+#include "placing/field_lines.h"
 #include "placing/pairs.h"
 
 namespace hookeye {
@@ -15,20 +13,10 @@ constexpr const char* kRightLine = "CAMERA u v x y z, as `front 412.5 233  10 0 
 
 /// Numbers between commas, as many as asked for; empty: others stand there.
 std::vector<double> numbers(const std::string& text, size_t count) {
-  std::vector<double> out;
-  std::istringstream cells(text);
-  for (std::string cell; std::getline(cells, cell, ',');) {
-    const size_t first = cell.find_first_not_of(" \t");
-    const size_t last = cell.find_last_not_of(" \t");
-    if (first == std::string::npos) return {};
-    const char* const begin = cell.data() + first + (cell[first] == '+' ? 1 : 0);
-    const char* const end = cell.data() + last + 1;
-    double value = 0.0;
-    const auto [at, fault] = std::from_chars(begin, end, value);
-    if (fault != std::errc() || at != end || !std::isfinite(value)) return {};
-    out.push_back(value);
-  }
-  return out.size() == count && !text.ends_with(',') ? out : std::vector<double>{};
+  std::vector<std::string> cells;
+  std::istringstream all(text);
+  for (std::string cell; std::getline(all, cell, ',');) cells.push_back(cell);
+  return text.ends_with(',') ? std::vector<double>{} : numbers_in(cells, 0, count);
 }
 
 PickedPair pair_of(const std::string& camera, const std::vector<double>& pixel,
@@ -55,23 +43,13 @@ PickedPair read_pair(const std::string& text, const Place& place) {
 }
 
 std::vector<PickedPair> read_pairs(const std::filesystem::path& file) {
-  std::istringstream lines(read_text(file));
   std::vector<PickedPair> out;
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);  // a byte order mark
-    line.resize(std::min(line.size(), line.find('#')));
-    for (char& c : line)
-      if (c == ',' || c == ';' || c == '\t' || c == '\r') c = ' ';
-    std::istringstream fields(line);
-    std::string camera, field, rest;
-    if (!(fields >> camera)) continue;
-    while (fields >> field) rest += (rest.empty() ? "" : ",") + field;
-    const std::vector<double> all = numbers(rest, 5);
-    const Place place{file.string(), number};
+  for (const FieldLine& line : field_lines(file)) {
+    const std::vector<double> all = numbers_in(line.fields, 1, 5);
     if (all.empty())
-      throw InputError(place, "this line is no pair of a pixel and a point", kRightLine);
-    out.push_back(pair_of(camera, {all[0], all[1]}, {all[2], all[3], all[4]}, place));
+      throw InputError(line.place, "this line is no pair of a pixel and a point", kRightLine);
+    out.push_back(
+        pair_of(line.fields.front(), {all[0], all[1]}, {all[2], all[3], all[4]}, line.place));
   }
   if (out.empty()) throw InputError({file.string()}, "there is no pair in this file", kRightLine);
   return out;

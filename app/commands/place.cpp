@@ -8,6 +8,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/commands/place_look.h"
+#include "app/commands/place_tags.h"
 #include "app/progress.h"
 #include "app/validators.h"
 #include "capture_io/yaml_file.h"
@@ -26,9 +27,9 @@ using Json = nlohmann::ordered_json;
 constexpr double kRadians = EIGEN_PI / 180.0;  // in a degree
 
 struct PlaceCommand {
-  std::string capture, pairs_file, scan, scan_unit, out;
+  std::string capture, pairs_file, tags, dictionary = "4X4_50", scan, scan_unit, out;
   std::vector<std::string> pairs;
-  double sigma = 1.0;
+  double sigma = 0.0;  ///< [px]; 0: not told
   bool fit = false, dry = false;
 };
 
@@ -65,7 +66,7 @@ class Starts {
   std::optional<Progress> progress_;
 };
 
-std::vector<PickedPair> pairs_of(const PlaceCommand& options) {
+std::vector<PickedPair> picked(const PlaceCommand& options) {
   std::vector<PickedPair> all;
   if (!options.pairs_file.empty()) all = read_pairs(options.pairs_file);
   for (size_t i = 0; i < options.pairs.size(); ++i)
@@ -73,10 +74,20 @@ std::vector<PickedPair> pairs_of(const PlaceCommand& options) {
   return all;
 }
 
-Placing by_pairs(const PlaceCommand& options, const Capture& capture, const PlacedBody& body,
-                 Session& session) {
-  const std::vector<PickedPair> pairs = pairs_of(options);
-  const PairFit found = place_by_pairs(pairs, capture, body, {options.sigma});
+/// How well points are known in photos where nobody tells [px]: picked by eye; corners of a tag, by
+/// the gradients around them.
+constexpr double kPicked = 1.0, kTag = 0.3;
+
+Placing by_pairs(const PlaceCommand& options, const Scene& at_rest, const Capture& capture,
+                 const PlacedBody& body, Session& session) {
+  std::vector<PickedPair> pairs = picked(options);
+  const double usual = pairs.empty() ? kTag : kPicked;
+  if (!options.tags.empty())
+    for (PickedPair& one :
+         pairs_of_tags(options.tags, options.dictionary, at_rest.capture, session))
+      pairs.push_back(std::move(one));
+  const PairFit found =
+      place_by_pairs(pairs, capture, body, {options.sigma > 0.0 ? options.sigma : usual});
   Json& list = session.document["pairs"] = Json::array();
   std::vector<std::vector<std::string>> rows{
       {"camera", "pixel", "point of the body", "off px", ""}};
@@ -198,9 +209,11 @@ void tell_place(const Placing& placing, const ToldPlacement& told, const ToldPla
 }
 
 void run_place(const PlaceCommand& options, Session& session) {
-  const bool pairs = !options.pairs.empty() || !options.pairs_file.empty();
+  const bool tags = !options.tags.empty();
+  const bool pairs = tags || !options.pairs.empty() || !options.pairs_file.empty();
   if (pairs && !options.scan.empty())
-    throw misused("both pairs and a scan are given", "place the body by one of them");
+    throw misused(fmt::format("both {} and a scan are given", tags ? "tags" : "pairs"),
+                  "place the body by one of them");
   if (!options.scan_unit.empty() && options.scan.empty())
     throw misused("--scan-unit stands without --scan", "--scan FILE --scan-unit mm");
   const Capture whole = read_capture(options.capture);
@@ -213,7 +226,7 @@ void run_place(const PlaceCommand& options, Session& session) {
   const PlacedBody body = placed_body(scene->body->surface.mesh, whole.units.length);
   session.document = {{"hookeye", 1}, {"command", "place"}, {"capture", whole.file.string()}};
   session.document["by"] = pairs ? "pairs" : options.scan.empty() ? "outlines" : "scan";
-  const Placing placing = pairs                  ? by_pairs(options, whole, body, session)
+  const Placing placing = pairs                  ? by_pairs(options, *scene, whole, body, session)
                           : options.scan.empty() ? by_outlines(*scene, body, session)
                                                  : by_scan(options, whole, told, body, session);
   ToldPlacement now = placed(told, placing.motion);
@@ -232,8 +245,8 @@ void run_place(const PlaceCommand& options, Session& session) {
 }  // namespace
 
 void add_place(CLI::App& app, CommandBody& chosen) {
-  CLI::App* command =
-      app.add_subcommand("place", "Where the body lies for the cameras: by outline, pairs or scan");
+  CLI::App* command = app.add_subcommand(
+      "place", "Where the body lies for the cameras: by outline, pairs, tags or scan");
   const auto options = std::make_shared<PlaceCommand>();
   command->add_option("CAPTURE", options->capture, "capture.yaml or its folder")->required();
   command
@@ -242,7 +255,13 @@ void add_place(CLI::App& app, CommandBody& chosen) {
       ->type_name("CAMERA:u,v=x,y,z")
       ->allow_extra_args(false);
   command->add_option("--pairs", options->pairs_file, "A file of them: CAMERA u v x y z a line");
-  command->add_option("--sigma", options->sigma, "How well pixels were picked [px] (default: 1)")
+  command->add_option("--tags", options->tags,
+                      "A file of ArUco or AprilTag markers on the body, a line each: ID SIZE, then "
+                      "x y z of the centre, to the right, down");
+  command->add_option("--dictionary", options->dictionary, "Theirs (default: 4X4_50)");
+  command
+      ->add_option("--sigma", options->sigma,
+                   "How well pixels were picked [px] (default: 1; of tags 0.3)")
       ->check(above_zero());
   command->add_option("--scan", options->scan,
                       "A scan in the cameras' frame, of the body or a part: obj, ply or stl");

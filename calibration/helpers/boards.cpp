@@ -12,6 +12,7 @@
 
 #include "calibration/board.h"
 #include "calibration/helpers/saddle.h"
+#include "calibration/helpers/tag_edges.h"
 #include "core/helper_main.h"
 #include "core/input_error.h"
 
@@ -35,7 +36,8 @@ cv::Ptr<cv::aruco::Dictionary> dictionary_of(const std::string& name) {
 
 using Markers = std::map<int, Points>;
 
-Markers markers_in(const cv::Mat& grey, const std::string& dictionary) {
+std::vector<std::pair<int, Points>> all_markers_in(const cv::Mat& grey,
+                                                   const std::string& dictionary) {
   const auto parameters = cv::aruco::DetectorParameters::create();
   parameters->minMarkerPerimeterRate = 0.01;  // boards far away
   // Their windows would hold the board's own corner, which lies near, and be drawn to it.
@@ -43,8 +45,14 @@ Markers markers_in(const cv::Mat& grey, const std::string& dictionary) {
   std::vector<Points> corners;
   std::vector<int> ids;
   cv::aruco::detectMarkers(grey, dictionary_of(dictionary), corners, ids, parameters);
+  std::vector<std::pair<int, Points>> markers;
+  for (size_t i = 0; i < ids.size(); ++i) markers.emplace_back(ids[i], corners[i]);
+  return markers;
+}
+
+Markers markers_in(const cv::Mat& grey, const std::string& dictionary) {
   Markers markers;
-  for (size_t i = 0; i < ids.size(); ++i) markers[ids[i]] = corners[i];
+  for (const auto& [id, corners] : all_markers_in(grey, dictionary)) markers[id] = corners;
   return markers;
 }
 
@@ -346,6 +354,20 @@ void start(Unpacker& request, const Board& board, Packer& out) {
   out.put(numbers).put(poses);
 }
 
+/// Tags whose sides have clear edges.
+void tags(const cv::Mat& grey, const std::string& dictionary, Packer& out) {
+  const int cells = dictionary_of(dictionary)->markerSize + 2;
+  std::vector<int> ids;
+  std::vector<Points> squares;
+  for (auto& [id, corners] : all_markers_in(grey, dictionary))
+    if (refine_square(grey, cells, corners)) ids.push_back(id), squares.push_back(corners);
+  Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(4 * ids.size()));
+  for (size_t i = 0; i < ids.size(); ++i)
+    for (size_t k = 0; k < 4; ++k)
+      pixels.col(static_cast<Eigen::Index>(4 * i + k)) << squares[i][k].x, squares[i][k].y;
+  out.put(ids).put(pixels);
+}
+
 std::string answer(Unpacker& request) {
   const auto task = request.take<std::string>();
   const Board board = unpack_board(request);
@@ -359,6 +381,10 @@ std::string answer(Unpacker& request) {
     auto bytes = request.take<std::string>();
     if (bytes.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) throw WireFault();
     const cv::Mat grey(height, width, CV_8UC1, bytes.data());
+    if (task == "tags") {
+      tags(grey, board.dictionary, out);
+      return out.take();
+    }
     if (task == "dictionaries") {
       std::vector<std::string> names;
       std::vector<uint64_t> markers, corners;
