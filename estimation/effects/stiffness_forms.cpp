@@ -153,9 +153,13 @@ std::string axis_text(const Vector3d& axis) {
   return vector_text(axis[largest] < 0.0 ? Vector3d(-axis) : axis);
 }
 
-/// Young's moduli along the axes and shear moduli, of base and effect together.
+/// Young's moduli along the axes and shear moduli, of base and effect together. A stiffness by
+/// which some strain would set energy free has none: NaN.
 std::string constants_text(const Model& model, const Stiffness6& added, const Matrix3d& frame) {
-  const Stiffness6 compliance = stiffness_in_frame(at_rest(model.energy) + added, frame).inverse();
+  const Stiffness6 C = stiffness_in_frame(at_rest(model.energy) + added, frame);
+  const bool stable = Eigen::LLT<Stiffness6>(C).info() == Eigen::Success;
+  const Stiffness6 compliance =
+      stable ? Stiffness6(C.inverse()) : Stiffness6::Constant(std::nan(""));
   const std::string stress = model.scene->capture.units.stress();
   std::string text;
   for (int i = 0; i < 3; ++i)

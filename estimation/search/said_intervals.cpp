@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -27,12 +28,21 @@ struct Numbers {
   std::vector<double> values;
 };
 
+/// What a sentence says of a number that has no value.
+constexpr std::string_view kNoValue = "nan";
+
+bool is_no_value(const std::string& text, size_t at) {
+  const size_t end = at + kNoValue.size();
+  return text.compare(at, kNoValue.size(), kNoValue) == 0 &&
+         (end == text.size() || !std::isalnum(static_cast<unsigned char>(text[end])));
+}
+
 /// "m/s2", "'pull_2'" and "mm^3" hold no number.
 bool can_begin(const std::string& text, size_t at) {
   const auto digit = [&](size_t i) {
     return i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])) != 0;
   };
-  if (!digit(at) && !(text[at] == '-' && digit(at + 1))) return false;
+  if (!digit(at) && !(text[at] == '-' && digit(at + 1)) && !is_no_value(text, at)) return false;
   if (at == 0) return true;
   const char before = text[at - 1];
   return before == ' ' || before == '(';
@@ -195,7 +205,19 @@ class WithRanges {
                        : after;
     return at + 3;
   }
+  /// It has no value, or none at an end of some interval.
+  bool is_unknown(size_t at) const {
+    return std::isnan(told_.values[at]) ||
+           std::any_of(at_ends_.begin(), at_ends_.end(),
+                       [at](const Numbers& end) { return std::isnan(end.values[at]); });
+  }
+  size_t unknown(size_t at) {
+    out_ += std::isnan(told_.values[at]) ? "not known" : told_.texts[at] + " (not known)";
+    out_ += told_.words[at + 1];
+    return at + 1;
+  }
   size_t number(size_t at) {
+    if (is_unknown(at)) return unknown(at);
     const std::string& before = told_.words[at];
     const size_t open = out_.rfind('(');
     const bool in_vector =

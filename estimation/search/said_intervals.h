@@ -27,7 +27,8 @@ KnownValues part_of(const KnownValues& all, Eigen::Index first, Eigen::Index siz
 /// alone, of a direction the cone: "(0.60, 0.00, -0.80) within 1.4 degrees". Where its words
 /// change, too
 /// ("stiff", "soft"), what it says at both ends. The sentence speaks for itself, so that what it
-/// derives from the values (a length, an angle, a percentage) has its range as well.
+/// derives from the values (a length, an angle, a percentage) has its range as well. Of a number
+/// that has no value at some end (a NaN, as figure() writes it) is said that it is not known.
 std::string said_with_intervals(const Saying& say, const KnownValues& values);
 
 /// A NaN for each coordinate of a place's centre that is unknown (centre_is_unknown): place_text()

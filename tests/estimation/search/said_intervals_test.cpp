@@ -47,6 +47,20 @@ TEST(SaidIntervals, ADirectionHasACone) {
             "fibres along (1.00, 0.00, 0.00) within 72 degrees; ranges: 95 %");
 }
 
+/// A stiffness that is unstable at an end of its interval has no modulus there.
+TEST(SaidIntervals, WhatHasNoValueAtAnEndIsNotKnown) {
+  const auto modulus = [](const VectorXd& v) {
+    return fmt::format("Young's modulus {} MPa, mean {} of nanometres",
+                       figure(v[0] > 0.0 ? v[0] : std::nan("")), figure(v[1]));
+  };
+  EXPECT_EQ(said_with_intervals(modulus, known(Eigen::Vector2d(0.2, 3), Eigen::Vector2d(0.3, 1))),
+            "Young's modulus 0.2 (not known) MPa, mean 3 (2 to 4) of nanometres; ranges: 95 %");
+  EXPECT_EQ(said_with_intervals(modulus, known(Eigen::Vector2d(-1, 3), Eigen::Vector2d(0.3, 1))),
+            "Young's modulus not known MPa, mean 3 (2 to 4) of nanometres; ranges: 95 %");
+  EXPECT_EQ(said_with_intervals(modulus, known(Eigen::Vector2d(0.2, 3), Eigen::Vector2d(0.1, 0))),
+            "Young's modulus 0.2 (0.1 to 0.3) MPa, mean 3 of nanometres; ranges: 95 %");
+}
+
 /// A vector that may be none, or the opposite, points anywhere.
 TEST(SaidIntervals, AVectorThroughZeroMayPointAnywhere) {
   const auto pull = [](const VectorXd& v) {
