@@ -291,9 +291,11 @@ std::vector<std::string> narrow_losers(const Step& then, const Fitted& last) {
 }
 
 /// Of a misfit that effects had nothing to do with they explain 4 % in the median and 22 % in one
-/// of four (linear steps of base models, bench/blind --small): where much is left, what takes less
-/// than a tenth of the fitted photos', of the held-out ones' and of the sensors' may be part of
-/// what has no name. Of ten effects of one size the first takes as much.
+/// of four (linear steps of base models, bench/blind --small): what takes less than a tenth of the
+/// fitted photos', of the held-out ones' and of the sensors' may be part of what has no name. Of
+/// ten effects of one size the first takes as much. Near the floor it is no other: what renderer,
+/// light and texture leave there is as large a share, and a field that bends to it takes some
+/// percent.
 Refusal why_refused(const Step& step, double before, const Refit& with) {
   using Why = Refusal::Why;
   const Floor& floor = step.diagnosis.floor;
@@ -322,7 +324,9 @@ Refusal why_refused(const Step& step, double before, const Refit& with) {
   };
   const double left = std::min({leaves(false), leaves(true), speak ? after_r2 / before_r2 : 1.0});
   const double most = 1.0 - floor.limits->search.worth_a_name;
-  if (moves_photos && !numerical(with.effect) && !at_floor(with.fitted, floor) && left > most)
+  const bool over =
+      over_floor(step.fitted, floor, false) + over_floor(step.fitted, floor, true) > 0;
+  if (moves_photos && !numerical(with.effect) && over && left > most)
     return {Why::more_is_there, with.effect, {left, most, "search.worth_a_name"}};
   return {Why::none, with.effect, {with.score - before, pays, "diagnosis.nameable"}};
 }
