@@ -152,7 +152,9 @@ DiscoverEvents events(Run& run, Bench& bench, DecisionLog& log, int from, bool k
                                     racer.start.floor));
   };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
-  events.refitted = [newest](const std::string& effect, const Result<Fitted>& result) {
+  events.refitted = [newest, told = wanted.refitted](const std::string& effect,
+                                                     const Result<Fitted>& result) {
+    if (result && told) told({effect, result->evaluation.chi(false), result->evaluation.chi(true)});
     if (result)
       spdlog::info(
           "  with {}: {}", effect,

@@ -5,6 +5,7 @@
 #include "app/commands/limit_options.h"
 #include "app/commands/local_workers.h"
 #include "app/commands/run_support.h"
+#include "app/commands/so_far.h"
 #include "app/interrupt.h"
 #include "app/validators.h"
 #include "estimation/evaluation/load_case_share.h"
@@ -21,6 +22,21 @@ struct DiscoverArguments {
   std::vector<std::string> without, set;
   int workers = 0;
 };
+
+/// What ends a search before its end loses nothing, and says what there is.
+Discovery search_or_say_so_far(Run& run, Bench& bench, SearchRequest& wanted, bool known,
+                               const std::string& folder, const Session& session) {
+  SoFar so_far(wanted);
+  try {
+    return discover_into(run, bench, wanted, known);
+  } catch (const Interrupted&) {
+    so_far.say(run, folder, session);
+    throw;
+  } catch (const Failed&) {
+    so_far.say(run, folder, session);
+    throw;
+  }
+}
 
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
@@ -39,7 +55,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   wanted.options.diagnosis.without = arguments.without;
   wanted.command = invocation();
   wanted.warn = warn_to(session);
-  const Discovery found = discover_into(run, bench, wanted, kept.from_before());
+  const Discovery found =
+      search_or_say_so_far(run, bench, wanted, kept.from_before(), arguments.run, session);
   if (open) open->end();
   workers.end();
   session.document = run.timeline();
