@@ -8,6 +8,7 @@
 #include "app/commands/so_far.h"
 #include "app/interrupt.h"
 #include "app/validators.h"
+#include "capture_io/seen_in_words.h"
 #include "estimation/evaluation/load_case_share.h"
 #include "runs/add_step.h"
 #include "runs/kept_work.h"
@@ -66,7 +67,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (size_t i = 1; i < steps.size(); ++i)
     session.say("{}", choice_table(steps[i - 1], steps[i],
                                    run.timeline().at("floor").at("chi").get<double>(),
-                                   *bench.scene->limits));
+                                   *bench.scene->limits, seen_in_words(bench.scene->capture)));
   const Fitted& last = found.steps.back().fitted;
   if (const std::string others = parameter_table(last); !others.empty())
     session.say("\n{}", others);

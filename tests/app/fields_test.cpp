@@ -6,8 +6,10 @@
 namespace hookeye::test {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// The cube under a pull on its top, seen from one side; `W` is what 1 mm of height gains.
 class FieldCapture : public Cli {
@@ -59,11 +61,31 @@ TEST_F(FieldCapture, AFitIsComparedAndReported) {
   EXPECT_THAT(read(folder_ / "run/steps/00-base/deformed/pull.vtu"), HasSubstr("field_residual"));
   const Result reported = hookeye("report run -o report.html");
   EXPECT_EQ(reported.status, 0) << reported.err;
+  EXPECT_THAT(reported.err, Not(HasSubstr("residuals is not there")));
   EXPECT_TRUE(fs::exists(folder_ / "report.html"));
   EXPECT_EQ(hookeye("plan run").status, 2) << "there is no camera to look from";
   // A field that was measured anew is another capture.
   write("u.csv", "X,Y,Z,U,V,W\n0,5,5,0,0,0\n");
   EXPECT_NE(hookeye("compare run").err + hookeye("diagnose run").err, "");
+}
+
+/// Whatever is said of a capture without a photo has none in it.
+TEST_F(FieldCapture, NothingIsSaidOfPhotos) {
+  const std::string yaml = read(folder_ / "capture.yaml");
+  write("capture.yaml",
+        yaml + "  half:\n    use: validate\n" + yaml.substr(yaml.find("    supports:")));
+  for (const char* command :
+       {"fit capture.yaml -o run", "diagnose run", "explain run", "discover capture.yaml -o search",
+        "compare search", "explain search", "add run strain_stiffening"}) {
+    const Result said = hookeye(command);
+    ASSERT_EQ(said.status, 0) << command << "\n" << said.err;
+    std::istringstream lines(said.out + said.err);
+    for (std::string line; std::getline(lines, line);) {
+      // "no photo", which an effect wants that is not tested, is true.
+      if (line.find("no photo") != std::string::npos) continue;
+      EXPECT_THAT(line, Not(AnyOf(HasSubstr("photo"), HasSubstr("hookeye plan")))) << command;
+    }
+  }
 }
 
 /// The second half of the pull, by a program that took the first half as its reference.
