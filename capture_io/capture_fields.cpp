@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "capture_io/capture_reader.h"
+#include "capture_io/component_sigmas.h"
 #include "capture_io/field_table.h"
 #include "capture_io/strain_reader.h"
 
@@ -201,10 +202,6 @@ std::map<std::string, std::string> read_columns(const YamlNode& node) {
 constexpr double kStepsAlike = 3.0;
 
 void read_field_noise(const YamlSection& section, FieldSpec& field) {
-  if (!field.strain)
-    field.sigma = read_positive(
-        section.need("sigma", "give the standard deviation of a displacement: `sigma: 0.01`"),
-        "sigma");
   field.spacing = spacing_of(field.X);
   // A strain's disc holds the same displacements as those of the points in it.
   field.correlation =
@@ -261,15 +258,20 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
   field->X = (frame.axes * (length * table.X)).colwise() + frame.origin;
   field->axes = frame.axes;
   field->components = table.has_w ? 3 : 2;
+  VectorXd sigma;
   Eigen::MatrixXd value = length * table.u.topRows(field->components);
   if (section.has("strain")) {
     field->components = table.has_exy ? 3 : 2;
     value = strain_scale(section, table, field->told) * table.strain.topRows(field->components);
     field->strain = read_strain(section, table, field->told, length, frame.axes);
-    field->sigma = std::sqrt(field->strain->sigma.squaredNorm() / field->components);
+    sigma = field->strain->sigma;
   } else {
+    sigma = read_component_sigmas(
+        section.need("sigma", "give the standard deviation of a displacement: `sigma: 0.01`"),
+        field->components, field->components == 3 ? "x, y, z of the frame" : "x, y of the frame");
     field->strain_columns = table.strain_columns;
   }
+  field->sigma = std::sqrt(sigma.squaredNorm() / field->components);
   if (!(field->X.cwiseAbs().maxCoeff() < 1e15 && value.cwiseAbs().maxCoeff() < 1e15))
     throw InputError({field->told},
                      fmt::format("there are places or {} above 1e15",
@@ -283,8 +285,6 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
   out.kind = MeasuredSpec::Kind::field;
   out.place = node.place;
   out.value = value.reshaped();
-  const VectorXd sigma =
-      field->strain ? field->strain->sigma : VectorXd::Constant(field->components, field->sigma);
   out.sigma = (sigma * field->alike.cwiseSqrt().transpose()).reshaped();
   out.field = std::move(field);
   if (const YamlNode* from = section.find("from"))

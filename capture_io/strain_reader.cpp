@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture_io/component_sigmas.h"
+
 namespace hookeye {
 
 namespace {
@@ -32,24 +34,6 @@ StrainMeasure read_measure(const YamlNode& node, const FieldTable& table, const 
                          ? "export Lagrange or Hencky strains"
                          : fmt::format("`strain: {}`", table.measure));
   return static_cast<StrainMeasure>(found - known.begin());
-}
-
-/// One number, or one a component.
-Eigen::VectorXd read_strain_sigma(const YamlSection& section, int components) {
-  const YamlNode& node =
-      section.need("sigma", "give the standard deviation of a strain, a fraction: `sigma: 0.0002`");
-  if (node.kind != YamlNode::Kind::sequence)
-    return Eigen::VectorXd::Constant(components, read_positive(node, "sigma"));
-  const std::vector<double> all = read_numbers(node, "sigma");
-  if (static_cast<int>(all.size()) != components)
-    throw InputError(node.place,
-                     fmt::format("{} sigmas, but {} components ({})", all.size(), components,
-                                 components == 3 ? "exx, eyy, exy" : "exx, eyy"),
-                     "one number for all, or one a component");
-  for (const double one : all)
-    if (!(one > 0.0))
-      throw InputError(node.place, fmt::format("a sigma of {:g}", one), "numbers above zero");
-  return Eigen::Map<const Eigen::VectorXd>(all.data(), components);
 }
 
 Eigen::Matrix<double, 3, 2> read_axes(const YamlNode& node) {
@@ -94,7 +78,9 @@ std::shared_ptr<const StrainSpec> read_strain(const YamlSection& section, const 
   }
   out->axes = axes.leftCols<2>();
   if (const YamlNode* node = section.find("axes")) out->axes = read_axes(*node);
-  out->sigma = read_strain_sigma(section, table.has_exy ? 3 : 2);
+  out->sigma = read_component_sigmas(
+      section.need("sigma", "give the standard deviation of a strain, a fraction: `sigma: 0.0002`"),
+      table.has_exy ? 3 : 2, table.has_exy ? "exx, eyy, exy" : "exx, eyy");
   if (table.has_u) {
     out->u = axes * (length * table.u);
     out->u_components = table.has_w ? 3 : 2;

@@ -160,6 +160,21 @@ bool is_deck(const std::filesystem::path& file) {
   return detail::has_ending(file, {".inp", ".feb"});
 }
 
+std::optional<LawInDeck> law_in_deck(const std::filesystem::path& file) {
+  using namespace solver_deck;
+  const Deck deck = detail::has_ending(file, {".feb"}) ? read_febio(file) : read_deck(file);
+  const DeckMaterial* found = nullptr;
+  for (const DeckMaterial& one : deck.materials) {
+    if (one.law.yaml.empty()) continue;
+    if (found && found->law.yaml != one.law.yaml)
+      throw InputError(one.place, "this is a second law beside that of `" + found->name + "`",
+                       "one law for the body, or several by hand (docs/capture.md)");
+    if (!found) found = &one;
+  }
+  if (!found) return {};
+  return LawInDeck{found->law.yaml, found->law.to_fit, found->density, found->place};
+}
+
 ImportedDeck import_decks(const std::vector<std::filesystem::path>& decks,
                           const std::filesystem::path& scratch) {
   using namespace solver_deck;

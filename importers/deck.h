@@ -3,9 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "core/input_error.h"
 
 namespace hookeye {
 
@@ -29,5 +32,17 @@ bool is_deck(const std::filesystem::path& file);
 /// tried in the empty folder `scratch`. Throws InputError with file and line.
 ImportedDeck import_decks(const std::vector<std::filesystem::path>& decks,
                           const std::filesystem::path& scratch);
+
+/// The one law that a deck tells of its body.
+struct LawInDeck {
+  std::string yaml;                 ///< "{law: neo-hookean, mu: 0.05, kappa: 0.5}"
+  std::vector<std::string> to_fit;  ///< parameters that a fit may move
+  double density = 0;               ///< 0: not told
+  Place place;                      ///< of the material
+};
+
+/// None where a deck tells no law that is known here. Throws InputError: what cannot be read, and
+/// several laws in one body.
+std::optional<LawInDeck> law_in_deck(const std::filesystem::path& deck);
 
 }  // namespace hookeye

@@ -32,6 +32,18 @@ std::vector<Isometry3d> starts(const OutlineMatch& match, const PlacedBody& body
   return all;
 }
 
+/// As the body may lie any way round, where it is told nowhere near: its middle as the photos show
+/// it.
+std::vector<Isometry3d> starts_all_around(const OutlineMatch& match, const PlacedBody& body) {
+  std::vector<Isometry3d> all;
+  for (const Eigen::Matrix3d& turn : cube_turns()) {
+    const Isometry3d about(body.axes * turn * body.axes.transpose());
+    all.push_back(match.centred(Eigen::Translation3d(body.middle) * about *
+                                Eigen::Translation3d(-body.middle)));
+  }
+  return all;
+}
+
 /// The best first, each place once.
 void sort_out(const PlacedBody& body, std::vector<Settled>* found) {
   std::erase_if(*found, [](const Settled& one) { return !std::isfinite(one.misfit); });
@@ -99,6 +111,14 @@ class Search {
   std::vector<Isometry3d> starts() const {
     return hookeye::starts(*levels_.front(), body_, options_);
   }
+  std::vector<Isometry3d> starts_all_around() const {
+    return hookeye::starts_all_around(*levels_.front(), body_);
+  }
+  /// Of the body in the photos, placed [px of them].
+  double extent_px(const Isometry3d& motion) const {
+    const Outline& outline = levels_.back()->outlines().front();
+    return outline.px * body_.extent / outline.view.length_per_px(motion * body_.middle);
+  }
 
  private:
   const PlacedBody& body_;
@@ -133,10 +153,16 @@ OutlineFit place_by_outlines(const Scene& scene, const PlacedBody& body,
   constexpr double kAsWell = 1.25;     // times the misfit: the photos' outlines vary by as much
   constexpr double kOtherTurn = 0.25;  // [rad]: nearer ones are the same place, less well settled
   constexpr double kOtherShift = 0.1;  // of the body's diameter
+  // Right places have a third of this and less; beyond it a better one costs seconds to look for.
+  constexpr double kDoubtful = 0.005;  // of the body in the photos
   OutlineFit out;
   Search search(scene, body, options, &out.why_not);
   if (search.empty()) refuse(scene, out.why_not);
   std::vector<Settled> found = search.from(search.starts());
+  if (found.empty() || found.front().misfit > kDoubtful * search.extent_px(found.front().motion)) {
+    for (const Settled& one : search.from(search.starts_all_around())) found.push_back(one);
+    sort_out(body, &found);
+  }
   if (found.empty())
     throw InputError(scene.capture.body.place,
                      "none of the cameras gets the body into its picture, wherever it is tried",

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "capture_io/camera_text.h"
 #include "capture_io/yaml_file.h"
+#include "importers/deck.h"
 #include "proposal/loading.h"
 #include "proposal/looks.h"
 #include "proposal/proposal.h"
@@ -31,6 +33,7 @@ struct Parts {
   MachineLoading loading;
   Looks looks;
   double mu = 0, edge = 0;
+  std::optional<LawInDeck> law;  ///< none: a guess of `mu`
 };
 
 fs::path chosen(const std::vector<fs::path>& files, const fs::path& folder, const std::string& name,
@@ -123,6 +126,54 @@ double start_mu(const Parts& parts, Questions& questions) {
       true);
 }
 
+/// The law of a deck in the folder, that of the body first; the user may not want it.
+std::optional<LawInDeck> law_of_a_deck(const Inventory& inventory, const BodyFacts& body,
+                                       Questions& questions, std::vector<std::string>& said) {
+  std::vector<fs::path> decks;
+  for (const fs::path& file : inventory.volumes)
+    if (is_deck(file)) decks.insert(file == body.file ? decks.begin() : decks.end(), file);
+  for (const fs::path& file : decks) {
+    std::optional<LawInDeck> law;
+    try {
+      law = law_in_deck(file);
+    } catch (const InputError& error) {
+      said.push_back(fmt::format("the material of {} is not taken: {}: {}",
+                                 file.lexically_relative(inventory.folder).string(),
+                                 error.place().str(), error.wrong()));
+    }
+    if (!law) continue;
+    const std::string answer = questions.ask(
+        {.name = "material",
+         .text = "what to start from: the law of the deck, or a guess out of the machine's table",
+         .standard = "deck",
+         .why = fmt::format("{}, line {}", file.lexically_relative(inventory.folder).string(),
+                            law->place.line),
+         .choices = {"deck", "guess"},
+         .asked = false});
+    if (answer == "deck") return law;
+    break;
+  }
+  return {};
+}
+
+std::string model_text(const Parts& parts, const fs::path& folder) {
+  const std::string gravity = fmt::format("  # gravity: [0, 0, {:.6g}]\n", -9810 / parts.mm);
+  if (!parts.law)
+    return fmt::format(
+               "model:\n  material: {{law: neo-hookean, mu: {:.3g}, kappa_over_mu: 12}}  # nearly "
+               "incompressible\n  fit: [mu]\n",
+               parts.mu) +
+           gravity;
+  const LawInDeck& law = *parts.law;
+  std::string from = fs::path(law.place.file).lexically_relative(folder).string();
+  std::replace_if(
+      from.begin(), from.end(), [](unsigned char c) { return c < 32; }, '?');
+  std::string out =
+      fmt::format("model:\n  material: {}  # of {}, line {}\n", law.yaml, from, law.place.line);
+  if (!law.to_fit.empty()) out += fmt::format("  fit: [{}]\n", fmt::join(law.to_fit, ", "));
+  return out + gravity;
+}
+
 /// The path of a file from the capture's folder, which it may not leave.
 std::string path_in(const fs::path& file, const fs::path& folder) {
   const fs::path relative = file.lexically_relative(folder);
@@ -141,9 +192,10 @@ std::string body_text(const Parts& parts, const fs::path& folder) {
     out += fmt::format("  mesh: {{edge: {:.3g}, order: 2}}  # a twelfth of the diagonal\n",
                        parts.edge);
   const double water = 1e-9 * std::pow(parts.mm, 4);  // N s^2/mm^4 in N s^2/length^4
+  const bool told = parts.law && parts.law->density > 0;
   out += fmt::format(
-      "  # density: {:.3g}  # of silicone, in N s^2/{}^4; with `gravity` below the body weighs\n",
-      1.07 * water, parts.length);
+      "  # density: {:.3g}  # of {}, in N s^2/{}^4; with `gravity` below the body weighs\n",
+      told ? parts.law->density : 1.07 * water, told ? "the deck" : "silicone", parts.length);
   return out + parts.looks.texture;
 }
 
@@ -222,10 +274,7 @@ std::string capture_text(const Parts& parts, const Inventory& inventory, const f
   out += fmt::format("hookeye: 1\ntitle: {}\n", yaml_name(inventory.folder.filename().string()));
   out += fmt::format("units: {{length: {}, force: N}}\n", parts.length);
   out += body_text(parts, folder);
-  out += fmt::format(
-      "model:\n  material: {{law: neo-hookean, mu: {:.3g}, kappa_over_mu: 12}}  # nearly "
-      "incompressible\n  fit: [mu]\n  # gravity: [0, 0, {:.6g}]\n",
-      parts.mu, -9810 / parts.mm);
+  out += model_text(parts, folder);
   out += comment("Cameras of " + parts.cameras.source) + "cameras:\n";
   for (const auto& [camera, series] : parts.cameras.cameras) {
     if (camera.name != series->camera) out += "  " + comment("took the photos " + series->scheme);
@@ -287,7 +336,8 @@ Proposal propose(const Inventory& inventory, const Questions::Answers& answers,
   out.needed = questions.needed();
   if (out.needed.empty())
     parts.cases = choose_cases(parts.pairing, parts.record, static_cast<size_t>(count));
-  parts.mu = start_mu(parts, questions);
+  parts.law = law_of_a_deck(inventory, parts.body, questions, said);
+  if (!parts.law) parts.mu = start_mu(parts, questions);
   questions.expect_no_other();
   out.questions = questions.all();
   out.open = questions.open();

@@ -68,7 +68,7 @@ constexpr Meaning kMeanings[] = {
     {Asked::ranked, "*", "penalised log likelihood over the best one's: {0}"},
     {Asked::stands, "diagnosis.nameable", "penalised log likelihood gained: {0}; it takes {1}"},
     {Asked::stands, "diagnosis.tie",
-     "squared residual of held-out photos rises by {0}; allowed: {1}"},
+     "squared residual of what is held out rises by {0}; allowed: {1}"},
     {Asked::stands, "floor.err_share",
      "squared residual falls by {0}; renderers and meshes err by {1}"},
     {Asked::stands, "search.worth_a_name", "share of the excess misfit left: {0}; at most {1}"},

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/output/step_json.h"
 #include "estimation/search/tested.h"
 #include "runs/decision_log.h"
@@ -86,8 +87,9 @@ struct Residuals {
   double fitted = 0.0, held_out = 0.0;
 };
 std::string residuals_in_words(const Residuals& now, const std::optional<Residuals>& without,
-                               double floor) {
-  std::string out = fmt::format("normalised residual {} on fitted photos", chi_text(now.fitted));
+                               double floor, const Scene& scene) {
+  std::string out = fmt::format("normalised residual {} on fitted {}", chi_text(now.fitted),
+                                seen_in_words(scene.capture));
   if (without) out += fmt::format(" ({} without it)", chi_text(without->fitted));
   if (now.held_out > 0.0) {
     out += fmt::format(", {} on held-out ones", chi_text(now.held_out));
@@ -101,9 +103,9 @@ Residuals residuals_of(const Evaluation& evaluation) {
 }
 
 void say_step(const Step& step, const std::optional<Residuals>& without) {
-  spdlog::info(
-      "step {}: {}", name_of(step),
-      residuals_in_words(residuals_of(step.fitted.evaluation), without, step.diagnosis.floor.chi));
+  spdlog::info("step {}: {}", name_of(step),
+               residuals_in_words(residuals_of(step.fitted.evaluation), without,
+                                  step.diagnosis.floor.chi, *step.fitted.form.scene));
   bool announced = false;
   for (const auto& effect : step.diagnosis.effects) {
     if (!nameable(effect, step.diagnosis)) continue;
@@ -146,17 +148,19 @@ DiscoverEvents events(Run& run, Bench& bench, DecisionLog& log, int from, bool k
     *newest = {residuals_of(step.fitted.evaluation), step.diagnosis.floor.chi};
   };
   events.tried = [](const Racer& racer) {
-    spdlog::info("screening of {} on half-size photos: {}", racer.effect,
+    spdlog::info("screening of {}{}: {}", racer.effect, on_half_size(racer.form.scene->capture),
                  residuals_in_words({racer.trial.chi_fit, racer.trial.chi_validate},
                                     Residuals{racer.start.chi, racer.start.chi_validate},
-                                    racer.start.floor));
+                                    racer.start.floor, *racer.form.scene));
   };
   events.refitting = [](const std::string& effect) { spdlog::info("refit with {}", effect); };
-  events.refitted = [newest](const std::string& effect, const Result<Fitted>& result) {
+  events.refitted = [newest, told = wanted.refitted](const std::string& effect,
+                                                     const Result<Fitted>& result) {
+    if (result && told) told({effect, result->evaluation.chi(false), result->evaluation.chi(true)});
     if (result)
-      spdlog::info(
-          "  with {}: {}", effect,
-          residuals_in_words(residuals_of(result->evaluation), newest->residuals, newest->floor));
+      spdlog::info("  with {}: {}", effect,
+                   residuals_in_words(residuals_of(result->evaluation), newest->residuals,
+                                      newest->floor, *result->form.scene));
     else if (const NumericalFailure& failure = result.error(); !cancelled(failure))
       spdlog::info("  {}: given up, {}{}", effect, failure.reason,
                    failure.example.empty() ? "" : fmt::format(" in '{}'", failure.example));
@@ -241,7 +245,9 @@ void tell_tested(Run& run, const Bench& bench, const Fitted& last, const SearchR
 Discovery discover_into(Run& run, Bench& bench, const SearchRequest& wanted, bool known) {
   Discovery found = search(run, bench, wanted, known);
   // What held-out photos alone show there are the values.
-  std::string hint = found.all ? "" : too_little_to_name(found.steps.back().diagnosis);
+  std::string hint = found.all ? ""
+                               : too_little_to_name(found.steps.back().diagnosis,
+                                                    seen_in_words(bench.scene->capture));
   for (const std::string& told : {high_floor(found.floor), copied_floor(found.floor)})
     if (!told.empty()) hint += (hint.empty() ? "" : ". ") + told;
   run.update([&](nlohmann::json& timeline) {

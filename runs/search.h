@@ -8,12 +8,19 @@
 
 namespace hookeye {
 
+/// A refit that ended: normalised residuals, held out 0 where nothing is.
+struct EndedRefit {
+  std::string effect;
+  double fitted = 0.0, held_out = 0.0;
+};
+
 struct SearchRequest {
   DiscoverOptions options;
   std::string command;                    ///< by whose order, for run.json
   Warn warn;                              ///< may be empty
   std::function<void(const Step&)> step;  ///< told every step that stands in the run; may be empty
-  std::function<void(int from)> begun;    ///< told the step that it begins from; may be empty
+  std::function<void(const EndedRefit&)> refitted;  ///< told every refit; may be empty
+  std::function<void(int from)> begun;  ///< told the step that it begins from; may be empty
 };
 
 /// The search itself, from a step of the run, or with -1 from the capture's own model: the same

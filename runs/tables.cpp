@@ -64,7 +64,7 @@ std::string parameter_table(const Fitted& fitted) {
   return text;
 }
 
-std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
+std::string diagnosis_table(const Diagnosis& diagnosis, const std::string& seen, size_t most) {
   std::vector<std::vector<std::string>> rows = {
       {"effect", "would remove", "log BF", "p", "dof", "confused with"}};
   std::string sentences, untestable;
@@ -88,15 +88,15 @@ std::string diagnosis_table(const Diagnosis& diagnosis, size_t most) {
          fmt::format(
              "  would remove: share of the excess misfit; log BF: log Bayes factor against no "
              "effect (5: 150 to 1)\n"
-             "  confused with: changes these photos nearly alike, whether it is there or not\n"
+             "  confused with: changes these {} nearly alike, whether it is there or not\n"
              "  named only above {:.1f}, the 95 % critical value over all effects (chance alone)\n",
-             std::max(diagnosis.gate, diagnosis.limits().nameable)) +
+             seen, std::max(diagnosis.gate, diagnosis.limits().nameable)) +
          (diagnosis.held_out_missed && diagnosis.gate < diagnosis.limits().nameable
               ? wrapped(
                     fmt::format("or above {:.1f} where it would remove most of what the held-out "
-                                "photos, which alone show that something is missing, have over "
+                                "{}, which alone show that something is missing, have over "
                                 "the floor",
-                                diagnosis.gate),
+                                diagnosis.gate, seen),
                     2)
               : "") +
          sentences + (untestable.empty() ? "" : "not tested\n" + untestable);
@@ -205,7 +205,7 @@ std::string choice_rows(const json& before, const json& step, double floor, cons
   }
   std::string text = table(rows);
   if (unknown)
-    text += "  *: the residual itself, as the floor of half-size photos is not known here\n";
+    text += "  *: the residual itself, as the floor of the screening is not known here\n";
   if (left_out) text += fmt::format("  and {} more screened, not refitted\n", left_out);
   if (const size_t more = untried - (rows.size() - tried))
     text += fmt::format("  and {} of a smaller log BF, not screened\n", more);
@@ -213,7 +213,8 @@ std::string choice_rows(const json& before, const json& step, double floor, cons
 }
 
 /// How far ahead of the next one: "how sure".
-std::string sureness(const json& step, double floor, const Limits& limits) {
+std::string sureness(const json& step, double floor, const Limits& limits,
+                     const std::string& seen) {
   const std::string added = step.at("added");
   std::string nearest;
   double behind = 0.0;
@@ -228,9 +229,8 @@ std::string sureness(const json& step, double floor, const Limits& limits) {
                        nearest, added);
   if (behind < limits.diagnosis.tie)
     return fmt::format(
-        "how sure: {} does as well (behind by {:.1f}); `hookeye plan RUN` tells which "
-        "photos would separate the two",
-        nearest, behind);
+        "how sure: {} does as well (behind by {:.1f}){}", nearest, behind,
+        seen == "photos" ? "; `hookeye plan RUN` tells which photos would separate the two" : "");
   const double left = floor > 0.0 ? number_in(step, "chi_fit") / floor : 0.0;
   if (left > limits.floor.at)
     return fmt::format(
@@ -247,7 +247,7 @@ std::string sureness(const json& step, double floor, const Limits& limits) {
 
 /// Who can change the photos as the added effect does, by the diagnosis before it. (Not whose
 /// change it can imitate: gravity may bend a body as a pressure does, and stretch it besides.)
-std::string resemblance(const json& before, const std::string& added) {
+std::string resemblance(const json& before, const std::string& added, const std::string& seen) {
   const json score = entry_of(before.value("diagnosis", json::array()), added);
   if (!score.contains("confusion")) return "";
   std::vector<std::string> names;
@@ -255,12 +255,14 @@ std::string resemblance(const json& before, const std::string& added) {
     if (names.size() < 4)
       names.push_back(fmt::format("{} {:.3f}", other.at("effect").get<std::string>(),
                                   number_in(other, "cosine")));
-  return names.empty() ? "; to first order no other changes these photos as it does (cosines below "
-                         "0.9)"
+  return names.empty() ? fmt::format(
+                             "; to first order no other changes these {} as it does "
+                             "(cosines below 0.9)",
+                             seen)
                        : fmt::format(
-                             "; to first order these change the photos much as it does "
+                             "; to first order these change the {} much as it does "
                              "(cosine 1: the same): {}",
-                             fmt::join(names, ", "));
+                             seen, fmt::join(names, ", "));
 }
 
 /// What the step says of an effect, without its name; "": nothing.
@@ -319,14 +321,15 @@ std::string copied_floor(const Floor& floor) {
       floor.copies);
 }
 
-std::string choice_table(const json& before, const json& step, double floor, const Limits& limits) {
+std::string choice_table(const json& before, const json& step, double floor, const Limits& limits,
+                         const std::string& seen) {
   if (step.at("added").is_null()) return "";
   const std::string added = step.at("added");
   if (by_hand(step))
     return "\n" + wrapped(fmt::format(
                       "{} was added by hand and not screened against others: `hookeye discover "
                       "CAPTURE -o NEW_RUN` tells what else it could have been{}",
-                      added, resemblance(before, added)));
+                      added, resemblance(before, added, seen)));
   if (const std::string form = other_form(before, step, floor); !form.empty()) return form;
   const auto raced = step.value("raced", json::array());
   // A mesh that settles its step alone is no choice.
@@ -334,14 +337,17 @@ std::string choice_table(const json& before, const json& step, double floor, con
   return "\n" +
          wrapped(fmt::format(
              "why {}: normalised residual over the noise floor with each effect that stood out "
-             "(screening: after one or two steps of a refit, of photos at half size, over what "
-             "those "
-             "at rest kept of the model before; floor: less than that; -: not screened, as it "
+             "(screening: after one or two steps of a refit{}; floor: less than that; -: not "
+             "screened, as it "
              "promised too little or had no equilibrium; blank: not refitted; behind: in the "
              "refits' penalised log likelihood, below {:.0f} is a tie)",
-             added, limits.diagnosis.tie)) +
+             added,
+             seen == "photos" ? ", of photos at half size, over what those at rest kept of the "
+                                "model before"
+                              : ", over the floor",
+             limits.diagnosis.tie)) +
          choice_rows(before, step, floor, limits) +
-         wrapped(sureness(step, floor, limits) + resemblance(before, added), 2);
+         wrapped(sureness(step, floor, limits, seen) + resemblance(before, added, seen), 2);
 }
 
 std::string not_converged(bool converged, int iterations) {

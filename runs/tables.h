@@ -13,13 +13,14 @@ namespace hookeye {
 std::string parameter_table(const Fitted& fitted);
 /// The leading `most` effects, one sentence on those that may be named, and why others were not
 /// tested.
-std::string diagnosis_table(const Diagnosis& diagnosis, size_t most = 10);
+/// `seen`: seen_in_words() of the capture, here and below.
+std::string diagnosis_table(const Diagnosis& diagnosis, const std::string& seen, size_t most = 10);
 /// How the error fell over the steps of `run.json`, this run's and those it went on from.
 std::string steps_table(const nlohmann::json& timeline);
 /// What the effect that `step` of `run.json` added to `before` was chosen from, in multiples of the
 /// floor, and how sure the choice is. Empty: nothing else stood out.
 std::string choice_table(const nlohmann::json& before, const nlohmann::json& step, double floor,
-                         const Limits& limits);
+                         const Limits& limits, const std::string& seen);
 
 /// That the reference images are missed by far more than their noise, which hides what is wrong
 /// with all photos alike; "" where they are not.

@@ -9,6 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
+#include "capture_io/seen_in_words.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/model/effect.h"
 #include "estimation/output/step_json.h"
@@ -34,12 +35,13 @@ std::string outcome(const Step& before, const Step& after, const Floor& floor, b
   const double f2 = floor.chi * floor.chi;
   const double share =
       was * was > f2 ? (was * was - std::max(is * is, f2)) / (was * was - f2) : 0.0;
-  return fmt::format("{} on the {} photos (residual {:.3f} -> {:.3f})",
+  return fmt::format("{} on the {} {} (residual {:.3f} -> {:.3f})",
                      was * was <= f2 ? std::string("nothing to remove")
                      : share >= 0.0  ? fmt::format("removed {:.{}f} % of the excess misfit",
                                                    100.0 * share, share > 0.99 ? 1 : 0)
                                      : fmt::format("misfit {:.2g} times as large", 1.0 - share),
-                     held_out ? "held-out" : "fitted", was, is);
+                     held_out ? "held-out" : "fitted",
+                     seen_in_words(after.fitted.form.scene->capture), was, is);
 }
 
 /// Did it pay? On the held-out photos, where there are such.
@@ -51,8 +53,8 @@ void say_outcome(const Step& before, const Step& after, const Floor& floor, bool
                                   held_out ? ", " + outcome(before, after, floor, true) : "")));
   if (!taken_back && !held_out_allows(after.fitted, before.fitted, floor,
                                       least_fall(before.diagnosis, after.added)))
-    session.warn(after.name +
-                 " does not pay on the held-out photos; take it back with --take-back");
+    session.warn(fmt::format("{} does not pay on the held-out {}; take it back with --take-back",
+                             after.name, seen_in_words(after.fitted.form.scene->capture)));
 }
 
 void run_add(const AddArguments& arguments, Session& session) {

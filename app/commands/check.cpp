@@ -13,6 +13,7 @@
 #include "app/commands/describe.h"
 #include "app/commands/run_support.h"
 #include "app/progress.h"
+#include "capture_io/seen_in_words.h"
 #include "core/scope.h"
 #include "estimation/inspection/si.h"
 #include "estimation/model/model.h"
@@ -96,20 +97,15 @@ Json describe_parameter(const Parameter& parameter) {
 /// What the capture cannot tell, whatever its photos show.
 void warn_of_gaps(const Capture& capture, const Json& examples, Session& session) {
   bool force_known = capture.gravity.has_value() && capture.body.density > 0.0;
-  bool photos = false, fields = false;
   for (const auto& example : capture.examples) {
-    photos |= !example.photos.empty();
     force_known |= !example.loads.empty();
-    for (const auto& measured : example.measured) {
-      force_known |= is_reaction(measured);
-      fields |= measured.field != nullptr;
-    }
+    for (const auto& measured : example.measured) force_known |= is_reaction(measured);
   }
   if (!force_known && !capture.fit.empty())
     session.warn(
         fmt::format("no force is known (no load, no measured force, no weight): the {} fix only "
                     "ratios of stiffness, not its size",
-                    fields && !photos ? "fields" : "photos"));
+                    seen_in_words(capture)));
   bool held_out = false;
   for (size_t i = 0; i < examples.size(); ++i) {
     const auto& example = examples[i];

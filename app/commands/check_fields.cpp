@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "capture_io/component_sigmas.h"
 #include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
 #include "estimation/fit/field_floor.h"
@@ -25,6 +26,30 @@ void for_each_field(
 /// What a plane in each small piece leaves of the displacements, over the told noise; 0: too few.
 double rough_of(const MeasuredSpec& measured) {
   return rough_field(*measured.field, measured.value.cwiseQuotient(measured.sigma)).chi();
+}
+
+/// The same of each component, in its unit; empty: too few.
+std::vector<double> rough_by_component(const MeasuredSpec& measured) {
+  const FieldSpec& field = *measured.field;
+  const VectorXd over = measured.value.cwiseQuotient(measured.sigma);
+  const VectorXd sigmas = component_sigmas(measured);
+  std::vector<double> out;
+  for (int c = 0; c < field.components; ++c) {
+    VectorXd one = VectorXd::Zero(over.size());
+    for (Eigen::Index i = c; i < over.size(); i += field.components) one[i] = over[i];
+    // The others count, and have nothing.
+    const double chi = std::sqrt(double(field.components)) * rough_field(field, one).chi();
+    if (chi <= 0.0) return {};
+    out.push_back(chi * sigmas[c]);
+  }
+  return out;
+}
+
+/// "0.0052, 0.0049, 0.021".
+std::string listed_numbers(const std::vector<double>& values) {
+  std::string out;
+  for (const double one : values) out += (out.empty() ? "" : ", ") + fmt::format("{:.2g}", one);
+  return out;
 }
 
 double gap_of(const TetMesh& mesh, const FieldSpec& field) {
@@ -60,15 +85,19 @@ Json describe_fields(const Scene& scene) {
          {"numbers", field.numbers()},
          {"sigma", field.sigma},
          {"rough", rough > 0.0 ? Json(rough * field.sigma) : Json()},
+         {"sigmas",
+          [&] {
+            const VectorXd sigmas = component_sigmas(measured);
+            return std::vector<double>(sigmas.begin(), sigmas.end());
+          }()},
+         {"rough_along", rough_by_component(measured)},
          {"largest", measured.value.cwiseAbs().maxCoeff()},
          {"gap", start_of(measured).empty() ? Json(gap_of(scene.body->mesh, field)) : Json()}});
     // Where its points lie, the load case tells once it is solved.
     if (!start_of(measured).empty()) out.back()["from"] = start_of(measured);
     if (field.strain)
-      out.back().update({{"strain", name_of(field.strain->measure)},
-                         {"gauge", field.strain->gauge},
-                         {"sigmas", std::vector<double>(field.strain->sigma.begin(),
-                                                        field.strain->sigma.end())}});
+      out.back().update(
+          {{"strain", name_of(field.strain->measure)}, {"gauge", field.strain->gauge}});
   });
   return out;
 }
@@ -81,6 +110,17 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
   strained[0].insert(strained[0].begin() + 2, {"measure", "gauge"});
   const auto short_number = [](const Json& value, double in = 1.0) {
     return value.is_null() ? "-" : fmt::format("{:.3g}", in * value.get<double>());
+  };
+  // One number where two digits of all are the same.
+  const auto by_component = [](const Json& values, double in) {
+    std::string out, last;
+    bool alike = true;
+    for (const Json& one : values) {
+      const std::string text = fmt::format("{:.2g}", in * one.get<double>());
+      alike = alike && (last.empty() || text == last);
+      out += (out.empty() ? "" : " ") + text, last = text;
+    }
+    return out.empty() ? std::string("-") : alike ? last : out;
   };
   for (const auto& one : fields) {
     const bool strains = one["holds"] == "strains";
@@ -95,8 +135,8 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
         directions_of(strains, one["components"]),
         short_number(one["correlation"]),
         fmt::format("{:.0f}", one["numbers"].get<double>()),
-        short_number(one["sigma"], in),
-        short_number(one["rough"], in),
+        by_component(one["sigmas"], in),
+        by_component(one["rough_along"], in),
         short_number(one["largest"], in),
         short_number(one["gap"])};
     if (strains)
@@ -113,6 +153,28 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
                   field.told, field.strain_columns);
   });
 }
+
+namespace {
+
+/// Two cameras see worse along their sight than across it: one number for all tells the one too
+/// well, and takes weight from the others.
+void warn_of_unlike(const ExampleSpec& example, const MeasuredSpec& measured, Session& session) {
+  constexpr double kUnlike = 2.0;
+  const std::vector<double> rough = rough_by_component(measured);
+  const VectorXd sigmas = component_sigmas(measured);
+  if (rough.empty() || !is_rest(example) || sigmas.minCoeff() < sigmas.maxCoeff()) return;
+  const auto [least, most] = std::minmax_element(rough.begin(), rough.end());
+  if (*most <= kUnlike * *least) return;
+  const FieldSpec& field = *measured.field;
+  session.warn(fmt::format(
+      "{}: at rest the field is rough by {} along {}, and `sigma` is {:g} for all: give one a "
+      "component, `sigma: [{}]`",
+      measured.place.str(), listed_numbers(rough),
+      directions_of(field.strain != nullptr, field.components), field.sigma,
+      listed_numbers(rough)));
+}
+
+}  // namespace
 
 void warn_of_fields(const Scene& scene, Session& session) {
   const std::string& length = scene.capture.units.length;
@@ -147,6 +209,7 @@ void warn_of_fields(const Scene& scene, Session& session) {
           fmt::format("{}at rest the field is rough by {}, and `sigma` is {:g}: told too "
                       "small it promises too much; rows that are outliers may do it too",
                       at, size, field.sigma));
+    warn_of_unlike(example, measured, session);
   });
 }
 

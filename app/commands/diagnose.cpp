@@ -4,6 +4,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
 #include "app/interrupt.h"
+#include "capture_io/seen_in_words.h"
 #include "estimation/diagnosis/diagnosis_json.h"
 #include "estimation/output/step_json.h"
 #include "runs/kept_work.h"
@@ -21,7 +22,7 @@ void run_diagnose(const std::string& folder, Session& session) {
   session.document = to_json(step.diagnosis);
   session.say("step {}: normalised residual {:.3f}, noise floor {:.3f}\n", step.name,
               step.fitted.evaluation.chi(false), step.diagnosis.floor.chi);
-  session.say("{}", diagnosis_table(step.diagnosis));
+  session.say("{}", diagnosis_table(step.diagnosis, seen_in_words(bench.scene->capture)));
   session.say("{}", wrapped(conclusion(step.diagnosis)));
   if (const auto& note = step.diagnosis.mesh_note; !note.empty()) session.say("{}", wrapped(note));
   if (leaders(step.diagnosis).empty()) tell_free_form(run, bench, step, session);

@@ -5,8 +5,10 @@
 #include "app/commands/limit_options.h"
 #include "app/commands/local_workers.h"
 #include "app/commands/run_support.h"
+#include "app/commands/so_far.h"
 #include "app/interrupt.h"
 #include "app/validators.h"
+#include "capture_io/seen_in_words.h"
 #include "estimation/evaluation/load_case_share.h"
 #include "runs/add_step.h"
 #include "runs/kept_work.h"
@@ -21,6 +23,21 @@ struct DiscoverArguments {
   std::vector<std::string> without, set;
   int workers = 0;
 };
+
+/// What ends a search before its end loses nothing, and says what there is.
+Discovery search_or_say_so_far(Run& run, Bench& bench, SearchRequest& wanted, bool known,
+                               const std::string& folder, const Session& session) {
+  SoFar so_far(wanted);
+  try {
+    return discover_into(run, bench, wanted, known);
+  } catch (const Interrupted&) {
+    so_far.say(run, folder, session);
+    throw;
+  } catch (const Failed&) {
+    so_far.say(run, folder, session);
+    throw;
+  }
+}
 
 void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (const std::string& name : arguments.without) check_effect(name);
@@ -39,7 +56,8 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   wanted.options.diagnosis.without = arguments.without;
   wanted.command = invocation();
   wanted.warn = warn_to(session);
-  const Discovery found = discover_into(run, bench, wanted, kept.from_before());
+  const Discovery found =
+      search_or_say_so_far(run, bench, wanted, kept.from_before(), arguments.run, session);
   if (open) open->end();
   workers.end();
   session.document = run.timeline();
@@ -49,7 +67,7 @@ void run_discover(const DiscoverArguments& arguments, Session& session) {
   for (size_t i = 1; i < steps.size(); ++i)
     session.say("{}", choice_table(steps[i - 1], steps[i],
                                    run.timeline().at("floor").at("chi").get<double>(),
-                                   *bench.scene->limits));
+                                   *bench.scene->limits, seen_in_words(bench.scene->capture)));
   const Fitted& last = found.steps.back().fitted;
   if (const std::string others = parameter_table(last); !others.empty())
     session.say("\n{}", others);

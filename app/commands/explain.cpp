@@ -9,6 +9,7 @@
 #include "app/commands/run_support.h"
 #include "runs/add_step.h"
 #include "runs/decision_log.h"
+#include "runs/report/answer.h"
 #include "runs/tables.h"
 
 namespace hookeye {
@@ -63,13 +64,14 @@ std::string in_words(const Decision& one) {
 }
 
 /// What the numbers of a step are held against.
-std::string heading(const nlohmann::json& timeline, size_t index, const std::string& step) {
+std::string heading(const nlohmann::json& timeline, size_t index, const std::string& step,
+                    const std::string& seen) {
   const nlohmann::json& told = timeline.at("steps").at(index);
   const double fitted = number_in(told, "chi_fit"), held_out = number_in(told, "chi_validate");
   const double floor = number_in(timeline.value("floor", nlohmann::json::object()), "chi");
   std::string out =
-      fmt::format("beyond the model of step {}: its normalised residual is {} on fitted photos",
-                  step, chi_text(fitted));
+      fmt::format("beyond the model of step {}: its normalised residual is {} on fitted {}", step,
+                  chi_text(fitted), seen);
   if (held_out > 0.0) out += fmt::format(", {} on held-out ones", chi_text(held_out));
   if (floor > 0.0) out += fmt::format("; noise floor {:.3f}", floor);
   return wrapped(out);
@@ -77,7 +79,7 @@ std::string heading(const nlohmann::json& timeline, size_t index, const std::str
 
 constexpr const char* kHowToRead =
     "An effect stands out where one linear step tells it from noise. Those that do are screened "
-    "(a step or two on half-size photos), the best refitted to the end, and ranked. The first "
+    "(a step or two of a refit), the best refitted to the end, and ranked. The first "
     "stands if it says enough. In brackets: its number, what that is held against and the option "
     "behind it; then the line of the sources.";
 
@@ -178,7 +180,10 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
     if (text.empty()) continue;
     if (!about) session.say("{}\n", wrapped(kHowToRead));
     about = true;
-    session.say("{}{}\n", heading(run.timeline(), index, step.filename().string()), text);
+    session.say(
+        "{}{}\n",
+        heading(run.timeline(), index, step.filename().string(), seen_in_step(run.folder(), step)),
+        text);
   }
   if (!any)
     throw InputError({arguments.run}, "nothing was decided in this run yet",

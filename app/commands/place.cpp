@@ -208,6 +208,22 @@ void tell_place(const Placing& placing, const ToldPlacement& told, const ToldPla
   for (const std::string& sentence : placing.warnings) session.warn(sentence);
 }
 
+/// A place out of outlines that the outlines contradict was not found. Pairs and scans are data of
+/// their own, which may be meant as a rough start: of those it is said.
+void judge(const std::vector<CaptureWarning>& against, bool by_outlines, const ToldPlacement& now,
+           Session& session) {
+  if (!by_outlines) {
+    for (const CaptureWarning& one : against) session.warn(one.text());
+    return;
+  }
+  if (against.empty()) return;
+  for (size_t i = 1; i < against.size(); ++i) session.warn(against[i].text());
+  const CaptureWarning& first = against.front();
+  throw InputError(first.place, first.seen + "; nothing was written",
+                   first.right + ".\n  The place that fits least badly is no answer: placement: " +
+                       placement_text(now));
+}
+
 void run_place(const PlaceCommand& options, Session& session) {
   const bool tags = !options.tags.empty();
   const bool pairs = tags || !options.pairs.empty() || !options.pairs_file.empty();
@@ -232,14 +248,16 @@ void run_place(const PlaceCommand& options, Session& session) {
   ToldPlacement now = placed(told, placing.motion);
   now.fit = told.fit || options.fit;
   tell_place(placing, told, now, body, session);
-  look_before_and_after(*scene, placing.motion, options.out, session);
+  const auto against = look_before_and_after(*scene, placing.motion, options.out, session);
+  judge(against, !pairs && options.scan.empty(), now, session);
   store_placed(whole.file, now, options.dry);
   session.document["written"] = !options.dry;
   if (options.dry)
     session.say("\nnot written (--dry-run); in {} would stand\n  placement: {}\n",
                 whole.file.string(), placement_text(now));
   else
-    session.say("\nwritten to {}: `placement` of `body`\n", whole.file.string());
+    session.say("\nwritten to {}: `placement` of `body`{}\n", whole.file.string(),
+                against.empty() ? "" : ", although the photos contradict it (above)");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "app/commands/check_look.h"
 #include "capture_io/placement.h"
-#include "estimation/inspection/inspection.h"
+#include "estimation/inspection/outline_gap.h"
 #include "estimation/inspection/sight.h"
 
 namespace hookeye {
@@ -24,13 +24,16 @@ std::shared_ptr<Scene> with_body_moved(const Scene& scene, const Eigen::Isometry
   ToldPlacement placement;
   placement.R = motion.linear(), placement.t = motion.translation();
   take_to_body(placement, out->capture.cameras);
+  // Judged as it was found, also where a fit is to refine it.
+  out->capture.body.fit_placement = false;
   return out;
 }
 
 }  // namespace
 
-void look_before_and_after(const Scene& scene, const Eigen::Isometry3d& motion,
-                           const std::string& out, Session& session) {
+std::vector<CaptureWarning> look_before_and_after(const Scene& scene,
+                                                  const Eigen::Isometry3d& motion,
+                                                  const std::string& out, Session& session) {
   constexpr double kWorse = 0.02;
   InspectionOptions options;
   options.first_guess = false;
@@ -59,11 +62,18 @@ void look_before_and_after(const Scene& scene, const Eigen::Isometry3d& motion,
                       camera, look.overlap, then.overlap));
   }
   if (rows.size() > 1) session.say("\n{}", table(rows));
+  std::vector<CaptureWarning> against;
   for (const CaptureWarning& warning : seen.warnings)
-    if (warning.question == "flips") session.warn(warning.text());
+    if (warning.question == "flips") against.push_back(warning);
+  inspection::Sight sight(*after, options);
+  if (auto doubt = inspection::outline_doubt(sight)) against.push_back(*std::move(doubt));
+  session.document["contradicted"] = Json::array();
+  for (const CaptureWarning& warning : against)
+    session.document["contradicted"].push_back(warning.text());
   if (!out.empty() && !seen.sheet.empty())
     session.say("\n{}\n{}\n", seen.sheet.string(),
                 write_inspection_page(*after, seen, out).string());
+  return against;
 }
 
 }  // namespace hookeye

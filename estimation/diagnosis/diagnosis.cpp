@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "capture_io/seen_in_words.h"
 #include "core/input_error.h"
 #include "core/work_clock.h"
 #include "estimation/diagnosis/candidates.h"
@@ -96,12 +97,13 @@ EffectScore describe(const Context& context, const Candidate& candidate,
   const bool hidden =
       score.fall < least_fall(context.diagnosis, score.effect) || context.diagnosis.held_out_missed;
   score.why = sensors_alone(*candidate.ingredient)
-                  ? sentence + "; seen in what was measured, not in photos"
+                  ? sentence + "; seen in what was measured alone"
                   : fmt::format("{} would remove {:.0f} % of the misfit{}{}", sentence,
                                 100.0 * score.explains,
                                 hidden && held_out_say_so(score, context.diagnosis)
-                                    ? fmt::format(" and {:.0f} % of the held-out photos'",
-                                                  100.0 * score.explains_held_out)
+                                    ? fmt::format(" and {:.0f} % of the held-out {}'",
+                                                  100.0 * score.explains_held_out,
+                                                  seen_in_words(context.scene.capture))
                                     : "",
                                 where_seen(context.scene, context.evaluation, step));
   if (!sensors_alone(*candidate.ingredient) &&
@@ -229,9 +231,10 @@ EffectScore score_effect(const Context& context, const Scored& scored, size_t be
   if (projected.best_signal() < std::pow(diagnosis.limits().testable_deviations, 2) &&
       evidence < std::max(diagnosis.limits().nameable, diagnosis.gate)) {
     score.testable = false;
-    score.why_not =
-        "untestable with these photos: a change that would matter moves them by "
-        "less than two standard deviations";
+    score.why_not = fmt::format(
+        "untestable with these {}: a change that would matter moves them by "
+        "less than two standard deviations",
+        seen_in_words(context.scene.capture));
   }
   return score;
 }

@@ -47,10 +47,13 @@ std::string conclusion(const Diagnosis& diagnosis) {
   const auto all = leaders(diagnosis);
   if (all.empty()) return "nothing of the catalogue stands out";
   if (all.size() == 1) return all.front() + " leads";
+  // Views are planned by cameras alone.
+  const bool photos = diagnosis.floor.source.ends_with("photos");
   return fmt::format(
       "{} leads, and {} cannot be told from it by these scores: `hookeye discover` refits all of "
-      "them, `hookeye plan` names loads and views that would separate them",
-      all.front(), fmt::join(all.begin() + 1, all.end(), ", "));
+      "them{}",
+      all.front(), fmt::join(all.begin() + 1, all.end(), ", "),
+      photos ? ", `hookeye plan` names loads and views that would separate them" : "");
 }
 
 bool numerical(const std::string& effect) {

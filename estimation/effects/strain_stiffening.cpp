@@ -120,7 +120,7 @@ class StrainStiffening final : public Effect {
 
   /// A modulus that is 1 + change times that at rest, in words.
   static std::string against_rest(double change) {
-    if (change <= -1.0) return "nothing (the curve is told beyond what these photos show)";
+    if (change <= -1.0) return "nothing (the curve is told beyond what was seen)";
     if (change > 1.0) return fmt::format("{} times that at rest", figure(1.0 + change));
     return fmt::format("{} % {} than at rest", figure(100.0 * std::abs(change)),
                        change >= 0 ? "higher" : "lower");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/evaluation/normal_equations.h"
 
 namespace hookeye {
@@ -68,9 +69,9 @@ std::string scale_sentence(const Scene& scene, const Fitted& fitted,
                        named);
   if (forces.empty())
     return fmt::format(
-        "the photos fix only ratios of stiffness: no force is prescribed or measured, "
+        "the {} fix only ratios of stiffness: no force is prescribed or measured, "
         "so the scale of {} is the capture's",
-        named);
+        seen_in_words(capture), named);
   return fmt::format("{} {} tied to {}: 1 % more force is 1 % more stiffness", named, is,
                      listed(forces));
 }

@@ -75,11 +75,12 @@ std::vector<Piece> pieces(const cv::Mat& alone, const cv::Mat& still) {
   return out;
 }
 
+constexpr double kStillShare = 0.9;  // of a piece's pixels: noise and shadows of the body take some
+constexpr double kLeastPiece = 0.01;  // of what either covers
+
 }  // namespace
 
 std::optional<Apart> apart(Sight& sight, PhotoIndex photo) {
-  constexpr double kStill = 0.9;   // of a piece's pixels: noise and shadows of the body take some
-  constexpr double kLeast = 0.01;  // of what either covers
   const SmallPhoto& seen = sight.small(photo);
   if (!seen.foreground.known()) return {};
   const Pixels outline = sight.outline(photo, sight.shown(photo.first));
@@ -101,8 +102,8 @@ std::optional<Apart> apart(Sight& sight, PhotoIndex photo) {
   out.model_alone = cv::countNonZero(in_model & ~in_photo) / either;
   double still_area = 0.0;
   for (const Piece& piece : pieces(alone, stands)) {
-    if (piece.area < kLeast * either) break;
-    const bool stays = !others.empty() && piece.still >= kStill;
+    if (piece.area < kLeastPiece * either) break;
+    const bool stays = !others.empty() && piece.still >= kStillShare;
     if (stays) still_area += piece.area;
     if (out.largest > 0.0) continue;
     out.largest = piece.area / either;
@@ -115,6 +116,20 @@ std::optional<Apart> apart(Sight& sight, PhotoIndex photo) {
   const double both = cv::countNonZero(in_photo & in_model);
   out.without_still = both / (either - still_area);
   return out;
+}
+
+Pixels still_beside(Sight& sight, PhotoIndex photo) {
+  const auto others = moved_photos(sight, photo);
+  const SmallPhoto& seen = sight.small(photo);
+  if (others.empty() || !seen.foreground.known()) return {};
+  const Pixels outline = sight.outline(photo, sight.shown(photo.first));
+  const Pixels inside = seen.foreground.inside();
+  const cv::Mat alone = as_mat(inside, seen.I) & ~as_mat(outline, seen.I);
+  const double most = cv::countNonZero(as_mat(inside, seen.I) | as_mat(outline, seen.I));
+  cv::Mat all = cv::Mat::zeros(alone.size(), CV_8U);
+  for (const Piece& piece : pieces(alone, still(sight, photo, others)))
+    if (piece.area >= kLeastPiece * most && piece.still >= kStillShare) all |= piece.mask;
+  return {all.begin<uchar>(), all.end<uchar>()};
 }
 
 }  // namespace hookeye::inspection

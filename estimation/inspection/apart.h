@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "estimation/inspection/inspection.h"
 #include "estimation/inspection/sight.h"
@@ -11,5 +12,8 @@ namespace hookeye::inspection {
 
 /// Of a photo against the shown state of its example. None: the photo's foreground is not known.
 std::optional<Apart> apart(Sight& sight, PhotoIndex photo);
+
+/// The pixels of such pieces in the small photo. Empty: there is no other photo to tell them by.
+std::vector<unsigned char> still_beside(Sight& sight, PhotoIndex photo);
 
 }  // namespace hookeye::inspection

@@ -37,6 +37,13 @@ struct InspectionOptions {
   double found_overlap = 0.85;
   double usual_overlap = 0.95;  ///< below it is told what parts the silhouettes (right: 0.97)
 
+  // Whether the place that is told for the body goes with its outline. Both have to be exceeded by
+  // a quarter of the model's rim.
+  double outline_of_body =
+      0.02;  ///< of the body's size in the photo: as far as measured points may
+             ///< lie off the mesh, so as far as a cast may differ from its CAD
+  double outline_of_noise = 3.0;  ///< times what the outline is ragged by
+
   // Distortion told of straight photos.
   double least_bent_px = 0.06;  ///< shift of the patches at rest [px]: right cameras have half
   double straighter = 0.4;      ///< of that shift is left without the distortion

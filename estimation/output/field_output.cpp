@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "capture_io/component_sigmas.h"
 #include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
 #include "estimation/evaluation/started_field.h"
@@ -11,6 +12,15 @@
 namespace hookeye {
 
 using nlohmann::json;
+
+namespace {
+
+std::vector<double> sigmas_told(const MeasuredSpec& measured) {
+  const VectorXd sigmas = component_sigmas(measured);
+  return {sigmas.begin(), sigmas.end()};
+}
+
+}  // namespace
 
 json fields_json(const Scene& scene, const Fitted& fitted) {
   json all = json::array();
@@ -30,6 +40,7 @@ json fields_json(const Scene& scene, const Fitted& fitted) {
                      {"holds", told.field->strain ? "strains" : "displacements"},
                      {"unit", told.field->strain ? "strain" : scene.capture.units.length},
                      {"sigma", told.field->sigma},
+                     {"sigmas", sigmas_told(told)},
                      {"rough", rough.count > 0.0 ? json(rough.chi()) : json()},
                      {"components", told.field->components},
                      {"points", told.field->X.cols()},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/search/verdict.h"
 
 namespace hookeye {
@@ -41,7 +42,8 @@ void conclude(Discovery& out, const std::vector<Contested>& run, const Refusal& 
         !doubt.empty())
       out.verdict = Verdict::unexplained, why += doubt;
   if (out.verdict == Verdict::unexplained) out.untold = cannot_be_told(last.diagnosis);
-  out.sentence = say(out.verdict, out.missing, out.tie, why, refused.words(), out.untold);
+  out.sentence = say(out.verdict, out.missing, out.tie, why, refused.words(), out.untold,
+                     seen_in_words(last.fitted.form.scene->capture));
   tell(decided,
        {Asked::ended,
         "",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/diagnosis/diagnosis_sums.h"
 #include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
@@ -232,9 +233,10 @@ Result<Contest> refit_leaders(Workspace& workspace, const Step& step,
           true,
           {refits.back().fitted.evaluation.chi(false),
            step.diagnosis.floor.limits->floor.at * step.diagnosis.floor.chi, "floor.at"},
-          fmt::format("refitted in {} iterations: normalised residual {:.3f} on fitted photos, "
+          fmt::format("refitted in {} iterations: normalised residual {:.3f} on fitted {}, "
                       "{:.3f} without it; noise floor {:.3f}",
                       refits.back().fitted.iterations, refits.back().fitted.evaluation.chi(false),
+                      seen_in_words(step.fitted.form.scene->capture),
                       step.fitted.evaluation.chi(false), step.diagnosis.floor.chi)});
     if (numerical(racer.effect) && mesh_kept_its_word(step, refits.back().fitted)) {
       rank(out, step);

@@ -148,10 +148,10 @@ Result<std::optional<FitToAll>> fit_to_all(Workspace& workspace, const Fitted& f
   const double given_up = std::pow(out.chi_fit, 2) - std::pow(fitted.evaluation.chi(false), 2);
   const double most = spread_of_photos(fitted, false) + err;
   if (!tell(options.decided, {Asked::ended,
-                              "values of all photos",
+                              "values of all load cases",
                               explained && given_up <= most,
                               {given_up, most, "floor.chance"},
-                              "what the fitted photos give up where held-out ones are fitted too"}))
+                              "what the fitted ones give up where held-out ones are fitted too"}))
     return none;
   out.hardly_known = values_hardly_known(fitted, out.fitted);
   return std::optional(std::move(out));

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/extension.h"
@@ -139,16 +140,18 @@ bool no_rival(const EffectScore& score, const Diagnosis& diagnosis, const Racer&
 std::string residual_in_words(double chi) { return chi > 0.0 ? fmt::format("{:.3g}", chi) : "-"; }
 
 void tell_of_trial(const FitOptions& options, const Racer& racer, const TrialScale& start) {
+  const Capture& capture = racer.form.scene->capture;
+  const std::string half = on_half_size(capture);
   tell(options.decided,
        {Asked::screened,
         racer.effect,
         true,
         {racer.chi(), start.chi + start.chi_validate, ""},
-        fmt::format("one step of its refit, on half-size photos: normalised residual {} on fitted "
-                    "photos, {} on held-out ones; without it {} and {}; noise floor {}",
-                    residual_in_words(racer.trial.chi_fit),
-                    residual_in_words(racer.trial.chi_validate), residual_in_words(start.chi),
-                    residual_in_words(start.chi_validate),
+        fmt::format("one step of its refit{}: normalised residual {} on fitted {}, {} on held-out "
+                    "ones; without it {} and {}; noise floor {}",
+                    half.empty() ? half : "," + half, residual_in_words(racer.trial.chi_fit),
+                    seen_in_words(capture), residual_in_words(racer.trial.chi_validate),
+                    residual_in_words(start.chi), residual_in_words(start.chi_validate),
                     start.floor > 0.0 ? residual_in_words(start.floor) : "unknown")});
 }
 

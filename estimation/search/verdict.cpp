@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/fit/at_floor.h"
 #include "estimation/model/effect.h"
@@ -50,17 +51,7 @@ std::string hidden_by_mesh(const Diagnosis& diagnosis) {
   return "";
 }
 
-const char* what_is_seen(const Fitted& fitted) {
-  switch (fitted.evaluation.seen()) {
-    case Evaluation::Seen::photos:
-      return "photos";
-    case Evaluation::Seen::fields:
-      return "fields";
-    case Evaluation::Seen::sensors:
-      break;
-  }
-  return "values";
-}
+const char* what_is_seen(const Fitted& fitted) { return seen_in_words(fitted.form.scene->capture); }
 
 /// Fitted photos that are explained know no more: the user hears which held-out ones do.
 std::string shown_by_held_out(const Fitted& fitted) {
@@ -257,7 +248,7 @@ std::vector<std::string> effects_in_words(const Fitted& fitted) {
   return out;
 }
 
-std::string too_little_to_name(const Diagnosis& diagnosis) {
+std::string too_little_to_name(const Diagnosis& diagnosis, const std::string& seen) {
   for (const EffectScore& score : diagnosis.effects) {
     if (!score.testable || numerical(score.effect)) continue;
     const bool chance = score.evidence < std::max(diagnosis.limits().nameable, diagnosis.gate);
@@ -266,9 +257,9 @@ std::string too_little_to_name(const Diagnosis& diagnosis) {
       return "";
     return fmt::format(
         "not named, but worth a look: {} would remove {:.0f} % of what is over the floor, {:.0f} % "
-        "on held-out photos, which is less than renderers and meshes err by (`hookeye add` tries "
+        "on held-out {}, which is less than renderers and meshes err by (`hookeye add` tries "
         "it)",
-        score.effect, 100.0 * score.explains, 100.0 * score.explains_held_out);
+        score.effect, 100.0 * score.explains, 100.0 * score.explains_held_out, seen);
   }
   return "";
 }
@@ -277,11 +268,12 @@ namespace {
 
 /// "gravity and either creep or softening (...)". Of a tie the first stands in the model
 /// (discover() settles it so), the others would do in its place.
-std::string named_with_tie(std::vector<std::string> missing, const std::vector<std::string>& tie) {
+std::string named_with_tie(std::vector<std::string> missing, const std::vector<std::string>& tie,
+                           const std::string& seen) {
   const auto standing =
       tie.empty() ? missing.end() : std::find(missing.begin(), missing.end(), tie.front());
   if (standing != missing.end()) {
-    *standing = fmt::format("either {} (these photos cannot tell which)", fmt::join(tie, " or "));
+    *standing = fmt::format("either {} (these {} cannot tell which)", fmt::join(tie, " or "), seen);
     std::rotate(standing, standing + 1, missing.end());
   }
   return fmt::format("{}", fmt::join(missing, " and "));
@@ -316,11 +308,10 @@ std::string any_of_them(const std::vector<std::string>& effects) {
 
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
                 const std::vector<std::string>& tie, std::string why, const std::string& refused,
-                const std::vector<std::string>& untold) {
+                const std::vector<std::string>& untold, const std::string& seen) {
   if (verdict == Verdict::unexplained && !untold.empty())
-    why += fmt::format(
-        "; {} stand{} out by more than chance, but these photos hold too little to tell",
-        any_of_them(untold), untold.size() > 1 ? "" : "s");
+    why += fmt::format("; {} stand{} out by more than chance, but these {} hold too little to tell",
+                       any_of_them(untold), untold.size() > 1 ? "" : "s", seen);
   if (!refused.empty()) why += "; nothing more was added: " + refused;
   std::vector<std::string> physical = missing, mesh;
   std::erase_if(physical, numerical);
@@ -330,13 +321,13 @@ std::string say(Verdict verdict, const std::vector<std::string>& missing,
   if (!physical.empty())
     return fmt::format("{}: {}; with {}{}, {}",
                        verdict == Verdict::unexplained ? "named, but not enough" : "missing",
-                       named_with_tie(physical, tie), physical.size() == 1 ? "it" : "them",
+                       named_with_tie(physical, tie, seen), physical.size() == 1 ? "it" : "them",
                        mesh.empty() ? "" : " on " + finer, why);
   if (verdict != Verdict::explained)
     return fmt::format("{}: {}{}",
-                       !refused.empty() ? "nothing that was tried explains it"
-                       : untold.empty() ? "not in the catalogue"
-                                        : "not told by these photos",
+                       !refused.empty() ? std::string("nothing that was tried explains it")
+                       : untold.empty() ? std::string("not in the catalogue")
+                                        : "not told by these " + seen,
                        mesh.empty() ? "" : "even on " + finer + ", ", why);
   if (!mesh.empty()) return fmt::format("nothing is missing but {}: on it, {}", finer, why);
   return fmt::format(

@@ -60,7 +60,7 @@ std::vector<std::string> effects_in_words(const Fitted& fitted);
 /// The effect that leads by its evidence and is not named because it takes away less than renderers
 /// and meshes err by (nameable), where it would take most of what held-out photos have over the
 /// floor: its values are not fitted to those. A hint in words; "": none.
-std::string too_little_to_name(const Diagnosis& diagnosis);
+std::string too_little_to_name(const Diagnosis& diagnosis, const std::string& seen = "photos");
 
 /// Effects that stand out by more than chance (Diagnosis::gate), would take a share that is worth a
 /// name (SearchLimits::worth_a_name), and have not the evidence to be named: the photos hold too
@@ -70,9 +70,10 @@ std::vector<std::string> cannot_be_told(const Diagnosis& diagnosis);
 std::string any_of_them(const std::vector<std::string>& effects);
 
 /// One line: what was missing, how sure, what else. `why` is judge()'s, `refused` why the effect
-/// that came farthest was not added ("": none was refused), `untold` cannot_be_told()'s.
+/// that came farthest was not added ("": none was refused), `untold` cannot_be_told()'s,
+/// `seen` seen_in_words().
 std::string say(Verdict verdict, const std::vector<std::string>& missing,
                 const std::vector<std::string>& tie, std::string why, const std::string& refused,
-                const std::vector<std::string>& untold = {});
+                const std::vector<std::string>& untold = {}, const std::string& seen = "photos");
 
 }  // namespace hookeye

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/effects/catalogue.h"
 #include "estimation/fit/ahead.h"
 #include "estimation/fit/at_floor.h"
@@ -233,7 +234,8 @@ Result<Fitted> best_form(Workspace& workspace, const Fitted& narrow, size_t at, 
             false,
             {std::numeric_limits<double>::quiet_NaN(),
              narrow.form.scene->limits->search.widening_stalls, "search.widening_stalls"},
-            "its screening on half-size photos stalls with most of the excess misfit"});
+            fmt::format("its screening{} stalls with most of the excess misfit",
+                        on_half_size(narrow.form.scene->capture))});
       continue;
     }
     auto result = announced(events, words, [&, &further = further, &first = first] {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "capture_io/seen_in_words.h"
 #include "core/json_file.h"
 #include "core/text_file.h"
 #include "estimation/diagnosis/diagnosis.h"
@@ -54,11 +55,10 @@ std::string string_in(const json& object, const char* key) {
              : "";
 }
 
-/// What the residual is of: photos; where there is none, fields, else sensors.
+/// seen_in_words() of the capture whose figures these are.
 const char* what_is_seen(const json& metrics) {
-  if (!metrics.is_object() || !metrics.contains("photos") || !metrics["photos"].empty())
-    return "photos";
-  return metrics.value("fields", json::array()).empty() ? "values" : "fields";
+  if (!metrics.is_object() || !metrics.contains("photos")) return seen_in_words(true, false);
+  return seen_in_words(!metrics["photos"].empty(), !metrics.value("fields", json::array()).empty());
 }
 
 /// The newest step against the noise floor.
@@ -69,6 +69,8 @@ struct Left {
   bool at_floor = false;                ///< all photos together
   bool on_floor = false;                ///< no more than renderers leave at least
   std::string one_camera;               ///< ", but ..." where one alone is not
+  /// Views are planned by cameras alone.
+  const char* planned(const char* hint) const { return seen == "photos" ? hint : ""; }
   /// "1.04 times the noise floor (1.03 on held-out photos)".
   std::string text() const {
     return fmt::format(
@@ -135,11 +137,11 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
     if (const Names untold = strings_in(timeline, "untold"); !untold.empty())
       return fmt::format(
           "{}These {} cannot tell what {}is missing: {} is left, and {} stand{} out by more "
-          "than chance, but not by enough to be named (`hookeye plan RUN` names views and loads "
-          "that can tell)",
+          "than chance, but not by enough to be named{}",
           found.empty() ? "" : capital(listed(found)) + " is missing, but it is not enough. ",
           left.seen, found.empty() ? "" : "else ", left.text(), any_of_them(untold),
-          untold.size() > 1 ? "" : "s");
+          untold.size() > 1 ? "" : "s",
+          left.planned(" (`hookeye plan RUN` names views and loads that can tell)"));
     if (!found.empty() && left.held_out > left.limit && left.fitted <= left.limit)
       return fmt::format(
           "{} {} missing. {} explains the fitted {} ({:.2f} times the noise floor), but not yet "
@@ -163,15 +165,14 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
                        refused ? "Nothing that was tested pays for itself" : "Nothing is missing",
                        explains("the given model" + on, left));
   }
-  return fmt::format(
-      "The given model lacks {}{}. {}", listed(found),
-      verdict == "ambiguous"
-          ? fmt::format("; these {} cannot tell which (`hookeye plan RUN` names some that can)",
-                        left.seen)
-          : "",
-      explains(verdict == "ambiguous" ? "With one of them" + on + " the model"
-                                      : with + on + " the model",
-               left));
+  return fmt::format("The given model lacks {}{}. {}", listed(found),
+                     verdict == "ambiguous"
+                         ? fmt::format("; these {} cannot tell which{}", left.seen,
+                                       left.planned(" (`hookeye plan RUN` names some that can)"))
+                         : "",
+                     explains(verdict == "ambiguous" ? "With one of them" + on + " the model"
+                                                     : with + on + " the model",
+                              left));
 }
 
 /// Effects of the newest diagnosis that may be named.
@@ -322,6 +323,10 @@ json answer_of(const json& timeline, const json& metrics, const json& diagnosis)
   out["pixels"] = all_pixels_in_words(step.value("all_pixels", json()));
   out["misfit"] = misfit_sentence(step, metrics, floor, string_in(told, "source"));
   return out;
+}
+
+std::string seen_in_step(const std::filesystem::path& run, const std::filesystem::path& step) {
+  return what_is_seen(file_of(run, step / "metrics.json"));
 }
 
 json answer_of(const std::filesystem::path& run, const json& timeline) {

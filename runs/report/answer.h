@@ -19,6 +19,9 @@ nlohmann::json answer_of(const nlohmann::json& timeline, const nlohmann::json& m
 /// Of the run in a folder, whose steps stand in `timeline`.
 nlohmann::json answer_of(const std::filesystem::path& run, const nlohmann::json& timeline);
 
+/// seen_in_words() of a run's capture, by the figures of one of its steps.
+std::string seen_in_step(const std::filesystem::path& run, const std::filesystem::path& step);
+
 /// The material as a table, with what it rests on; "" where there is none.
 std::string material_text(const nlohmann::json& material);
 /// All of it, within 100 columns.

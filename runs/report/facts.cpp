@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "capture_io/seen_in_words.h"
 #include "estimation/fit/fit.h"
 #include "render/renderer.h"
 
@@ -136,6 +137,19 @@ json reporting_table(const Capture& capture) {
   auto row = [&](const char* name, const std::string& value) {
     rows.push_back({{"name", name}, {"value", value}});
   };
+  if (const std::string seen = seen_in_words(capture); seen != "photos") {
+    row("Technique",
+        fmt::format("the whole body's equilibrium is matched to all measured {} at once", seen));
+    row("Matching criterion",
+        fmt::format("sum of squared (model − measured) / sigma over the {}", seen));
+    row("Regularisation",
+        fmt::format("none: the mechanical model alone; directions the {} do not fix are named, not "
+                    "smoothed",
+                    seen));
+    row("Units", fmt::format("{}, {}, {}", capture.units.length, capture.units.force,
+                             capture.units.stress()));
+    return rows;
+  }
   row("Technique",
       "integrated digital image correlation: the whole body's equilibrium is matched "
       "to all photos at once, no subsets");

@@ -260,7 +260,10 @@ json RunView::step_json(const fs::path& step, json& faults, int factor) {
         inside(folder_, entry.path()))
       out["files"].push_back(entry.path().lexically_relative(folder_).generic_string());
   std::sort(out["files"].begin(), out["files"].end());
-  if (out["residuals"].empty()) faults.push_back(name + "/residuals is not there");
+  // Of fields and sensors alone there is no picture.
+  const bool pictured =
+      !out["metrics"].is_object() || !out["metrics"].value("photos", json::array()).empty();
+  if (out["residuals"].empty() && pictured) faults.push_back(name + "/residuals is not there");
   if (out["fields"].empty())
     faults.push_back(name + "/page is not there, so its body and arrows cannot be drawn");
   return out;

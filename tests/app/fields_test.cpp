@@ -6,8 +6,10 @@
 namespace hookeye::test {
 namespace {
 
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// The cube under a pull on its top, seen from one side; `W` is what 1 mm of height gains.
 class FieldCapture : public Cli {
@@ -59,11 +61,65 @@ TEST_F(FieldCapture, AFitIsComparedAndReported) {
   EXPECT_THAT(read(folder_ / "run/steps/00-base/deformed/pull.vtu"), HasSubstr("field_residual"));
   const Result reported = hookeye("report run -o report.html");
   EXPECT_EQ(reported.status, 0) << reported.err;
+  EXPECT_THAT(reported.err, Not(HasSubstr("residuals is not there")));
   EXPECT_TRUE(fs::exists(folder_ / "report.html"));
   EXPECT_EQ(hookeye("plan run").status, 2) << "there is no camera to look from";
   // A field that was measured anew is another capture.
   write("u.csv", "X,Y,Z,U,V,W\n0,5,5,0,0,0\n");
   EXPECT_NE(hookeye("compare run").err + hookeye("diagnose run").err, "");
+}
+
+/// A field at rest shows how its noise is along each axis.
+TEST_F(FieldCapture, CheckTellsTheNoiseOfEachComponent) {
+  write("capture.yaml", read(folder_ / "capture.yaml") +
+                            "  rest:\n    supports: [{region: base, fix: [x, y, z]}]\n"
+                            "    measured: [{field: rest.csv, sigma: 0.01, correlation: 0}]\n");
+  std::string table = "X,Y,Z,U,V,W\n";
+  unsigned random = 1;
+  const auto noise = [&random](double size) {  // even within the size
+    random = random * 1664525U + 1013904223U;
+    return std::to_string(size * (random / 2147483648.0 - 1.0));
+  };
+  for (int y = 1; y < 20; ++y)
+    for (int z = 1; z < 20; ++z)
+      table += "0," + std::to_string(0.5 * y) + "," + std::to_string(0.5 * z) + "," + noise(0.06) +
+               "," + noise(0.006) + "," + noise(0.006) + "\n";
+  write("rest.csv", table);
+  const Result said = hookeye("check capture.yaml --quick");
+  ASSERT_EQ(said.status, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("`sigma` is 0.01 for all: give one a component, `sigma: [0.03"));
+  const json document = json::parse(hookeye("check --quick --json capture.yaml").out);
+  const json& rest = document.at("fields").at(1);
+  const double root3 = 1.7320508;
+  EXPECT_NEAR(rest.at("rough_along").at(0).get<double>(), 0.06 / root3, 0.004);
+  EXPECT_NEAR(rest.at("rough_along").at(1).get<double>(), 0.006 / root3, 0.0004);
+  EXPECT_NEAR(rest.at("rough_along").at(2).get<double>(), 0.006 / root3, 0.0004);
+  // Told so, nothing is left to say.
+  std::string text = read(folder_ / "capture.yaml");
+  text.replace(text.find("sigma: 0.01, corr"), 11, "sigma: [0.035, 0.0035, 0.0035]");
+  write("capture.yaml", text);
+  const Result told = hookeye("check capture.yaml --quick");
+  EXPECT_THAT(told.err, Not(HasSubstr("give one a component")));
+  EXPECT_THAT(told.out, testing::ContainsRegex("0[.]035 +0[.]034 +0[.]06"));
+}
+
+/// Whatever is said of a capture without a photo has none in it.
+TEST_F(FieldCapture, NothingIsSaidOfPhotos) {
+  const std::string yaml = read(folder_ / "capture.yaml");
+  write("capture.yaml",
+        yaml + "  half:\n    use: validate\n" + yaml.substr(yaml.find("    supports:")));
+  for (const char* command :
+       {"fit capture.yaml -o run", "diagnose run", "explain run", "discover capture.yaml -o search",
+        "compare search", "explain search", "add run strain_stiffening"}) {
+    const Result said = hookeye(command);
+    ASSERT_EQ(said.status, 0) << command << "\n" << said.err;
+    std::istringstream lines(said.out + said.err);
+    for (std::string line; std::getline(lines, line);) {
+      // "no photo", which an effect wants that is not tested, is true.
+      if (line.find("no photo") != std::string::npos) continue;
+      EXPECT_THAT(line, Not(AnyOf(HasSubstr("photo"), HasSubstr("hookeye plan")))) << command;
+    }
+  }
 }
 
 /// The second half of the pull, by a program that took the first half as its reference.

@@ -6,8 +6,10 @@
 namespace hookeye::test {
 namespace {
 
+using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Interrupted : public WithSmallCapture {
  protected:
@@ -27,6 +29,13 @@ class Interrupted : public WithSmallCapture {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"),
             read(folder_ / "err.txt")};
   }
+  /// Before there is a model that is said, and how to go on.
+  void search_hardly_begun() const {
+    const Result stopped = interrupt_at("fit 0/", "discover capture -o early", "TERM");
+    ASSERT_EQ(stopped.status, 130) << stopped.out << stopped.err;
+    EXPECT_THAT(stopped.out, AllOf(HasSubstr("so far: no model is fitted yet"),
+                                   HasSubstr("hookeye discover capture -o early")));
+  }
   static std::string escaped(const std::string& text) {
     std::string out;
     for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -40,6 +49,11 @@ class Interrupted : public WithSmallCapture {
     ASSERT_TRUE(fs::exists(model));
     const auto written = fs::last_write_time(model);
     EXPECT_FALSE(json::parse(read(folder_ / "search/run.json")).contains("verdict"));
+    EXPECT_THAT(stopped.out,
+                AllOf(HasSubstr("so far, with nothing settled"), HasSubstr("material: neo-hookean"),
+                      HasSubstr("step, base: normalised residual"), HasSubstr("noise floor"),
+                      HasSubstr("run: search"), HasSubstr("hookeye discover capture -o search")));
+    EXPECT_THAT(stopped.out, Not(AnyOf(HasSubstr("verdict"), HasSubstr("explained"))));
     const Result resumed = hookeye("discover capture -o search");
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_EQ(fs::last_write_time(model), written) << "the base model was fitted again";
@@ -77,6 +91,7 @@ TEST_F(Interrupted, AFitIsDoneAnewAndASearchGoesOn) {
   };
   EXPECT_NEAR(chi("run"), chi("whole"), 1e-6 * chi("whole"));  // sums of threads: last digits
   search();
+  search_hardly_begun();
 }
 
 }  // namespace

@@ -1,7 +1,11 @@
 // hookeye place from outside; what it finds is tested in tests/placing.
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "app/cli.h"
+#include "capture_io/image.h"
 
 namespace hookeye::test {
 namespace {
@@ -48,6 +52,65 @@ side  320.712 78.793  0 10 10
     return got.err;
   }
 };
+
+/// A box of the cameras' frame, from `from` to `to`, as a camera of SetUp() sees it: white on
+/// black. `rows`: the camera's rotation.
+Image silhouette_of_box(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                        const Eigen::Matrix3d& rows) {
+  Image out{400, 300, 1, std::vector<float>(400 * 300, 0.0f)};
+  const Eigen::Vector3d centre = -rows.transpose() * Eigen::Vector3d(0, 0, 100);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      const Eigen::Vector3d way =
+          rows.transpose() * Eigen::Vector3d((x - 199.5) / 1000, (y - 149.5) / 1000, 1);
+      double enter = 0.0, leave = INFINITY;
+      for (int i = 0; i < 3; ++i) {
+        const double a = (from[i] - centre[i]) / way[i], b = (to[i] - centre[i]) / way[i];
+        enter = std::max(enter, std::min(a, b)), leave = std::min(leave, std::max(a, b));
+      }
+      if (enter < leave) out.at(x, y) = 1.0f;
+    }
+  return out;
+}
+
+/// Writes the silhouettes, and tells them as a photo at rest.
+void put_photos(const fs::path& folder, const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  Eigen::Matrix3d front, side;
+  front << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  side << 0, 1, 0, 0, 0, -1, -1, 0, 0;
+  write_image(folder / "front.png", silhouette_of_box(from, to, front));
+  write_image(folder / "side.png", silhouette_of_box(from, to, side));
+  std::ofstream(folder / "capture.yaml", std::ios::app)
+      << "  rest:\n    photos:\n      front: front.png\n      side: side.png\n"
+         "photos: {kind: silhouette}\n";
+}
+
+TEST_F(PlaceCli, AnOutlineThatGoesWithThePhotosIsWritten) {
+  put_photos(folder_, {1, 2, -3}, {11, 12, 7});
+  const Result got = hookeye("place capture.yaml");
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("written to"));
+  EXPECT_THAT(got.err, testing::Not(HasSubstr("contradict")));
+}
+
+/// The photos show a longer body than the mesh: no place of the cube goes with them.
+TEST_F(PlaceCli, APlaceThatThePhotosContradictIsNotWritten) {
+  put_photos(folder_, {1, 2, -3}, {14, 12, 7});
+  const std::string said = refused("");
+  EXPECT_THAT(said, HasSubstr("the photos contradict the place of the body"));
+  EXPECT_THAT(said, HasSubstr("camera `front`"));
+  EXPECT_THAT(said, HasSubstr("--pair"));
+  // Written by hand all the same, `check` says so.
+  std::string text = read(folder_ / "capture.yaml");
+  const std::string key = "placement: {";
+  const size_t at = said.find(key), end = said.find('}', at);
+  ASSERT_NE(at, std::string::npos);
+  text.insert(text.find("  mesh:"), "  " + said.substr(at, end + 1 - at) + "\n");
+  write("capture.yaml", text);
+  const Result checked = hookeye("check capture.yaml --quick");
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_THAT(checked.err, HasSubstr("the photos contradict the place of the body"));
+}
 
 TEST_F(PlaceCli, PairsArePlacedAndWritten) {
   const std::string before = read(folder_ / "capture.yaml");

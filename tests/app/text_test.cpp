@@ -66,7 +66,7 @@ TEST(Text, ADiagnosisFitsAHundredColumns) {
   }
   diagnosis.effects.back().testable = false;
   diagnosis.effects.back().why_not = diagnosis.effects.back().why;
-  const std::string text = diagnosis_table(diagnosis);
+  const std::string text = diagnosis_table(diagnosis, "photos");
   EXPECT_THAT(too_long(text), IsEmpty());
   EXPECT_THAT(text, HasSubstr("swelling +3\n"));
   EXPECT_THAT(text, HasSubstr("  tension_compression_asymmetry  "));
@@ -98,24 +98,24 @@ TEST(Text, AChoiceTellsWhoWasNotTried) {
       {"effect": "creep", "evidence": 2.0}]})");
   auto step = nlohmann::json::parse(R"({"added": "gravity", "chi_fit": 1.0, "raced": [
       {"effect": "gravity", "chi_fit": 0.5, "chi_validate": 0.5, "floor": 0.5}]})");
-  const std::string text = choice_table(before, step, 1.0, {});
+  const std::string text = choice_table(before, step, 1.0, {}, "photos");
   EXPECT_THAT(text, testing::ContainsRegex("gravity +365.3 +1.00 +1.00"));
   EXPECT_THAT(text, testing::ContainsRegex("pressure +89.2 +-"));
   EXPECT_THAT(text, testing::Not(HasSubstr("creep")));
   EXPECT_THAT(text, HasSubstr("no other was refitted"));
   // The floor of half-size pictures is rough: 0.8 of it is not better than noise.
   step["raced"][0]["chi_fit"] = 0.4;
-  EXPECT_THAT(choice_table(before, step, 1.0, {}),
+  EXPECT_THAT(choice_table(before, step, 1.0, {}, "photos"),
               testing::ContainsRegex("gravity +365.3 +floor +1.00"));
-  EXPECT_THAT(choice_table(before, step, 1.0, {}), HasSubstr("floor: less than that"));
+  EXPECT_THAT(choice_table(before, step, 1.0, {}, "photos"), HasSubstr("floor: less than that"));
   step["raced"][0].erase("floor");
-  EXPECT_THAT(choice_table(before, step, 1.0, {}),
+  EXPECT_THAT(choice_table(before, step, 1.0, {}, "photos"),
               testing::AllOf(testing::ContainsRegex("gravity +365.3 +0.40\\* +0.50\\*"),
                              HasSubstr("*: the residual itself")));
   step["raced"][0]["floor"] = 0.5;
   EXPECT_THAT(text, HasSubstr("to first order no other"));
   step["added"] = step["raced"][0]["effect"] = "mesh_resolution";  // settled alone: no choice
-  EXPECT_EQ(choice_table(before, step, 1.0, {}), "");
+  EXPECT_EQ(choice_table(before, step, 1.0, {}, "photos"), "");
 }
 
 /// What can imitate the added effect, not what it can imitate; odds that a likelihood can tell.
@@ -127,14 +127,15 @@ TEST(Text, AChoiceTellsWhatElseItCouldHaveBeen) {
   auto step = nlohmann::json::parse(R"({"added": "gravity", "chi_fit": 1.0,
       "raced": [{"effect": "gravity", "chi_fit": 0.5, "chi_validate": 0.5, "floor": 0.5}],
       "rivals": [{"effect": "gravity", "score": 0.0}, {"effect": "pressure", "score": -5.3}]})");
-  const std::string near = choice_table(before, step, 1.0, {});
+  const std::string near = choice_table(before, step, 1.0, {}, "photos");
   EXPECT_THAT(near, HasSubstr("pressure, the next, is behind by 5.3: odds of 200 to one"));
   EXPECT_THAT(near, HasSubstr("swelling 0.931"));
   EXPECT_THAT(near, testing::Not(HasSubstr("0.990")));
   step["rivals"][1]["score"] = -7309.8;
-  EXPECT_THAT(choice_table(before, step, 1.0, {}), HasSubstr("odds of more than a million to one"));
+  EXPECT_THAT(choice_table(before, step, 1.0, {}, "photos"),
+              HasSubstr("odds of more than a million to one"));
   step["chi_fit"] = 3.2;  // nobody is sure of an effect beside which much is left
-  EXPECT_THAT(choice_table(before, step, 1.0, {}),
+  EXPECT_THAT(choice_table(before, step, 1.0, {}, "photos"),
               HasSubstr("alone it leaves 3.20 times the noise floor"));
 }
 
@@ -146,7 +147,7 @@ TEST(Text, AnotherFormIsToldInItsOwnWords) {
       "chi_fit": 1.5, "chi_validate": 1.0,
       "says": ["swelling: it has swollen by 1 % in the middle, more to the left"]})");
   EXPECT_EQ(
-      choice_table(before, step, 1.0, {}),
+      choice_table(before, step, 1.0, {}, "photos"),
       "\nwhy swelling, other parametrisation: it has swollen by 1 % in the middle, more to the "
       "left\n"
       "  (residual over noise floor: 1.50 fitted, 1.00 held out; before: 6.00 fitted, 8.00 held "
@@ -181,7 +182,7 @@ TEST(Text, AnEffectAboveTheCriticalValueSaysWhyItIsNotNamed) {
             "alone: it would lower the squared residual by 0.01 (as 0.05 px of motion all over the "
             "surface), and the error of a renderer or a lens may be as much as 0.044 (as 0.1 px of "
             "motion all over the surface)");
-  const std::string text = diagnosis_table(diagnosis);
+  const std::string text = diagnosis_table(diagnosis, "photos");
   EXPECT_THAT(text, testing::ContainsRegex("gravity is not named: its log Bayes factor 20.4"));
   EXPECT_THAT(too_long(text), IsEmpty());
   diagnosis.effects[0].mesh_fall = 0.09;

@@ -82,6 +82,61 @@ TEST(Proposal, KeepsTheCovarianceOfACalibration) {
   EXPECT_NEAR(lab.stored(scaled).camera_covariance->deviation(1), 0.2, 1e-12);
 }
 
+/// The bar as a deck of six tetrahedra, with its material from line 18 on.
+const char* const kDeck = R"(*NODE
+1, -5, -5, 0
+2, 5, -5, 0
+3, 5, 5, 0
+4, -5, 5, 0
+5, -5, -5, 30
+6, 5, -5, 30
+7, 5, 5, 30
+8, -5, 5, 30
+*ELEMENT, TYPE=C3D4, ELSET=BAR
+1, 1, 2, 3, 7
+2, 1, 3, 4, 7
+3, 1, 4, 8, 7
+4, 1, 8, 5, 7
+5, 1, 5, 6, 7
+6, 1, 6, 2, 7
+*SOLID SECTION, ELSET=BAR, MATERIAL=GEL
+*MATERIAL, NAME=GEL
+*HYPERELASTIC, YEOH
+0.02, 0.003, 0.0001, 4
+*DENSITY
+1.2E-9
+)";
+
+TEST(Proposal, StartsFromTheMaterialOfADeck) {
+  const LabFolder lab;
+  fill(lab);
+  lab.write("bar.inp", kDeck);
+  const Proposal proposal = lab.proposal({{"body", "bar.inp"}});
+  EXPECT_THAT(proposal.yaml, HasSubstr("material: {law: yeoh, c1: 0.02, c2: 0.003, c3: 0.0001, "
+                                       "kappa: 0.5}  # of bar.inp, line 18\n"));
+  EXPECT_THAT(proposal.yaml, HasSubstr("# density: 1.2e-09  # of the deck"));
+  const Capture capture = lab.stored(proposal);
+  EXPECT_EQ(capture.fit, (std::vector<std::string>{"c1", "c2", "c3"}));
+  std::filesystem::remove(lab.path() / "capture.yaml");
+  // Of the other mesh it is the same body; and the user may want a guess.
+  EXPECT_THAT(lab.proposal({{"body", "bar.stl"}}).yaml, HasSubstr("law: yeoh"));
+  EXPECT_THAT(lab.proposal({{"body", "bar.stl"}, {"material", "guess"}}).yaml,
+              HasSubstr("law: neo-hookean"));
+}
+
+/// A deck whose material cannot be taken keeps nobody from a capture.
+TEST(Proposal, SaysWhyTheMaterialOfADeckIsNotTaken) {
+  const LabFolder lab;
+  fill(lab);
+  std::string deck = kDeck;
+  deck += "*MATERIAL, NAME=OTHER\n*HYPERELASTIC, NEO HOOKE\n0.5, 0.1\n";
+  lab.write("bar.inp", deck);
+  const Proposal proposal = lab.proposal({{"body", "bar.inp"}});
+  EXPECT_THAT(proposal.yaml, HasSubstr("law: neo-hookean"));
+  EXPECT_TRUE(any_says(proposal.said, "the material of bar.inp is not taken"));
+  EXPECT_TRUE(any_says(proposal.said, "second law"));
+}
+
 TEST(Proposal, LoadsAreSpreadEvenly) {
   const LabFolder lab;
   fill(lab);

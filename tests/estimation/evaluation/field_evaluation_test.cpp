@@ -134,6 +134,24 @@ TEST(FieldEvaluation, PointsThatErrAlikeAreFewNumbers) {
   EXPECT_LT(numbers(", correlation: 500"), 4.0);
 }
 
+/// Two cameras see worse along their sight than across it.
+TEST(FieldEvaluation, SigmaMayBeOneAComponent) {
+  const FieldBlock block{.keys = ", correlation: 0"};
+  const ChangedBlock changed{block, "capture.yaml", "sigma: 0.01", "sigma: [0.01, 0.02, 0.04]"};
+  const auto one = block.scene(), three = changed.scene();
+  const MeasuredSpec &even = first_field(*one), &uneven = first_field(*three);
+  VectorXd off(uneven.value.size());
+  for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = 0.04;
+  const VectorXd by_one = even.whitened(off), by_three = uneven.whitened(off);
+  for (Eigen::Index k = 0; k < off.size(); k += 3)
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_DOUBLE_EQ(by_one[k + c], 4.0);
+      EXPECT_DOUBLE_EQ(by_three[k + c], 4.0 / std::pow(2.0, c));
+    }
+  EXPECT_NEAR(uneven.field->sigma, 0.01 * std::sqrt((1.0 + 4.0 + 16.0) / 3.0), 1e-12);
+  EXPECT_EQ(uneven.field->numbers(), even.field->numbers());
+}
+
 std::string refusal(const FieldBlock& block, const std::string& file, const std::string& from,
                     const std::string& to) {
   return ChangedBlock{block, file, from, to}.refusal();
