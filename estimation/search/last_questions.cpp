@@ -2,11 +2,31 @@
 
 #include <algorithm>
 
+#include "estimation/fit/at_floor.h"
 #include "estimation/search/measured_explained.h"
 #include "estimation/search/refit_score.h"
 #include "estimation/search/widening.h"
 
 namespace hookeye {
+
+namespace {
+
+/// Effects that chance does not raise, and that would take what is worth a name beside the model,
+/// but may not be added as the mesh's own error may be as large: whoever was named before may stand
+/// for one of them.
+std::vector<std::string> stand_out_beside(const Step& last) {
+  std::vector<std::string> out;
+  const Diagnosis& diagnosis = last.diagnosis;
+  const double least = std::max(diagnosis.limits().nameable, diagnosis.gate);
+  if (on_floor(last.fitted, diagnosis.floor)) return out;
+  for (const EffectScore& score : diagnosis.effects)
+    if (score.testable && !numerical(score.effect) && score.evidence >= least &&
+        score.explains >= diagnosis.floor.limits->search.worth_a_name)
+      out.push_back(score.effect);
+  return out;
+}
+
+}  // namespace
 
 LastAnswer settled_mesh(Workspace& workspace, const Step& newest, const DiscoverOptions& options,
                         const DiscoverEvents& events) {
@@ -46,15 +66,17 @@ TieAsked contests_again(Workspace& workspace, const std::vector<Step>& steps, si
   TieAsked out;
   const Fitted& last = steps.back().fitted;
   const auto standing = effects_in(last.form);
+  const auto beside = stand_out_beside(steps.back());
   const auto stands = [&](const std::string& effect) {
     return std::find(standing.begin(), standing.end(), effect) != standing.end();
   };
   for (size_t k = 0; k + 1 < steps.size(); ++k) {
     const Step& then = steps[k];
     if (numerical(then.added) || !stands(then.added)) continue;
-    std::vector<std::string> contest = {then.added};
-    for (const std::string& loser : narrow_losers(then, last))
-      if (!stands(loser) && asked.insert({then.added, loser}).second) contest.push_back(loser);
+    std::vector<std::string> contest = {then.added}, rivals = narrow_losers(then, last);
+    rivals.insert(rivals.end(), beside.begin(), beside.end());
+    for (const std::string& rival : rivals)
+      if (!stands(rival) && asked.insert({then.added, rival}).second) contest.push_back(rival);
     if (contest.size() < 2) continue;
     auto again = ask_tie_again(workspace, last, contest, steps.back().diagnosis.floor, first_effect,
                                refused, options, events);
