@@ -150,7 +150,13 @@ std::optional<LawInDeck> law_of_a_deck(const Inventory& inventory, const BodyFac
                             law->place.line),
          .choices = {"deck", "guess"},
          .asked = false});
-    if (answer == "deck") return law;
+    if (answer == "deck") {
+      said.push_back(
+          fmt::format("the material is that of {}, line {} (`--set material=guess`: of "
+                      "the machine's table)",
+                      file.lexically_relative(inventory.folder).string(), law->place.line));
+      return law;
+    }
     break;
   }
   return {};

@@ -115,6 +115,7 @@ TEST(Proposal, StartsFromTheMaterialOfADeck) {
   EXPECT_THAT(proposal.yaml, HasSubstr("material: {law: yeoh, c1: 0.02, c2: 0.003, c3: 0.0001, "
                                        "kappa: 0.5}  # of bar.inp, line 18\n"));
   EXPECT_THAT(proposal.yaml, HasSubstr("# density: 1.2e-09  # of the deck"));
+  EXPECT_TRUE(any_says(proposal.said, "the material is that of bar.inp, line 18"));
   const Capture capture = lab.stored(proposal);
   EXPECT_EQ(capture.fit, (std::vector<std::string>{"c1", "c2", "c3"}));
   std::filesystem::remove(lab.path() / "capture.yaml");
