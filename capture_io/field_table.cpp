@@ -132,8 +132,10 @@ bool is_whole(const Row& row, FieldHolds holds) {
 /// Skips what stands before the head; faults where there is none.
 void to_head(Lines& lines, const std::string& told, std::vector<std::string_view>& cells,
              char& separator) {
+  int commented = 0;  // the last line that might have been meant as the head
   while (lines.next()) {
     const auto text = bare_cell(lines.line);
+    if (text.starts_with('#')) commented = lines.number;
     if (text.empty() || text.starts_with('#') || text.starts_with("***")) continue;
     separator = separator_of(lines.line);
     split(lines.line, separator, cells);
@@ -141,8 +143,12 @@ void to_head(Lines& lines, const std::string& told, std::vector<std::string_view
       return number_in(cell, separator == ';').has_value();
     });
     if (numbers)
-      throw InputError({told, lines.number}, "the table begins without the names of its columns",
-                       "a first line such as `X,Y,Z,U,V,W`");
+      throw InputError(
+          {told, lines.number}, "the table begins without the names of its columns",
+          commented > 0 ? fmt::format("a first line such as `X,Y,Z,U,V,W` without `#`: line {} is "
+                                      "a comment (np.savetxt: comments=\"\")",
+                                      commented)
+                        : "a first line such as `X,Y,Z,U,V,W`");
     return;
   }
   throw InputError({told}, "the file is empty", "a table of points with their displacements");

@@ -79,10 +79,18 @@ std::filesystem::path record(Run& run, const Step& step, const std::string& comm
   });
 }
 
+namespace {
+
+void displace(Bench& bench, Step& step, const std::atomic<bool>* cancel) {
+  if (!lacks_displaced(step.diagnosis)) return;
+  if (auto done = displace_again(bench.workspace, step.fitted, cancel, step.diagnosis); !done)
+    fail(std::move(done.error()));
+}
+
+}  // namespace
+
 Step with_displaced(Bench& bench, Step step, const std::atomic<bool>* cancel) {
-  if (lacks_displaced(step.diagnosis))
-    if (auto done = displace_again(bench.workspace, step.fitted, cancel, step.diagnosis); !done)
-      fail(std::move(done.error()));
+  displace(bench, step, cancel);
   return step;
 }
 
@@ -135,7 +143,7 @@ void record_diagnosis(Run& run, const Step& step) {
 void diagnose_newest(Run& run, Bench& bench, Step& step, const DiagnosisOptions& options) {
   step.diagnosis = value_or_fail(diagnose(bench.workspace, step.fitted, options));
   reach_for_mesh(step.fitted, step.diagnosis);
-  step = with_displaced(bench, std::move(step), options.cancel);
+  displace(bench, step, options.cancel);  // where it throws, the caller's step is whole
   record_diagnosis(run, step);
   log_naming(run, step.diagnosis);
 }

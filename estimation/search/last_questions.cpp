@@ -13,14 +13,14 @@ namespace {
 
 /// Effects that chance does not raise, and that would take what is worth a name beside the model,
 /// but may not be added as the mesh's own error may be as large: whoever was named before may stand
-/// for one of them.
+/// for one of them, or for the mesh.
 std::vector<std::string> stand_out_beside(const Step& last) {
   std::vector<std::string> out;
   const Diagnosis& diagnosis = last.diagnosis;
   const double least = std::max(diagnosis.limits().nameable, diagnosis.gate);
   if (on_floor(last.fitted, diagnosis.floor)) return out;
   for (const EffectScore& score : diagnosis.effects)
-    if (score.testable && !numerical(score.effect) && score.evidence >= least &&
+    if (score.testable && score.evidence >= least &&
         score.explains >= diagnosis.floor.limits->search.worth_a_name)
       out.push_back(score.effect);
   return out;

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, Tuple, Union
+import contextlib
+from typing import Any, Dict, Iterable, Iterator, List, Tuple, Union
 
 from . import _hookeye
 from ._bridge import Bridge, bad, name_of
@@ -42,6 +43,21 @@ def registered(effect: EffectLike) -> str:
         _hookeye.register_effect(bridge)
         known[bridge.name] = (bridge.own.__class__, bridge.code)
     return bridge.name
+
+
+@contextlib.contextmanager
+def registered_for(effects: Iterable[EffectLike]) -> Iterator[List[str]]:
+    """Registers classes, and yields their names. One that fails in the work that follows, and was
+    not there before, goes again: else it would fail in all that is asked later."""
+    before = dict(known)
+    names = [registered(effect) for effect in effects]
+    try:
+        yield names
+    except EffectError as error:
+        if error.effect in names and error.effect in known and error.effect not in before:
+            known.pop(error.effect)
+            _hookeye.unregister_effect(error.effect)
+        raise
 
 
 known: Dict[str, Tuple[type, str]] = {}

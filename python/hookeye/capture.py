@@ -179,6 +179,16 @@ def _write_body(key: str, given: Any, folder: pathlib.Path) -> str:
     return "surface.obj"
 
 
+def _expect_full_scale(array: Any, what: str) -> None:
+    """Numbers of a camera that were made floats: no exposure is twice full scale."""
+    values = np.asarray(array)
+    if values.dtype.kind == "f" and values.size and np.nanmax(values) > 2.0:
+        most = float(np.nanmax(values))
+        by = 255 if most <= 255 else 65535
+        raise _bad(f"{what}: floats up to {most:.4g}, where 1 is full scale",
+                   f"divide them by {by}, or give the camera's uint8 or uint16")
+
+
 def _put_photos(document: Dict[str, Any], photos: Mapping[Shot, Any], masks: Mapping[Shot, Any],
                 folder: pathlib.Path) -> None:
     if photos or masks:
@@ -201,6 +211,7 @@ def _put_photos(document: Dict[str, Any], photos: Mapping[Shot, Any], masks: Map
             what = f"{kind}s[{name!r}, {camera!r}]"
             stem = folder / "photos" / f"{name}_{camera}"
             if kind == "photo":
+                _expect_full_scale(array, what)
                 told["file"] = "photos/" + _hookeye.write_photo(stem, array, what)
                 if told["file"].endswith(".exr"):
                     told["encoding"] = "linear"

@@ -112,7 +112,8 @@ class _Contract:
                     1e-300)
         self.asked("stiffness is the force's derivative", float(np.linalg.norm(slope - here)) / scale,
                    1e-5, "stiffness" if self.bridge.kinds["energy"] else self.bridge.force_method,
-                   "the stiffness is not the derivative of the force")
+                   "the stiffness is not the derivative of the force (methods are called with complex "
+                   "arrays, too: no abs(), real, float or arrays of real numbers to write into)")
 
     def turns_with_the_body(self) -> None:
         turn = _rotation(np.array([0.3, -0.8, 0.5]), 1.1)

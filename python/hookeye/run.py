@@ -8,12 +8,12 @@ import os
 import pathlib
 import tempfile
 from html import escape
-from typing import Any, Dict, Iterable, List, Optional, Sequence, Tuple, Union
+from typing import (Any, ContextManager, Dict, Iterable, List, Optional, Sequence, Tuple, Union)
 
 import numpy as np
 
 from . import _hookeye, tables
-from ._registered import registered
+from ._registered import registered, registered_for
 from .capture import Capture
 from .effect import EffectLike
 from .errors import InputError
@@ -223,16 +223,18 @@ class Run:
     def diagnose(self, *, effects: Iterable[EffectLike] = (), on_step: Optional[OnStep] = None,
                  cancel: Any = None) -> Diagnosis:
         """Tests every effect against what the newest step leaves, and writes it down. `effects`:
-        classes derived from hookeye.Effect, which are registered before."""
-        _register_all(effects)
-        return Diagnosis(self._own.diagnose(listener(on_step), cancel))
+        classes derived from hookeye.Effect, which are registered before; one that fails is taken
+        out again."""
+        with _register_all(effects):
+            return Diagnosis(self._own.diagnose(listener(on_step), cancel))
 
     def add(self, effect: EffectLike, *, take_back: bool = False, on_step: Optional[OnStep] = None,
             cancel: Any = None) -> Step:
-        """Refits with an effect (or without it again): the next step, diagnosed."""
-        effect = registered(effect)
-        command = f"hookeye.Run.add({effect!r}{', take_back=True' if take_back else ''})"
-        self._own.add(effect, take_back, command, listener(on_step), cancel)
+        """Refits with an effect (or without it again): the next step, diagnosed. A class that fails
+        is taken out again, if it was not registered before."""
+        with registered_for([effect]) as (name,):
+            command = f"hookeye.Run.add({name!r}{', take_back=True' if take_back else ''})"
+            self._own.add(name, take_back, command, listener(on_step), cancel)
         return self._newest()
 
     def report(self, out: PathLike, *, on_step: Optional[OnStep] = None,
@@ -295,11 +297,10 @@ def _out(out: Optional[PathLike]) -> Tuple[PathLike, Any]:
     return os.path.join(kept.name, "run"), kept
 
 
-def _register_all(effects: Iterable[EffectLike]) -> None:
+def _register_all(effects: Iterable[EffectLike]) -> ContextManager[List[str]]:
     if isinstance(effects, (str, type)):
         raise TypeError("effects: a list of classes is expected")
-    for effect in effects:
-        registered(effect)
+    return registered_for(effects)
 
 
 def _expect_capture(capture: Any) -> None:
@@ -329,8 +330,9 @@ def discover(capture: Capture, out: Optional[PathLike] = None, *, without: Itera
     one. Stopped it leaves the steps that are finished. `effects`: classes derived from
     hookeye.Effect, which are registered before."""
     _expect_capture(capture)
-    _register_all(effects)
     folder, kept = _out(out)
     command = f"hookeye.discover({str(capture.file)!r})"
-    own = _hookeye.discover(capture._own, folder, list(without), command, listener(on_step), cancel)
+    with _register_all(effects):
+        own = _hookeye.discover(capture._own, folder, list(without), command, listener(on_step),
+                                cancel)
     return Run(folder, own, capture, kept)

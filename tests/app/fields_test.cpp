@@ -46,6 +46,21 @@ TEST_F(FieldCapture, CheckListsItAndAsksForItsUnit) {
   EXPECT_NEAR(field.at("correlation").get<double>(), 3.0, 1e-9);
 }
 
+/// Displacements as one program has them are another one's with the other sign.
+TEST_F(FieldCapture, CheckSeesDisplacementsOfTheOtherSign) {
+  const char* way = "move the other way than the first guess (cosine -";
+  EXPECT_THAT(hookeye("check capture.yaml").err, Not(HasSubstr(way)));
+  std::string turned = "X,Y,Z,U,V,W\n";
+  for (int y = 1; y < 10; ++y)
+    for (int z = 1; z < 10; ++z)
+      turned += fmt::format("0,{},{},-0.1,{},{}\n", y, z, 0.01 * (y - 5), -0.08 * z);
+  write("u.csv", turned);
+  const Result said = hookeye("check capture.yaml");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr(way));
+  EXPECT_THAT(said.err, HasSubstr("from the reference to the loaded body"));
+}
+
 TEST_F(FieldCapture, AFitIsComparedAndReported) {
   const Result fitted = hookeye("fit capture.yaml -o run");
   ASSERT_EQ(fitted.status, 0) << fitted.err;

@@ -111,6 +111,10 @@ TEST(FieldTable, WhatIsWrongIsToldWithItsLine) {
   EXPECT_EQ(complaint("1,2,3,4\n"),
             "u.csv:1: the table begins without the names of its columns\n"
             "  a first line such as `X,Y,Z,U,V,W`");
+  EXPECT_EQ(complaint("# X Y U V\n1 2 3 4\n"),
+            "u.csv:2: the table begins without the names of its columns\n"
+            "  a first line such as `X,Y,Z,U,V,W` without `#`: line 1 is a comment (np.savetxt: "
+            "comments=\"\")");
   EXPECT_EQ(complaint("X,Y,U,V\nnan,2,3,4\n,,,\n"),
             "u.csv: no point is left (2 rows dropped)\n"
             "  rows with numbers for the place and the displacement of a point");

@@ -129,6 +129,7 @@ def test_bytes_are_srgb_and_words_are_linear():
     (np.zeros(48), he.InputError, "the array is 48"),
     (np.full((48, 64), np.nan), he.InputError, r"pixel \(0, 0\) is not finite"),
     (np.zeros((48, 64), np.int64), TypeError, "int64"),
+    (np.full((48, 64), 174.0), he.InputError, "up to 174, where 1 is full scale\n  divide them by 255"),
     (np.zeros((20, 64), np.float32), he.InputError, "64 x 20"),
 ])
 def test_photos_that_are_none_are_refused(photo, error, says):

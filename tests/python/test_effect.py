@@ -317,6 +317,12 @@ def test_a_fault_in_a_search_leaves_the_steps_that_are_finished(capture, tmp_pat
     with pytest.raises(he.EffectError, match="too heavy"):
         run.add(Late)
     assert [step.name for step in he.Run(tmp_path / "run").steps] == ["base"]
+    # Nothing of it is left: in the program, or half-moved in the run that is open.
+    assert "late" not in list(he.effects()["name"])
+    with pytest.raises(he.EffectError, match="too heavy"):
+        run.diagnose(effects=[Late])
+    assert "late" not in list(he.effects()["name"])
+    assert run.diagnose().verdict
 
 
 def test_several_threads_work_with_one_effect(capture):

@@ -132,6 +132,16 @@ void ask_of_fields(Sight& sight, Warnings& warnings) {
         say_of_strains(sight, field, warnings);
         continue;
       }
+      if (field.cosine <= -options.sure_cosine) {
+        warnings.say(
+            field.place,
+            fmt::format("the points of {} move the other way than the first guess (cosine {:.2f})",
+                        field.file, field.cosine),
+            "displacements from the reference to the loaded body, in the field's `frame`; else the "
+            "sign of the load, or a weight that the capture leaves out");
+        sight.doubt_load(e);
+        continue;
+      }
       const std::string seen =
           fmt::format("the points of {} move by {:.3g} {}, {} the first guess ({:.2g} {})",
                       field.file, field.seen, length, more_or_less(times), field.expected, length);
