@@ -274,8 +274,7 @@ void add_place(CLI::App& app, CommandBody& chosen) {
       ->allow_extra_args(false);
   command->add_option("--pairs", options->pairs_file, "A file of them: CAMERA u v x y z a line");
   command->add_option("--tags", options->tags,
-                      "A file of ArUco or AprilTag markers on the body, a line each: ID SIZE, then "
-                      "x y z of the centre, to the right, down");
+                      "A file of ArUco or AprilTag markers on the body: docs/place.md");
   command->add_option("--dictionary", options->dictionary, "Theirs (default: 4X4_50)");
   command
       ->add_option("--sigma", options->sigma,

@@ -102,7 +102,7 @@ TEST_F(Faults, AFreeRigidMotionIsTold) {
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(
       result.err,
-      "warning: no force is known (no load, no measured force, no weight): the photos fix "
+      "warning: no force is known (no load, no measured force, no weight): the values fix "
       "only ratios of stiffness, not its size\n"
       "warning: ./capture.yaml:14:3: example pull leaves the body free: rotation about (0, 0, 1) "
       "through (5, 5, 5); translation along (1, 0, 0); translation along (0, 1, 0); tell its "
