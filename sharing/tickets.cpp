@@ -77,7 +77,7 @@ void Tickets::finish_one(const std::string& name, bool gone) const {
   }
   if (by == ticket->worker)
     folder_->rename("new/" + name, file_of({ticket->key, 0, ""}, TicketPlace::todo));
-  else if (gone)
+  else if (gone || !by.empty())  // another was first: its own worker would remove it, too
     folder_->remove("new/" + name);
 }
 

@@ -24,7 +24,7 @@ class Removed : public Cli {
           fmt::format("cd '{}'; rm -rf run; rm -f err.txt; touch err.txt; {{ '{}' discover -v "
                       "capture -o run >out.txt 2>err.txt </dev/null & }}; program=$!; "
                       "while kill -0 $program 2>/dev/null && ! grep -q '{}' err.txt; do sleep "
-                      "0.01; done; rm -rf run; wait $program",
+                      "0.01; done; while ! rm -rf run 2>/dev/null; do :; done; wait $program",
                       folder_.string(), HOOKEYE_PROGRAM, sign));
     const int status = std::system(fmt::format("sh '{}/search.sh'", folder_.string()).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(folder_ / "out.txt"),

@@ -192,6 +192,18 @@ TEST_F(Batch, KilledAtAnyMomentItLosesNothingAndRepeatsOnlyWhatWasRunning) {
     EXPECT_THAT(files(folder), SizeIs(0));
 }
 
+/// Two enrol a capture at once; the second is killed, and nobody can tell yet that it has gone.
+TEST_F(Batch, WhatSomebodyElseEnrolledFirstIsNotLeftLyingAbout) {
+  write_captures(1);
+  ASSERT_EQ(hookeye(kCheck).status, 0);
+  const auto tasks = files("tasks");
+  ASSERT_THAT(tasks, SizeIs(1));
+  write("out/new/" + *tasks.begin() + ".0@elsewhere-17-1a2b3c4d",
+        read(folder_ / "out/tasks" / *tasks.begin()));
+  EXPECT_EQ(hookeye(kCheck).status, 0);
+  EXPECT_THAT(files("new"), SizeIs(0));
+}
+
 TEST_F(Batch, AKilledCaptureIsBegunAgain) {
   write_captures(1);
   write("wait.sh", R"(for i in $(seq 200); do
