@@ -186,5 +186,14 @@ TEST(MeasuredForces, OneValueInKilonewtons) {
   EXPECT_THAT(seen, Not(HasSubstr("one another's places")));
 }
 
+/// A force that is expected within its noise is no unit: a zero may have drifted by more.
+TEST(MeasuredForces, AZeroThatDriftedIsNoUnit) {
+  InspectedCapture capture(kPulledAskew);
+  change_forces(capture, {"along"}, [](const Eigen::Vector3d& f) { return 60.0 * f; });
+  EXPECT_THAT(said(capture.inspect()), HasSubstr("in another unit"));
+  capture.change("sigma: [0-9.e-]+", "sigma: 1000");
+  EXPECT_THAT(said(capture.inspect()), Not(HasSubstr("in another unit")));
+}
+
 }  // namespace
 }  // namespace hookeye::test

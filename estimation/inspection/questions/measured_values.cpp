@@ -225,7 +225,11 @@ Readings ask_for_single_units(const Sight& sight, const Readings& series, Warnin
     const Reading& one = series[i];
     const double expected = scaled_by_stiffness(sight, one) ? usual : 1.0;
     const double off = times[i] > 0.0 && expected > 0.0 ? times[i] / expected : 1.0;
-    if (std::abs(std::log(off)) <= std::log(options.most_times_by_force)) {
+    // Beside next to nothing, as the axial force of a twist, a zero that drifted is many times it.
+    const VectorXd due = expected * one.in_equilibrium;
+    const bool is_due = one.measured->whitened(due).norm() >= options.sure_sigmas &&
+                        due.norm() > beyond_weight(sight, one);
+    if (!is_due || std::abs(std::log(off)) <= std::log(options.most_times_by_force)) {
       rest.push_back(one);
       continue;
     }
