@@ -170,15 +170,19 @@ class Search {
   WentOn widened_form(bool mesh_was_asked) {
     const Step& step = newest();
     const auto& all = step.fitted.form.ingredients;
-    for (const EffectScore& score : step.diagnosis.effects)
-      if (!mesh_was_asked && may_be_all(score.effect, step.diagnosis) &&
-          nameable(score, step.diagnosis))
-        return false;
+    // Near the floor, too, a second name is one too many where the first one's form was too narrow.
+    bool another = false;
+    for (const EffectScore& score : step.diagnosis.effects) {
+      if (!nameable(score, step.diagnosis)) continue;
+      if (!mesh_was_asked && may_be_all(score.effect, step.diagnosis)) return false;
+      another = another || !numerical(score.effect);
+    }
     for (size_t at = all.size(); at-- > base_;) {
       const std::string name = all[at]->name();
-      if (numerical(name) || (on_floor(step.fitted, out_.floor) && !wider_.came_to(*all[at])))
+      if (numerical(name) ||
+          (on_floor(step.fitted, out_.floor) && !another && !wider_.came_to(*all[at])))
         continue;
-      auto result = wider_.ask(step.fitted, at, out_.floor);
+      auto result = wider_.ask(step.fitted, at, out_.floor, another);
       if (!result) return failure_of(result);
       auto& wide = *result;
       if (!wide) continue;

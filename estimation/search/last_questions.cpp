@@ -1,6 +1,7 @@
 #include "estimation/search/last_questions.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "estimation/fit/at_floor.h"
 #include "estimation/search/measured_explained.h"
@@ -70,11 +71,17 @@ TieAsked contests_again(Workspace& workspace, const std::vector<Step>& steps, si
   const auto stands = [&](const std::string& effect) {
     return std::find(standing.begin(), standing.end(), effect) != standing.end();
   };
-  for (size_t k = 0; k + 1 < steps.size(); ++k) {
+  for (size_t k = 0; k < steps.size(); ++k) {
     const Step& then = steps[k];
     if (numerical(then.added) || !stands(then.added)) continue;
     std::vector<std::string> contest = {then.added}, rivals = narrow_losers(then, last);
-    rivals.insert(rivals.end(), beside.begin(), beside.end());
+    // Beside the same others the newest name has been compared with its rivals.
+    const bool newest = k + 1 == steps.size();
+    if (newest) rivals.clear();
+    std::copy_if(beside.begin(), beside.end(), std::back_inserter(rivals), [&](const auto& one) {
+      return !newest || std::none_of(then.rivals.begin(), then.rivals.end(),
+                                     [&](const Rival& rival) { return rival.effect == one; });
+    });
     for (const std::string& rival : rivals)
       if (!stands(rival) && asked.insert({then.added, rival}).second) contest.push_back(rival);
     if (contest.size() < 2) continue;

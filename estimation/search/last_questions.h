@@ -33,8 +33,9 @@ using AskedAgain = std::set<std::pair<std::string, std::string>>;
 /// Contests that were won by less than what was missing then are held again: a coarse mesh may
 /// have let swelling pass for a suction. The losers take the winner's place in the model of the
 /// last of `steps`, one after the other; and so do those that stand out beside that model, but may
-/// not be added, as a mesh may err by as much: in another's place nobody says that they are small.
-/// The first who is better there; or, where nobody is, the first tie.
+/// not be added, as a mesh may err by as much: in another's place nobody says that they are small
+/// (in the place of the newest name, those that were not refitted in its contest). The first who is
+/// better there; or, where nobody is, the first tie.
 TieAsked contests_again(Workspace& workspace, const std::vector<Step>& steps, size_t first_effect,
                         AskedAgain& asked, const RefusedSwaps& refused,
                         const DiscoverOptions& options, const DiscoverEvents& events);

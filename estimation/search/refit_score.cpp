@@ -74,6 +74,18 @@ EffectiveMisfit measured_misfit(const Fitted& fitted, bool held_out_alone) {
   return out;
 }
 
+/// |r|^2 of all pixels, or of all numbers of the fields where no photo is.
+double seen_r2(const Fitted& fitted) {
+  const bool photos = fitted.evaluation.seen() == Evaluation::Seen::photos;
+  double out = 0.0;
+  for (const auto& example : fitted.evaluation.examples) {
+    for (const auto& photo : example.photos) out += photo.r2;
+    for (const auto& measured : example.measured)
+      if (!photos && measured.is_field()) out += measured.r.squaredNorm();
+  }
+  return out;
+}
+
 int parameters_of_sensors(const ModelForm& form) {
   int count = 0;
   for (const auto& ingredient : form.ingredients)
@@ -109,9 +121,11 @@ bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& flo
   const EffectiveMisfit before = measured_misfit(without, true),
                         after = measured_misfit(with, true);
   double loss = 0.5 * (after.r2 - before.r2) / std::min(before.noise(1.0), after.noise(1.0));
-  if (r2(with) > r2(without) + least)
+  if (r2(with) > r2(without) + least) {
+    if (seen_r2(with) > seen_r2(without)) return false;
     loss += seen_misfit(without, with, true).log_likelihood(floor.cell_variance) -
             seen_misfit(with, with, true).log_likelihood(floor.cell_variance);
+  }
   return loss < floor.limits->diagnosis.tie;
 }
 

@@ -33,8 +33,11 @@ double refit_score(const Fitted& fitted, const Yardstick& yardstick);
 /// (DiagnosisLimits::tie) is no word. Nor is a rise of the photos' chi^2 by no more than `least`,
 /// which meshes and renderers err by (least_fall): once all else is white, likelihood tells
 /// hundredths of a pixel, and an effect that took away nine tenths of the fitted misfit was refused
-/// for them. An effect that no held-out example can show, like a contact in one load case, is
-/// judged by the fitted ones.
+/// for them. Beyond that they speak against what makes all photos together, fitted and held out,
+/// miss by more: the likelihood of a few cells may not see it (one photo near the floor is a dozen
+/// of independent ones), and what adds a parameter and no misfit less says nothing at all. An
+/// effect that no held-out example can show, like a contact in one load case, is judged by the
+/// fitted ones.
 bool held_out_allows(const Fitted& with, const Fitted& without, const Floor& floor,
                      double least = 0.0);
 

@@ -265,24 +265,28 @@ Result<Fitted> best_form(Workspace& workspace, const Fitted& narrow, size_t at, 
 
 Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
                        const FitOptions& options, const DiscoverEvents& events,
-                       std::optional<Fitted>* left_much) {
+                       std::optional<Fitted>* left_much, bool another_stands_out) {
   const std::string first = narrow.form.ingredients[at]->variant();
   std::set<std::string> tried = {first};
-  for (bool better = true; better && !on_floor(narrow, floor);) {
-    better = false;
+  bool go_on = another_stands_out || !on_floor(narrow, floor);
+  while (go_on) {
+    bool better = false;
     auto best = best_form(workspace, narrow, at, floor, options, events, tried, better, left_much);
     if (!best) return failure_of(best);
     narrow = *std::move(best);
+    go_on = better && !on_floor(narrow, floor);
   }
   if (narrow.form.ingredients[at]->variant() == first && !on_floor(narrow, floor)) return narrow;
   return plainest(workspace, std::move(narrow), at, floor, options, events);
 }
 
-Result<std::optional<Fitted>> WiderForms::ask(const Fitted& fitted, size_t at, const Floor& floor) {
+Result<std::optional<Fitted>> WiderForms::ask(const Fitted& fitted, size_t at, const Floor& floor,
+                                              bool another_stands_out) {
   const FormKey narrow = key_of(*fitted.form.ingredients[at]);
   if (!asked_.insert({ModelKey(fitted.form), narrow}).second) return std::nullopt;
   std::optional<Fitted> left_much;
-  auto result = widened(workspace_, fitted, at, floor, options_, events_, &left_much);
+  auto result =
+      widened(workspace_, fitted, at, floor, options_, events_, &left_much, another_stands_out);
   if (!result) return failure_of(result);
   if (left_much) left_much_.push_back({ModelKey(fitted.form), at, std::move(*left_much)});
   Fitted& wide = *result;

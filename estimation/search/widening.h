@@ -19,10 +19,11 @@ namespace hookeye {
 /// pay for its parameters by more than a tie, and where the held-out ones do not speak against it:
 /// else it is another effect that is missing. Of what a wide form says a plainer one
 /// (FormEdge::plainer) stays where it scores as well. `left_much`: of those that pay and leave
-/// too much for that, the one that says most, without its pictures.
+/// too much for that, the one that says most, without its pictures. Near the floor nothing wider is
+/// asked for, unless another effect stands out beside it (`another_stands_out`).
 Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
                        const FitOptions& options, const DiscoverEvents& events = {},
-                       std::optional<Fitted>* left_much = nullptr);
+                       std::optional<Fitted>* left_much = nullptr, bool another_stands_out = false);
 
 /// An effect that only the larger form of another makes room for: without it, and with that other
 /// in its smaller form (FormEdge::smaller), the photos stay at the floor and the score falls by
@@ -39,7 +40,8 @@ class WiderForms {
   WiderForms(Workspace& workspace, const FitOptions& options, const DiscoverEvents& events)
       : workspace_(workspace), options_(options), events_(events) {}
   /// Empty: none is better, or it was asked before.
-  Result<std::optional<Fitted>> ask(const Fitted& fitted, size_t at, const Floor& floor);
+  Result<std::optional<Fitted>> ask(const Fitted& fitted, size_t at, const Floor& floor,
+                                    bool another_stands_out = false);
   /// A form that was asked of `now` and left much over the floor, where it says more than `winner`,
   /// which is `now` and another effect: what a named effect accounts for needs no second name.
   Result<std::optional<Fitted>> instead_of(const Refit& winner, const Fitted& now,

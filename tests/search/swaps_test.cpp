@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "estimation/fit/at_floor.h"
 #include "estimation/search/last_questions.h"
 #include "tests/estimation/small_capture.h"
 
@@ -89,6 +90,38 @@ TEST(Swaps, WhatIsNotSupportedLeaves) {
   Fitted wide = step.fitted;
   wide.low.setConstant(-1e9), wide.high.setConstant(1e9);
   EXPECT_EQ(drop_unsupported(workspace, wide, floor, first, {})->effect, "swelling");
+}
+
+/// Who stands out beside the model may be kept from being added by what the mesh may err by. In the
+/// place of the name that stands for it nobody says that it is small.
+TEST(Swaps, WhoStandsOutBesideANameIsAskedForInItsPlace) {
+  const test::SmallScene small(
+      {.hidden = "hidden:\n  - {effect: gravity, values: {gravity.x: 4000, gravity.z: -9000}}\n"});
+  Workspace workspace(small.scene);
+  const size_t first = base_form(small.scene).ingredients.size();
+  Step base = with_effects(workspace, {}), wrong = with_effects(workspace, {"pressure"});
+  wrong.added = "pressure";
+  wrong.diagnosis = diagnose(workspace, wrong.fitted).value();
+  const Floor floor = wrong.diagnosis.floor;
+  AskedAgain asked;
+  const auto again = [&](const Step& last) {
+    return contests_again(workspace, {base, last}, first, asked, {}, {}, {});
+  };
+  const TieAsked found = again(wrong);
+  ASSERT_TRUE(found.better.has_value());
+  EXPECT_EQ(found.better->out, "pressure");
+  EXPECT_THAT(effects_in(found.better->in.fitted.form), testing::ElementsAre("gravity"));
+  EXPECT_TRUE(at_floor(found.better->in.fitted, floor));
+  // each once; who was refitted in the contest of the newest name has lost it; and at the floor
+  // nobody is asked
+  EXPECT_FALSE(again(wrong).better.has_value());
+  asked.clear();
+  Step lost = wrong;
+  for (const EffectScore& score : lost.diagnosis.effects) lost.rivals.push_back({score.effect});
+  EXPECT_FALSE(again(lost).better.has_value());
+  wrong.diagnosis.floor.chi = 100.0;
+  EXPECT_FALSE(again(wrong).better.has_value());
+  EXPECT_TRUE(asked.empty());
 }
 
 }  // namespace
