@@ -12,6 +12,7 @@
 #include "estimation/fit/evidence.h"
 #include "estimation/search/mesh_first.h"
 #include "estimation/search/refit_score.h"
+#include "estimation/search/without.h"
 
 namespace hookeye {
 
@@ -307,6 +308,12 @@ Refusal why_refused(const Step& step, double before, const Refit& with) {
     return std::pow(step.fitted.evaluation.chi(held_out), 2) -
            std::pow(with.fitted.evaluation.chi(held_out), 2);
   };
+  if (at_floor(step.fitted, floor) &&
+      holds_null(with.fitted, with.fitted.form.ingredients.size() - 1))
+    return {Why::may_be_nothing,
+            with.effect,
+            {std::max(step.fitted.evaluation.chi(false), step.fitted.evaluation.chi(true)),
+             floor.limits->floor.at * floor.chi, "floor.at"}};
   const double pays = step.diagnosis.limits().nameable;
   if (with.score < before + pays)
     return {Why::does_not_pay, with.effect, {with.score - before, pays, "diagnosis.nameable"}};
@@ -337,6 +344,10 @@ std::string Refusal::words() const {
   switch (why) {
     case Why::none:
       return "";
+    case Why::may_be_nothing:
+      return effect +
+             " was refitted, but its intervals hold its null, and without it the floor is "
+             "reached";
     case Why::does_not_pay:
       return effect + " was refitted, but what it takes away does not pay for its parameters";
     case Why::held_out_against:

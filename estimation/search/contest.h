@@ -94,6 +94,7 @@ Result<Contest> refit_leaders(Workspace& workspace, const Step& step,
 struct Refusal {
   enum class Why {
     none,              ///< it stands
+    may_be_nothing,    ///< its intervals hold its null, and without it the floor is reached
     does_not_pay,      ///< for its parameters
     held_out_against,  ///< held-out examples speak against it
     too_little,        ///< less than renderers and meshes err by

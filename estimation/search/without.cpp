@@ -91,22 +91,26 @@ std::optional<Refit> backward(Workspace& workspace, const Fitted& current, const
   return {};
 }
 
+bool holds_null(const Fitted& fitted, size_t i) {
+  const Ingredient& ingredient = *fitted.form.ingredients[i];
+  if (remeshed_by(ingredient)) return false;
+  const auto own = ingredient.parameters();
+  const Eigen::Index first = fitted.form.layout()[i].first;
+  for (size_t k = 0; k < own.size(); ++k) {
+    const auto at = first + static_cast<Eigen::Index>(k);
+    if (fitted.low[at] > own[k].value || own[k].value > fitted.high[at]) return false;
+  }
+  return true;
+}
+
 std::optional<Refit> drop_unsupported(Workspace& workspace, const Fitted& fitted,
                                       const Floor& floor, size_t first_effect,
                                       const DiscoverOptions& options) {
   const auto& all = fitted.form.ingredients;
   if (all.size() < first_effect + 2 || !at_floor(fitted, floor)) return {};
   std::vector<size_t> each;
-  for (size_t i = first_effect; i < all.size(); ++i) {
-    const auto own = all[i]->parameters();
-    const Eigen::Index offset = fitted.form.layout()[i].first;
-    bool null = !remeshed_by(*all[i]);
-    for (size_t k = 0; k < own.size(); ++k) {
-      const auto at = offset + static_cast<Eigen::Index>(k);
-      null = null && fitted.low[at] <= own[k].value && own[k].value <= fitted.high[at];
-    }
-    if (null) each.push_back(i);
-  }
+  for (size_t i = first_effect; i < all.size(); ++i)
+    if (holds_null(fitted, i)) each.push_back(i);
   const Workspace::Place here = workspace.place();
   fit_without_ahead(workspace, fitted, each, options.fit);
   for (const size_t i : each) {

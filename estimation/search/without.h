@@ -13,4 +13,8 @@ namespace hookeye {
 std::optional<Fitted> fit_without(Workspace& workspace, const Fitted& fitted, size_t i,
                                   const FitOptions& options);
 
+/// The 95 % intervals of all values of its ingredient `i` hold what they are where it is not there.
+/// (Never of a mesh.)
+bool holds_null(const Fitted& fitted, size_t i);
+
 }  // namespace hookeye

@@ -78,6 +78,14 @@ TEST(Swaps, WhatIsNotSupportedLeaves) {
   ASSERT_TRUE(lighter.has_value());
   EXPECT_EQ(lighter->effect, "swelling");
   EXPECT_THAT(effects_in(lighter->fitted.form), testing::ElementsAre("gravity"));
+  // nor would it have been named
+  Step weight;
+  weight.fitted = lighter->fitted;
+  weight.diagnosis = step.diagnosis;
+  Refit named{"swelling", step.fitted, 0.0};
+  EXPECT_EQ(refused_by(weight, named).why, Refusal::Why::may_be_nothing);
+  named.fitted.low = named.fitted.high = named.fitted.p;
+  EXPECT_NE(refused_by(weight, named).why, Refusal::Why::may_be_nothing);
   // nothing leaves that is alone, nor what the photos need
   EXPECT_FALSE(drop_unsupported(workspace, lighter->fitted, floor, first, {}).has_value());
   // what cannot be asked is no tie
