@@ -17,6 +17,8 @@ struct StoredImage {
   StoredAs stored = StoredAs::bytes;
   int compression = 6;  ///< of PNG
   std::string values;   ///< row-major, channels interleaved, of the kind `stored`
+  /// Of a photo: EXIF's date and the digits of its fraction; "": none. Codes are sRGB then.
+  std::string taken = {}, fraction = {};
 };
 
 /// A picture as its file holds it: codes with what each stands for, or floats.
@@ -61,7 +63,7 @@ inline ReadPicture unpack_read(Unpacker& from) {
 
 inline void pack(Packer& to, const StoredImage& image) {
   to.put(image.width).put(image.height).put(image.channels).put(image.stored);
-  to.put(image.compression).put(image.values);
+  to.put(image.compression).put(image.values).put(image.taken).put(image.fraction);
 }
 
 inline StoredImage unpack_stored(Unpacker& from) {
@@ -72,6 +74,8 @@ inline StoredImage unpack_stored(Unpacker& from) {
   from.get(image.stored);
   from.get(image.compression);
   from.get(image.values);
+  from.get(image.taken);
+  from.get(image.fraction);
   const size_t size = image.stored == StoredAs::floats  ? 4
                       : image.stored == StoredAs::words ? 2
                                                         : 1;

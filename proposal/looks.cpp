@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "capture_io/coded_photo.h"
 #include "capture_io/image.h"
 #include "proposal/text_table.h"
 #include "proposal/words.h"
@@ -12,15 +13,20 @@ namespace hookeye {
 namespace {
 
 /// 8 bits do not say whether they are brightness or its root: files of a photo camera hold sRGB, a
-/// camera of a laboratory hands its pixels over as they are.
-std::string encoding_of(const ImageHeader& header, Questions& questions) {
-  if (header.floating || header.bits > 8) return "";
+/// camera of a laboratory hands its pixels over as they are. EXIF may say it.
+std::string encoding_of(const std::filesystem::path& photo, Questions& questions) {
+  const ImageHeader header = read_image_header(photo);
+  const bool told = !header.floating && !header.lossy && is_told_srgb(photo);
+  if (header.floating || (header.bits > 8 && !told)) return "";
   return questions.ask(
       {.name = "encoding",
-       .text = "how the 8 bits of a pixel hold brightness: linear (machine vision camera) or srgb "
-               "(photo camera)",
-       .standard = header.lossy ? "srgb" : "linear",
-       .why = header.lossy ? "JPEG" : "no JPEG; cameras of laboratories store brightness itself",
+       .text = fmt::format("how the {} bits of a pixel hold brightness: linear (machine vision "
+                           "camera) or srgb (photo camera)",
+                           header.bits),
+       .standard = header.lossy || told ? "srgb" : "linear",
+       .why = header.lossy ? "JPEG"
+              : told       ? "the photo's EXIF data say so"
+                           : "no JPEG; cameras of laboratories store brightness itself",
        .choices = {"linear", "srgb"}});
 }
 
@@ -64,8 +70,8 @@ Looks propose_looks(const Inventory& inventory, const BodyFacts& body, Questions
     out.photos = "photos: {kind: silhouette}\n";
     return out;
   }
-  const ImageHeader header = read_image_header(inventory.series.front().photos.begin()->second);
-  const std::string encoding = encoding_of(header, questions);
+  const std::string encoding =
+      encoding_of(inventory.series.front().photos.begin()->second, questions);
   if (!encoding.empty()) out.photos = fmt::format("photos: {{encoding: {}}}\n", encoding);
   if (texture == "rest") {
     out.texture = "  texture: {from: rest}\n";

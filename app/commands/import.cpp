@@ -30,6 +30,8 @@ struct ImportCommand {
   std::vector<std::string> words;  ///< [KIND] SOURCE...
   std::string folder, size, lens;
   ImportOptions options;
+  FrameChoice frames;
+  bool frames_told = false;  ///< any of the options that choose frames
 };
 
 /// "1280x1024".
@@ -114,6 +116,31 @@ std::string cameras_table(const Imported& imported, const std::vector<Reprojecti
   return table(rows);
 }
 
+/// Videos hold photos. False: the words name none.
+bool import_videos_if_any(const ImportCommand& options, Session& session) {
+  Importer::Sources sources(options.words.begin(), options.words.end());
+  std::error_code error;
+  const bool named = options.words.front() == "video" && !fs::exists(sources.front(), error);
+  if (named) sources.erase(sources.begin());
+  if (!named && !is_video(sources.front())) {
+    if (options.frames_told)
+      throw InputError({sources.front().string()}, "--frames, --every and --at are of videos",
+                       "leave them out");
+    return false;
+  }
+  if (sources.empty())
+    throw InputError({"video"}, "there is no source behind the kind",
+                     "hookeye import video VIDEO... -o FOLDER");
+  if (!options.size.empty() || !options.lens.empty() || options.options.scale != 1)
+    throw InputError({sources.front().string()}, "--size, --lens and --scale are of cameras",
+                     "leave them out");
+  for (const fs::path& source : sources)
+    if (!fs::is_regular_file(source, error))
+      throw InputError({source.string()}, "there is no such file", "name a video of each camera");
+  run_import_videos(sources, options.frames, options.folder, session);
+  return true;
+}
+
 /// Decks hold a body and load cases in place of cameras, scans a body. False: the words name none.
 bool import_body_if_any(const ImportCommand& options, Session& session) {
   Importer::Sources sources(options.words.begin(), options.words.end());
@@ -144,7 +171,7 @@ bool import_body_if_any(const ImportCommand& options, Session& session) {
 }
 
 void run_import(const ImportCommand& options, Session& session) {
-  if (import_body_if_any(options, session)) return;
+  if (import_videos_if_any(options, session) || import_body_if_any(options, session)) return;
   const auto [importer, sources] = chosen_importer(options);
   const Scope scope("source " + sources.front().string());
   const fs::path file = fs::path(options.folder) / "cameras.yaml";
@@ -178,7 +205,7 @@ void run_import(const ImportCommand& options, Session& session) {
 
 void add_import(CLI::App& app, CommandBody& chosen) {
   CLI::App* command =
-      app.add_subcommand("import", "Cameras, a deck or a scan of another program, for a capture");
+      app.add_subcommand("import", "Cameras, a deck, a scan or videos, for a capture");
   const auto options = std::make_shared<ImportCommand>();
   std::string kinds = "\nKinds of sources:\n";
   for (const Importer* importer : importers())
@@ -186,6 +213,8 @@ void add_import(CLI::App& app, CommandBody& chosen) {
   kinds +=
       fmt::format("  {:<12} {}\n", "deck", "body, supports and loads of Abaqus, CalculiX, FEBio");
   kinds += fmt::format("  {:<12} {}\n", "scan", "textured surface, obj with mtl or ply");
+  kinds +=
+      fmt::format("  {:<12} {}\n", "video", "frames of a video a camera, as photos with times");
   command->footer(kinds);
   command
       ->add_option("SOURCE", options->words,
@@ -202,7 +231,24 @@ void add_import(CLI::App& app, CommandBody& chosen) {
       ->add_option("--lens", options->lens,
                    "opencv: read lenses of unpublished formula as OpenCV's k1 k2 k3 p1 p2")
       ->check(CLI::IsMember({"opencv"}));
-  command->callback([&chosen, options] {
+  auto* count = command
+                    ->add_option("--frames", options->frames.count,
+                                 "Of a video: so many photos, evenly over its time (100)")
+                    ->check(CLI::Range(1, 100000));
+  auto* every =
+      command
+          ->add_option("--every", options->frames.every, "Of a video: a photo each so many seconds")
+          ->check(above_zero())
+          ->excludes(count);
+  auto* at =
+      command
+          ->add_option("--at", options->frames.at,
+                       "Of a video: photos at these seconds from its first frame, as 0,2.5,5")
+          ->delimiter(',')
+          ->excludes(count)
+          ->excludes(every);
+  command->callback([&chosen, options, count, every, at] {
+    options->frames_told = count->count() + every->count() + at->count() > 0;
     options->options.lens_as_opencv = options->lens == "opencv";
     if (!options->size.empty())
       std::sscanf(options->size.c_str(), "%dx%d", &options->options.width,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/commands/commands.h"
+#include "importers/video.h"
 
 namespace hookeye {
 
@@ -23,5 +24,9 @@ void run_import_decks(const std::vector<std::filesystem::path>& decks,
 /// A textured scan as the body of a capture; `scale` as of cameras.
 void run_import_scan(const std::filesystem::path& scan, double scale,
                      const std::filesystem::path& folder, Session& session);
+
+/// Frames of videos, a camera each, as photos with times.
+void run_import_videos(const std::vector<std::filesystem::path>& videos, const FrameChoice& choice,
+                       const std::filesystem::path& folder, Session& session);
 
 }  // namespace hookeye

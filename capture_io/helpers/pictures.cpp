@@ -230,6 +230,14 @@ std::string time_of(const fs::path& file) {
   return "";
 }
 
+constexpr int kExifSrgb = 1;
+
+/// "srgb" where EXIF says so.
+std::string colours_of(const fs::path& file) {
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(file);
+  return input->spec().get_int_attribute("Exif:ColorSpace") == kExifSrgb ? "srgb" : "";
+}
+
 OIIO::TypeDesc type_of(StoredAs stored) {
   if (stored == StoredAs::floats) return OIIO::TypeDesc::FLOAT;
   return stored == StoredAs::bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16;
@@ -243,6 +251,12 @@ bool write(OIIO::ImageOutput& output, const std::string& file, const StoredImage
   if (image.stored == StoredAs::floats) spec.attribute("compression", "zip");
   if (std::string(output.format_name()) == "png")
     spec.attribute("png:compressionLevel", image.compression);
+  if (!image.taken.empty()) {
+    spec.attribute("compression", "zip");
+    spec.attribute("Exif:DateTimeOriginal", image.taken);
+    spec.attribute("Exif:SubsecTimeOriginal", image.fraction);
+    spec.attribute("Exif:ColorSpace", kExifSrgb);
+  }
   if (memory != nullptr && !output.set_ioproxy(memory)) return false;
   return output.open(file, spec) && output.write_image(type, image.values.data()) && output.close();
 }
@@ -265,6 +279,7 @@ std::string answer(Unpacker& request) {
     return stored(file, unpack_stored(request), task == "encode");
   Packer out;
   if (task == "header") return out.put(read_header(file)).take();
+  if (task == "srgb") return out.put(colours_of(file)).take();
   if (task == "time") return out.put(time_of(file)).take();
   pack(out, read_stored(file));
   return out.take();

@@ -57,6 +57,43 @@ TEST_F(Cli, ImportWritesNothingWhereAnythingIsWrong) {
   EXPECT_EQ(read(folder_ / "cameras.yaml"), "cameras: {}\n");
 }
 
+TEST_F(Cli, VideosAreImportedAsPhotosOrNotAtAll) {
+  write("a.caldat", kCalibration);
+  const auto refused = [&](const std::string& arguments) {
+    const Result got = hookeye("import " + arguments);
+    EXPECT_EQ(got.status, 2) << arguments << got.out << got.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    return got.err;
+  };
+  EXPECT_THAT(refused("a.caldat -o out --size 640x480 --every 2"), HasSubstr("are of videos"));
+  EXPECT_THAT(refused("no.mp4 -o out"), HasSubstr("no.mp4: there is no such file"));
+  EXPECT_THAT(refused("video -o out"), HasSubstr("there is no source behind the kind"));
+  write("junk.mp4", "no video at all");
+  EXPECT_THAT(refused("junk.mp4 -o out --size 640x480"), HasSubstr("are of cameras"));
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) {
+    EXPECT_THAT(refused("junk.mp4 -o out"), HasSubstr("apt-get install ffmpeg"));
+    GTEST_SKIP() << "NOT RUN: ffmpeg is not installed (apt-get install ffmpeg)";
+  }
+  EXPECT_THAT(refused("junk.mp4 -o out"), HasSubstr("ffprobe cannot read it"));
+  for (const char* camera : {"left", "right"})
+    ASSERT_EQ(
+        std::system(("ffmpeg -v error -nostdin -f lavfi -i testsrc2=size=64x48:rate=10:duration=2"
+                     " -c:v ffv1 '" +
+                     (folder_ / (std::string(camera) + ".mkv")).string() + "'")
+                        .c_str()),
+        0);
+  const Result got = hookeye("import left.mkv right.mkv -o lab --frames 5");
+  ASSERT_EQ(got.status, 0) << got.err;
+  EXPECT_THAT(got.out, HasSubstr("20 frames in 1.9 s"));
+  EXPECT_THAT(got.out, HasSubstr("left_0001.tif to left_0005.tif"));
+  EXPECT_TRUE(too_long(got.out).empty());
+  EXPECT_TRUE(fs::exists(folder_ / "lab/photos/right_0005.tif"));
+  EXPECT_FALSE(fs::exists(folder_ / "lab/photos/.hookeye-frames"));
+  const Result again = hookeye("import left.mkv -o lab");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("photos of a camera of this name are there"));
+}
+
 const std::string kDeck =
     "*NODE\n1, 0, 0, 0\n2, 10, 0, 0\n3, 0, 10, 0\n4, 0, 0, 10\n"
     "*ELEMENT, TYPE=C3D4, ELSET=EALL\n1, 1, 2, 3, 4\n*NSET, NSET=base\n1, 2, 3\n"
