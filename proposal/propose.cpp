@@ -299,10 +299,8 @@ void append(std::vector<std::string>& to, const std::vector<std::string>& more) 
 [[noreturn]] void refuse_without_photos(const Inventory& inventory) {
   std::string right = "photos as CAMERA_0001.tif, or a folder for each camera";
   if (!inventory.videos.empty())
-    right = fmt::format(
-        "photos out of the video, as by `ffmpeg -i {} cam_%04d.png`; then `--set "
-        "photo_times=START,SECONDS` tells when they were taken",
-        relative_name(inventory.videos.front(), inventory.folder));
+    right = fmt::format("photos out of the video, by `hookeye import {} -o {}`",
+                        inventory.videos.front().string(), inventory.folder.string());
   throw InputError({inventory.folder.string()}, "there are no photos with numbers in it", right);
 }
 

@@ -91,10 +91,12 @@ void run_import_videos(const std::vector<fs::path>& files, const FrameChoice& ch
                                     "on, within {:.2g} s: the videos have to begin together",
                                     farthest_apart(videos, rows)),
                         2));
-  session.say(
-      "written to {}; their EXIF data have the time from the first frame on. Beside a machine's "
-      "table, `hookeye new {}` pairs them with its rows\n",
-      photos_folder.string(), folder.string());
+  session.say("{}",
+              wrapped(fmt::format("written to {}; their EXIF data have the time from the first "
+                                  "frame on. Beside a machine's table, `hookeye new {}` pairs "
+                                  "them with its rows",
+                                  photos_folder.string(), folder.string()),
+                      0));
 }
 
 }  // namespace hookeye

@@ -146,6 +146,17 @@ bool told_paying(const Decided& decided, const std::string& words, const Fitted&
            score_above(wide, narrow, floor))});
 }
 
+/// Of forms that pay, whatever their order, the one stays that says most.
+bool told_ahead(const Decided& decided, const std::string& words, const Fitted& wide,
+                const Fitted& best, const Floor& floor) {
+  const double ahead = score_above(wide, best, floor);
+  return tell(decided, {Asked::widened,
+                        words,
+                        ahead > 0.0,
+                        {ahead, 0.0, ""},
+                        "enriched: penalised log likelihood over that of the best form so far"});
+}
+
 /// The wide form's plainer one, where it has one that scores as well: all constants of a material
 /// that has axes of symmetry.
 Result<Fitted> plainest(Workspace& workspace, Fitted wide, size_t at, const Floor& floor,
@@ -247,7 +258,8 @@ Result<Fitted> best_form(Workspace& workspace, const Fitted& narrow, size_t at, 
       continue;
     }
     Fitted& wide = *result;
-    if (!told_paying(options.decided, words, wide, best, floor, further.same_claim)) {
+    const bool paid = told_paying(options.decided, words, wide, narrow, floor, further.same_claim);
+    if (!paid || (better && !told_ahead(options.decided, words, wide, best, floor))) {
       if (left_much && worth_its_parameters(wide, best, floor) &&
           (!*left_much || score_above(wide, **left_much, floor) > 0.0)) {
         drop_pictures(wide);

@@ -17,10 +17,11 @@ namespace hookeye {
 /// it, its smaller form too) and of theirs, or as it is. A form stays where it takes most of what
 /// is over the floor (or says the same in another shape), where fitted and held-out photos together
 /// pay for its parameters by more than a tie, and where the held-out ones do not speak against it:
-/// else it is another effect that is missing. Of what a wide form says a plainer one
-/// (FormEdge::plainer) stays where it scores as well. `left_much`: of those that pay and leave
-/// too much for that, the one that says most, without its pictures. Near the floor nothing wider is
-/// asked for, unless another effect stands out beside it (`another_stands_out`).
+/// else it is another effect that is missing. Of several such forms the one stays that says most.
+/// Of what a wide form says a plainer one (FormEdge::plainer) stays where it scores as well.
+/// `left_much`: of those that pay and leave too much for that, the one that says most, without its
+/// pictures. Near the floor nothing wider is asked for, unless another effect stands out beside it
+/// (`another_stands_out`).
 Result<Fitted> widened(Workspace& workspace, Fitted narrow, size_t at, const Floor& floor,
                        const FitOptions& options, const DiscoverEvents& events = {},
                        std::optional<Fitted>* left_much = nullptr, bool another_stands_out = false);

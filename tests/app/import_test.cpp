@@ -86,7 +86,7 @@ TEST_F(Cli, VideosAreImportedAsPhotosOrNotAtAll) {
   ASSERT_EQ(got.status, 0) << got.err;
   EXPECT_THAT(got.out, HasSubstr("20 frames in 1.9 s"));
   EXPECT_THAT(got.out, HasSubstr("left_0001.tif to left_0005.tif"));
-  EXPECT_TRUE(too_long(got.out).empty());
+  EXPECT_THAT(too_long(got.out), testing::IsEmpty());
   EXPECT_TRUE(fs::exists(folder_ / "lab/photos/right_0005.tif"));
   EXPECT_FALSE(fs::exists(folder_ / "lab/photos/.hookeye-frames"));
   const Result again = hookeye("import left.mkv -o lab");
