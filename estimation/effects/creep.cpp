@@ -58,7 +58,9 @@ class Creep final : public Effect {
   std::string manual() const override {
     return "The body gives way more and more over the order of the examples. Easily taken for "
            "softening from one example on or for stiffening, where larger loads came later; an "
-           "early load repeated at the end tells. The refit goes on to creep that levels off after "
+           "early load repeated at the end, and once between, tells. Time is the order of the "
+           "examples, not a clock: where they are far from evenly spaced in time its size says "
+           "little. The refit goes on to creep that levels off after "
            "some examples where neither the logarithm nor a steady growth is enough.";
   }
 

@@ -15,7 +15,7 @@ class Softening final : public Effect {
   std::string manual() const override {
     return "From one example on the body is softer throughout, as rubber is after its first large "
            "stretch. Easily taken for creep or for a wrong size of the later loads; an early load "
-           "repeated at the end tells.";
+           "repeated at the end, and once between, tells.";
   }
 
   Ingredients candidates(const Model& model, std::string* why_not) const override {

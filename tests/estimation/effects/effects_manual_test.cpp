@@ -29,7 +29,8 @@ millimetres and newtons. At its null an effect leaves the model as it is. `null`
 `hookeye effects` lists the same on a terminal. `hookeye effects NAME` adds the forms that a refit may
 go on to, with their parameters. `--capture CAPTURE` lists what can be tested in your capture, in its units.
 
-Names stand in every command, file and test; `estimation/effects/README.md` says how to add one.
+Names stand in every command, file and test. An effect of your own is a class in Python
+([python.md](python.md#an-effect-of-your-own)), or a file in C++ (`estimation/effects/README.md` in the sources).
 
 )";
 
@@ -50,8 +51,12 @@ std::string ways(const std::vector<std::shared_ptr<const Ingredient>>& candidate
   if (candidates.size() == 1 && candidates.front()->variant().empty()) return "";
   std::string text =
       fmt::format("Tried in {} way{}: ", candidates.size(), candidates.size() == 1 ? "" : "s");
-  for (size_t i = 0; i < candidates.size() && i < 3; ++i)
-    text += (i ? "; " : "") + candidates[i]->variant();
+  constexpr size_t kMost = 60;
+  for (size_t i = 0; i < candidates.size() && i < 3; ++i) {
+    std::string one = candidates[i]->variant().empty() ? "plain" : candidates[i]->variant();
+    if (one.size() > kMost) one.replace(one.rfind(' ', kMost), std::string::npos, " ...");
+    text += (i ? "; " : "") + one;
+  }
   return text + (candidates.size() > 3 ? "; and so on." : ".");
 }
 
