@@ -90,7 +90,7 @@ std::optional<LeastNoise> scatter_of_neighbours(const MeasuredSpec& spec) {
   constexpr size_t kLeastPoints = 20;
   const FieldSpec& field = *spec.field;
   const Eigen::Index n = field.X.cols();
-  if (n < kFar) return {};
+  if (n < kFar || field.strain) return {};
   const Eigen::Index asked = std::clamp<Eigen::Index>(kMostPairs / n, 1, kMostPoints);
   const Eigen::Index step = (n + asked - 1) / asked;
   const LeftAtPoints none(static_cast<size_t>(field.components));

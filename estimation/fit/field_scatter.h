@@ -24,7 +24,8 @@ struct LeastNoise {
 /// So
 ///   sigma^2 >= (49/13 V1 - V2) / (49/13 - 1)
 /// Noise that neighbours share does not show, and what a filter has smoothed shows in part.
-/// Empty: too few points, or too crooked a surface below them.
+/// Empty: too few points, too crooked a surface below them, or strains, which jump where a
+/// material, a window or a mesh ends.
 std::optional<LeastNoise> scatter_of_neighbours(const MeasuredSpec& field);
 
 /// The same by another field of the same points in the same load case: half of what is rough in the

@@ -87,8 +87,8 @@ TEST(FieldScatter, WhiteNoiseShowsAboutAnySmoothCourse) {
 
 TEST(FieldScatter, MechanicsIsNoNoise) {
   EXPECT_LT(largest(spec_of({flat(24), bending})), 1e-4);
-  // Of a mesh's bends, 0.02 from its middle line, next to nothing.
-  EXPECT_LT(largest(spec_of({flat(24), meshed})), 0.004);
+  // Of a mesh's bends, up to 0.03 from the course, less than a third.
+  EXPECT_LT(largest(spec_of({flat(24), meshed})), 0.01);
   // Round the edges of a box the course has a bend everywhere.
   const Matrix3Xd box = grid(24, [](double i, double j) {
     const double around = std::fmod(i, 12.0), side = std::floor(i / 12.0);
@@ -111,7 +111,8 @@ TEST(FieldScatter, WhatNeighboursShareShowsInPart) {
 TEST(FieldScatter, FewPointsTellNothing) {
   EXPECT_FALSE(scatter_of_neighbours(spec_of({flat(6), bending, 0.1})));
   const Matrix3Xd line = grid(8, [](double i, double j) { return Vector3d(8 * i + j, 0.0, 0.0); });
-  const auto found = scatter_of_neighbours(spec_of({line, bending, 0.1}));
+  const auto slowly = [](const Vector3d& X) { return 1e-4 * X.squaredNorm(); };
+  const auto found = scatter_of_neighbours(spec_of({line, slowly, 0.1}));
   ASSERT_TRUE(found);  // a line has second order along it
   EXPECT_NEAR(found->sigma[0], 0.1, 3.5 * found->error * 0.1);
 }
@@ -137,11 +138,11 @@ TEST(FieldScatter, RightCapturesAreNotAccused) {
         const double most = scene->limits->floor.at * (1.0 + 3.0 * found->error);
         for (const double sigma : found->sigma)
           EXPECT_LT(sigma, most * block.sigma) << example.name << " " << block.strain << block.keys;
-        if (!block.alike && block.sigma == 0.01) {
+        if (!block.alike && example.name == "rest") {
           EXPECT_GT(found->sigma[0], 0.7 * block.sigma);
         }
       }
-    EXPECT_EQ(asked, 8);
+    EXPECT_EQ(asked, block.strain.empty() ? 8 : 0);  // strains jump at the truth's elements
   }
 }
 
