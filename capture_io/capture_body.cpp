@@ -31,8 +31,8 @@ void read_texture(const YamlNode& node, const CaptureFolder& folder, BodySpec& b
     body.texture_example = read_string(value, "the example of the texture");
   } else {
     body.texture = BodySpec::Texture::uniform;
-    if (value.kind != YamlNode::Kind::scalar || value.text != "fit")
-      body.uniform_albedo = read_positive(value, "the uniform albedo");
+    if (const auto told = read_or_fit(value, "the uniform albedo", read_positive))
+      body.uniform_albedo = *told;
   }
 }
 

@@ -92,10 +92,11 @@ void read_lens_light(const YamlSection& section, Camera& camera) {
   if (falls && !camera.model->central())
     throw InputError(falls->place, of("vignetting") + " goes by the angle to the axis",
                      "leave it out: all rays of this camera are parallel");
-  if (falls && falls->value.text == "fit")
-    camera.fit_vignetting = true;
-  else if (falls)
-    camera.vignetting = read_not_negative(falls->value, of("vignetting"));
+  if (falls) {
+    const auto told = read_or_fit(falls->value, of("vignetting"), read_not_negative);
+    camera.fit_vignetting = !told;
+    camera.vignetting = told.value_or(0.0);
+  }
   if (!shift) return;
   const std::string what = of("chromatic_shift");
   if ((camera.fit_colour_zoom = asks_for_fit(shift->value, what, "`{red: 1.0003, blue: 0.9998}`")))
@@ -228,6 +229,16 @@ std::vector<Camera> read_cameras(const YamlNode& node, const CaptureFolder& fold
   for (const YamlNode::Entry& entry : read_named(node, "cameras"))
     cameras.push_back(read_camera(entry, folder));
   return cameras;
+}
+
+std::optional<double> read_or_fit(const YamlNode& node, const std::string& what,
+                                  double (*read)(const YamlNode&, const std::string&)) {
+  if (node.kind == YamlNode::Kind::scalar && node.text == "fit") return {};
+  try {
+    return read(node, what);
+  } catch (const InputError& error) {
+    throw InputError(error.place(), error.wrong(), error.right() + ", or `fit`");
+  }
 }
 
 void read_harmonics(const YamlNode& node, LightSpec& light) {

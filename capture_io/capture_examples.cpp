@@ -139,6 +139,8 @@ SupportSpec ExampleReader::support(const YamlNode& node, std::vector<MeasuredSpe
     if (rigid_motion->kind == YamlNode::Kind::scalar && rigid_motion->text == "fit") {
       support.kind = SupportSpec::Kind::rigid_fit;
     } else {
+      if (rigid_motion->kind == YamlNode::Kind::scalar)
+        unexpected(*rigid_motion, "rigid", "`fit` is expected, or a map of `rotate` and `move`");
       support.kind = SupportSpec::Kind::rigid;
       support.rigid = rigid(*rigid_motion);
     }

@@ -13,8 +13,10 @@
 
 #include "capture_io/capture_reader.h"
 #include "capture_io/component_sigmas.h"
+#include "capture_io/field_rows.h"
 #include "capture_io/field_table.h"
 #include "capture_io/strain_reader.h"
+#include "capture_io/yaml_file.h"
 
 namespace hookeye {
 namespace {
@@ -220,6 +222,10 @@ void read_field_noise(const YamlSection& section, FieldSpec& field) {
 
 namespace {
 
+const std::vector<std::string> kFieldKeys{"field", "strain",  "sigma",       "from",  "correlation",
+                                          "unit",  "scale",   "strain_unit", "gauge", "axes",
+                                          "frame", "columns", "tolerance"};
+
 FieldTable read_table(const YamlSection& section, const YamlNode& name, const FieldSpec& field) {
   std::map<std::string, std::string> columns;
   if (const YamlNode* told = section.find("columns")) columns = read_columns(*told);
@@ -243,9 +249,7 @@ void refuse_strain_keys(const YamlSection& section) {
 
 MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Capture& capture,
                         const CaptureFolder& folder) {
-  const YamlSection section(node, "a measured field" + of,
-                            {"field", "strain", "sigma", "from", "correlation", "unit", "scale",
-                             "strain_unit", "gauge", "axes", "frame", "columns", "tolerance"});
+  const YamlSection section(node, "a measured field" + of, kFieldKeys);
   auto field = std::make_shared<FieldSpec>();
   const YamlNode& name = section.need("field", "write `field: u.csv`");
   field->file = read_file_path(name, "field" + of, folder);
@@ -278,7 +282,7 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
                                  field->strain ? "strains" : "displacements"),
                      "lengths in the unit that is told");
   field->lines = std::move(table.lines);
-  field->dropped = table.dropped;
+  field->dropped = static_cast<int>(table.dropped_lines.size());
   field->unit_told = section.has("unit") || section.has("scale") || !table.unit.empty();
   read_field_noise(section, *field);
   MeasuredSpec out;
@@ -290,6 +294,26 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
   if (const YamlNode* from = section.find("from"))
     out.region = read_string(*from, "the example that the field starts from");
   return out;
+}
+
+std::vector<int> dropped_lines(const Capture& capture, const MeasuredSpec& measured) {
+  if (!measured.field || measured.field->dropped == 0) return {};
+  const YamlNode root = load_yaml(capture.file, capture.file.string());
+  const YamlNode* told = root.find("examples");
+  if (!told) return {};
+  const YamlNode examples = section_in_place(*told, "examples", {capture.folder, capture.folder});
+  for (const YamlNode::Entry& example : examples.entries) {
+    const YamlNode* all = example.value.find("measured");
+    for (const YamlNode& node : all ? all->items : std::vector<YamlNode>()) {
+      const YamlNode* name = node.find("field");
+      if (!name || node.place.line != measured.place.line ||
+          node.place.column != measured.place.column)
+        continue;
+      return read_table(YamlSection(node, "a measured field", kFieldKeys), *name, *measured.field)
+          .dropped_lines;
+    }
+  }
+  return {};
 }
 
 }  // namespace hookeye

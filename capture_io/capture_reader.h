@@ -2,6 +2,7 @@
 // section may refer to those before it. All throw InputError.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ MeasuredSpec read_field(const YamlNode& node, const std::string& of, const Captu
 std::vector<ExampleSpec> read_examples(const YamlNode& node, const Capture& capture,
                                        const PhotoDefaults& defaults, const CaptureFolder& folder);
 
+/// None where `fit` is written, else the number that `read` makes of it; its faults name `fit` too.
+std::optional<double> read_or_fit(const YamlNode& node, const std::string& what,
+                                  double (*read)(const YamlNode&, const std::string&));
 /// `linear`, `srgb` or a gamma number.
 Encoding read_encoding(const YamlNode& node, const std::string& what);
 /// The names of a capture's parts, for suggestions.

@@ -211,7 +211,7 @@ FieldTable read_field_table(const std::filesystem::path& file, const std::string
   const bool comma = separator == ';' || separator == '\t';
   std::vector<Row> rows;
   std::vector<int> at;
-  int dropped = 0;
+  std::vector<int> dropped;
   while (lines.next()) {
     if (bare_cell(lines.line).empty()) continue;
     split(lines.line, separator, cells);
@@ -223,18 +223,18 @@ FieldTable read_field_table(const std::filesystem::path& file, const std::string
           "one cell for every column");
     const Row row = row_of(cells, columns, comma, {told, lines.number});
     if (!is_whole(row, holds) || is_marked(columns, cells, comma)) {
-      ++dropped;
+      dropped.push_back(lines.number);
       continue;
     }
     rows.push_back(row);
     at.push_back(lines.number);
   }
   if (rows.empty())
-    throw InputError({told}, fmt::format("no point is left ({} rows dropped)", dropped),
+    throw InputError({told}, fmt::format("no point is left ({} rows dropped)", dropped.size()),
                      fmt::format("rows with numbers for the place and the {} of a point",
                                  holds == FieldHolds::strains ? "strains" : "displacement"));
   FieldTable out = table_of(rows, columns);
-  out.lines = std::move(at), out.dropped = dropped;
+  out.lines = std::move(at), out.dropped_lines = std::move(dropped);
   refuse_twice(out, told);
   return out;
 }

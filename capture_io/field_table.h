@@ -23,7 +23,8 @@ struct FieldTable {
   std::string strain_unit;  ///< the same of strains
   std::string measure;      ///< of the strains, as the head tells; "": it does not
   std::string strain_columns;  ///< their names, whatever the field is read for; "": there are none
-  int dropped = 0;             ///< rows without a number, or that the file marks as not correlated
+  /// Of rows without a number, or that the file marks as not correlated.
+  std::vector<int> dropped_lines;
 };
 
 /// Text with a line of column names: CSV with comma, semicolon (then a decimal comma is a point) or

@@ -5,6 +5,7 @@
 #include "estimation/evaluation/normal_equations.h"
 #include "python/arrays.h"
 #include "python/equilibrium.h"
+#include "python/field_arrays.h"
 #include "python/model.h"
 
 namespace hookeye {
@@ -91,6 +92,7 @@ py::dict evaluation_dict(const Evaluation& evaluation, const Capture& capture, b
   out["r"] = r;
   out["pictures"] = pictures;
   out["measured"] = measured;
+  out["fields"] = fields_seen(capture, evaluation);
   out["r2"] = r2;
   out["chi"] = evaluation.chi(false);
   out["chi_held_out"] = evaluation.chi(true);

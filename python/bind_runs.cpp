@@ -5,6 +5,7 @@
 #include "estimation/evaluation/normal_equations.h"
 #include "python/arrays.h"
 #include "python/errors.h"
+#include "python/field_arrays.h"
 #include "python/runs.h"
 #include "python/verbs.h"
 #include "runs/decision_log.h"
@@ -152,6 +153,15 @@ py::list residuals_of(const SharedRun& run, py::object cancel) {
   return out;
 }
 
+/// Measured fields of the newest step, held-out ones too.
+py::list fields_of_step(const SharedRun& run, py::object cancel) {
+  Work work(std::move(cancel));
+  FitOptions options;
+  options.cancel = work.cancelled();
+  const auto step = alone_with(run, work, [&] { return run->newest(options); });
+  return fields_seen(step->fitted.form.scene->capture, step->fitted.evaluation);
+}
+
 /// Rest positions, elements, boundary, and displacement by example, of the newest step.
 py::dict states_of(const SharedRun& run, py::object cancel) {
   Work work(std::move(cancel));
@@ -203,6 +213,7 @@ void bind_runs(py::module_& m) {
       .def("report", &report_it, py::arg("out"), py::arg("on_step"), py::arg("cancel"))
       .def("covariance", &covariance_of, py::arg("cancel"))
       .def("residuals", &residuals_of, py::arg("cancel"))
+      .def("fields", &fields_of_step, py::arg("cancel"))
       .def("states", &states_of, py::arg("cancel"))
       .def("model", &model_of, py::arg("cancel"));
   m.def("fit", &fit_capture, py::arg("capture"), py::arg("model"), py::arg("out"),

@@ -8,6 +8,7 @@
 
 #include "python/arrays.h"
 #include "python/errors.h"
+#include "python/field_arrays.h"
 #include "python/work.h"
 #include "runs/bench.h"
 
@@ -192,6 +193,7 @@ void bind_capture(py::module_& m) {
       .def("examples", [](const Shared& c) { return examples_of(c->capture()); })
       .def("materials", [](const Shared& c) { return materials_of(c->capture()); })
       .def("photos", &photos_of)
+      .def("fields", [](const OpenedCapture& c) { return fields_told(c.capture()); })
       .def("mesh", &mesh_of);
 }
 

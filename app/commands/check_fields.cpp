@@ -7,6 +7,7 @@
 #include "capture_io/field_start.h"
 #include "capture_io/strain_field.h"
 #include "estimation/fit/field_floor.h"
+#include "estimation/fit/field_scatter.h"
 #include "estimation/model/field_points.h"
 #include "runs/text.h"
 
@@ -30,19 +31,10 @@ double rough_of(const MeasuredSpec& measured) {
 
 /// The same of each component, in its unit; empty: too few.
 std::vector<double> rough_by_component(const MeasuredSpec& measured) {
-  const FieldSpec& field = *measured.field;
-  const VectorXd over = measured.value.cwiseQuotient(measured.sigma);
-  const VectorXd sigmas = component_sigmas(measured);
-  std::vector<double> out;
-  for (int c = 0; c < field.components; ++c) {
-    VectorXd one = VectorXd::Zero(over.size());
-    for (Eigen::Index i = c; i < over.size(); i += field.components) one[i] = over[i];
-    // The others count, and have nothing.
-    const double chi = std::sqrt(double(field.components)) * rough_field(field, one).chi();
-    if (chi <= 0.0) return {};
-    out.push_back(chi * sigmas[c]);
-  }
-  return out;
+  const auto found = scatter_in_pieces(measured);
+  return found && *std::min_element(found->sigma.begin(), found->sigma.end()) > 0.0
+             ? found->sigma
+             : std::vector<double>();
 }
 
 /// "0.0052, 0.0049, 0.021".
@@ -91,6 +83,11 @@ Json describe_fields(const Scene& scene) {
             return std::vector<double>(sigmas.begin(), sigmas.end());
           }()},
          {"rough_along", rough_by_component(measured)},
+         {"scatter_along",
+          [&] {
+            const auto found = scatter_of_neighbours(measured);
+            return found ? found->sigma : std::vector<double>();
+          }()},
          {"largest", measured.value.cwiseAbs().maxCoeff()},
          {"gap", start_of(measured).empty() ? Json(gap_of(scene.body->mesh, field)) : Json()}});
     // Where its points lie, the load case tells once it is solved.
@@ -157,14 +154,14 @@ void say_fields(const Scene& scene, const Json& fields, const Session& session) 
 namespace {
 
 /// Two cameras see worse along their sight than across it: one number for all tells the one too
-/// well, and takes weight from the others.
-void warn_of_unlike(const ExampleSpec& example, const MeasuredSpec& measured, Session& session) {
+/// well, and takes weight from the others. Whether something was said.
+bool warn_of_unlike(const ExampleSpec& example, const MeasuredSpec& measured, Session& session) {
   constexpr double kUnlike = 2.0;
   const std::vector<double> rough = rough_by_component(measured);
   const VectorXd sigmas = component_sigmas(measured);
-  if (rough.empty() || !is_rest(example) || sigmas.minCoeff() < sigmas.maxCoeff()) return;
+  if (rough.empty() || !is_rest(example) || sigmas.minCoeff() < sigmas.maxCoeff()) return false;
   const auto [least, most] = std::minmax_element(rough.begin(), rough.end());
-  if (*most <= kUnlike * *least) return;
+  if (*most <= kUnlike * *least) return false;
   const FieldSpec& field = *measured.field;
   session.warn(fmt::format(
       "{}: at rest the field is rough by {} along {}, and `sigma` is {:g} for all: give one a "
@@ -172,6 +169,54 @@ void warn_of_unlike(const ExampleSpec& example, const MeasuredSpec& measured, Se
       measured.place.str(), listed_numbers(rough),
       directions_of(field.strain != nullptr, field.components), field.sigma,
       listed_numbers(rough)));
+  return true;
+}
+
+/// A lower bound of a field's noise, and how it was seen.
+struct Bound {
+  LeastNoise noise;
+  std::string words;
+};
+
+std::vector<Bound> bounds_of(const ExampleSpec& example, const MeasuredSpec& measured) {
+  std::vector<Bound> out;
+  const auto add = [&](std::optional<LeastNoise> noise, const std::string& words) {
+    if (noise) out.push_back({*std::move(noise), words});
+  };
+  if (is_rest(example) && start_of(measured).empty())
+    add(scatter_in_pieces(measured), "at rest the field is rough by");
+  for (const MeasuredSpec& other : example.measured)
+    if (other.field && &other != &measured)
+      add(scatter_of_repeats(measured, other),
+          fmt::format("beside {}, of the same points and load case, the field is noisy by",
+                      other.field->told));
+  add(scatter_of_neighbours(measured), "neighbouring points of the field scatter by");
+  return out;
+}
+
+/// Noise that is told smaller than the field itself shows it. A right model then keeps more than
+/// counts as explained (floor.at); beyond that only three standard errors make it sure.
+void warn_of_small_sigma(const Scene& scene, const ExampleSpec& example,
+                         const MeasuredSpec& measured, Session& session) {
+  const FieldSpec& field = *measured.field;
+  const VectorXd sigmas = component_sigmas(measured);
+  for (const Bound& bound : bounds_of(example, measured)) {
+    const double most = scene.limits->floor.at * (1.0 + 3.0 * bound.noise.error);
+    bool small = false;
+    for (int c = 0; c < field.components; ++c)
+      small = small || bound.noise.sigma[static_cast<size_t>(c)] > most * sigmas[c];
+    if (!small) continue;
+    const std::vector<double> told(sigmas.begin(), sigmas.end());
+    session.warn(fmt::format(
+        "{}: {} {}{} along {}, and `sigma` is {}: told too small it promises too much; rows that "
+        "are outliers may do it too",
+        measured.place.str(), bound.words, listed_numbers(bound.noise.sigma),
+        field.strain ? "" : " " + scene.capture.units.length,
+        directions_of(field.strain != nullptr, field.components),
+        sigmas.minCoeff() < sigmas.maxCoeff() ? listed_numbers(told)
+                                              : fmt::format("{:g}", sigmas[0])));
+    return;
+  }
 }
 
 }  // namespace
@@ -204,12 +249,8 @@ void warn_of_fields(const Scene& scene, Session& session) {
           fmt::format("{}the field is rough by {} only, and `sigma` is {:g}: told too "
                       "large it hides what is missing",
                       at, size, field.sigma));
-    else if (rough > 2.0 && is_rest(example) && start_of(measured).empty())
-      session.warn(
-          fmt::format("{}at rest the field is rough by {}, and `sigma` is {:g}: told too "
-                      "small it promises too much; rows that are outliers may do it too",
-                      at, size, field.sigma));
-    warn_of_unlike(example, measured, session);
+    if (!warn_of_unlike(example, measured, session))
+      warn_of_small_sigma(scene, example, measured, session);
   });
 }
 

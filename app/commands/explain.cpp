@@ -4,9 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/commands/commands.h"
 #include "app/commands/run_support.h"
+#include "core/json_file.h"
+#include "core/text_file.h"
 #include "runs/add_step.h"
 #include "runs/decision_log.h"
 #include "runs/report/answer.h"
@@ -17,6 +20,7 @@ namespace {
 
 struct ExplainArguments {
   std::string run, effect;
+  bool scores = false;
 };
 
 /// {where it was accepted, where not}
@@ -63,15 +67,27 @@ std::string in_words(const Decision& one) {
   return out + fmt::format(" [{}]", one.where);
 }
 
+/// The floor that a step's own diagnosis was made with; else that of its figures. 0: neither tells.
+double floor_of_step(const std::filesystem::path& step) {
+  for (const char* name : {"diagnosis.json", "metrics.json"}) {
+    if (!std::filesystem::exists(step / name)) continue;
+    std::string damage;  // whoever asks for that file hears of it
+    const auto told = parse_json(read_text(step / name), damage);
+    if (!told || !told->is_object() || !told->contains("floor")) continue;
+    if (const double floor = number_in(told->at("floor"), "chi"); floor > 0.0) return floor;
+  }
+  return 0.0;
+}
+
 /// What the numbers of a step are held against.
-std::string heading(const nlohmann::json& timeline, size_t index, const std::string& step,
-                    const std::string& seen) {
+std::string heading(const nlohmann::json& timeline, size_t index,
+                    const std::filesystem::path& folder, const std::string& seen) {
   const nlohmann::json& told = timeline.at("steps").at(index);
   const double fitted = number_in(told, "chi_fit"), held_out = number_in(told, "chi_validate");
-  const double floor = number_in(timeline.value("floor", nlohmann::json::object()), "chi");
+  const double floor = floor_of_step(folder);
   std::string out =
-      fmt::format("beyond the model of step {}: its normalised residual is {} on fitted {}", step,
-                  chi_text(fitted), seen);
+      fmt::format("beyond the model of step {}: its normalised residual is {} on fitted {}",
+                  folder.filename().string(), chi_text(fitted), seen);
   if (held_out > 0.0) out += fmt::format(", {} on held-out ones", chi_text(held_out));
   if (floor > 0.0) out += fmt::format("; noise floor {:.3f}", floor);
   return wrapped(out);
@@ -90,10 +106,11 @@ bool is_about(const Decision& one, const std::string& effect) {
 }
 
 /// Every decision of one effect, in order.
-std::string all_of(const std::vector<Decision>& decisions, const std::string& effect) {
+std::string all_of(const std::vector<Decision>& decisions, const ExplainArguments& asked) {
+  const std::string& effect = asked.effect;
   std::string out;
   for (const Decision& one : decisions)
-    if (is_about(one, effect))
+    if (is_about(one, effect) && (asked.scores || one.asked != Asked::scored))
       out += wrapped((one.candidate == effect ? "" : one.candidate + ": ") + in_words(one), 2);
   return out;
 }
@@ -163,7 +180,7 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
   if (!arguments.effect.empty()) check_effect(arguments.effect);
   const Run run = open_run(arguments.run, false);
   session.document["steps"] = nlohmann::json::array();
-  bool any = false, about = false;
+  bool any = false, about = false, scored = false;
   const auto steps = run.steps();
   for (size_t index = 0; index < steps.size(); ++index) {
     const auto& step = steps[index];
@@ -175,16 +192,20 @@ void run_explain(const ExplainArguments& arguments, Session& session) {
       if (arguments.effect.empty() || is_about(one, arguments.effect))
         told["decisions"].push_back(nlohmann::ordered_json(to_json(one)));
     session.document["steps"].push_back(std::move(told));
-    const std::string text = arguments.effect.empty() ? ends_of(decisions) + how_sure(decisions)
-                                                      : all_of(decisions, arguments.effect);
+    const std::string sure = how_sure(decisions);
+    scored = scored || !sure.empty();
+    const std::string text = arguments.effect.empty()
+                                 ? ends_of(decisions) + (arguments.scores ? sure : "")
+                                 : all_of(decisions, arguments);
     if (text.empty()) continue;
     if (!about) session.say("{}\n", wrapped(kHowToRead));
     about = true;
-    session.say(
-        "{}{}\n",
-        heading(run.timeline(), index, step.filename().string(), seen_in_step(run.folder(), step)),
-        text);
+    session.say("{}{}\n", heading(run.timeline(), index, step, seen_in_step(run.folder(), step)),
+                text);
   }
+  if (scored && !arguments.scores)
+    session.say("`hookeye explain {} --scores` adds a second score, which decides nothing yet\n",
+                arguments.run);
   if (!any)
     throw InputError({arguments.run}, "nothing was decided in this run yet",
                      fmt::format("run 'hookeye diagnose {0}' or 'hookeye discover CAPTURE -o {0}'",
@@ -200,6 +221,8 @@ void add_explain(CLI::App& app, CommandBody& chosen) {
   const auto arguments = std::make_shared<ExplainArguments>();
   command->add_option("RUN", arguments->run, "Run folder")->required();
   command->add_option("EFFECT", arguments->effect, "All that was decided of this effect");
+  command->add_flag("--scores", arguments->scores,
+                    "Also a second score of all fitted models, which decides nothing yet");
   command->callback([&chosen, arguments] {
     chosen = [arguments](Session& session) { run_explain(*arguments, session); };
   });

@@ -46,12 +46,14 @@ std::vector<std::string> leaders(const Diagnosis& diagnosis) {
 std::string conclusion(const Diagnosis& diagnosis) {
   const auto all = leaders(diagnosis);
   if (all.empty()) return "nothing of the catalogue stands out";
-  if (all.size() == 1) return all.front() + " leads";
+  if (numerical(all.front()))
+    return fmt::format("a finer mesh comes before any other effect ({})", all.front());
+  if (all.size() == 1) return all.front() + " stands out as missing";
   // Views are planned by cameras alone.
   const bool photos = diagnosis.floor.source.ends_with("photos");
   return fmt::format(
-      "{} leads, and {} cannot be told from it by these scores: `hookeye discover` refits all of "
-      "them{}",
+      "{} stands out as missing, and {} cannot be told from it by these scores: `hookeye discover` "
+      "refits all of them{}",
       all.front(), fmt::join(all.begin() + 1, all.end(), ", "),
       photos ? ", `hookeye plan` names loads and views that would separate them" : "");
 }

@@ -6,13 +6,6 @@
 
 namespace hookeye::inspection {
 
-double newtons(const Units& units) {
-  if (units.force == "mN") return 1e-3;
-  if (units.force == "kN") return 1e3;
-  if (units.force == "uN") return 1e-6;
-  return 1.0;
-}
-
 std::string length_in_words(double metres) {
   if (metres >= 1e3) return fmt::format("{:.4g} km", 1e-3 * metres);
   if (metres >= 1.0) return fmt::format("{:.3g} m", metres);

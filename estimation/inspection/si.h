@@ -4,12 +4,11 @@
 #include <string>
 
 #include "capture_io/capture.h"
+#include "capture_io/newtons.h"
 #include "meshing/tet_mesh.h"
 
 namespace hookeye::inspection {
 
-/// Newtons in one unit of force.
-double newtons(const Units& units);
 /// "104 mm", "3.5 m".
 std::string length_in_words(double metres);
 /// "51.2 g", "32 t".

@@ -113,6 +113,19 @@ std::shared_ptr<const Ingredient> held_ingredient(const YamlNode& variant, const
   return nullptr;
 }
 
+/// A run's own model.yaml has no slip of the pen: what the catalogue lacks was registered from
+/// Python when it was written.
+[[noreturn]] void unknown_ingredient(const YamlNode& named, const std::string& name,
+                                     const std::vector<std::string>& known) {
+  const std::string near = nearest_name(name, known);
+  throw InputError(
+      named.place, fmt::format("there is no effect `{}` here", name),
+      fmt::format("{}one written in Python is registered before the run is opened: "
+                  "`hookeye.register(...)` of the class of this name (docs/python.md); the command "
+                  "line has those of `hookeye effects` alone",
+                  near.empty() ? "" : fmt::format("did you mean `{}`? Else ", near)));
+}
+
 std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, const ModelForm& base,
                                                   const Model& model, const Catalogue& effects) {
   const YamlNode& named = section.need("name", "name: material, or an effect's name");
@@ -147,7 +160,7 @@ std::shared_ptr<const Ingredient> find_ingredient(const YamlSection& section, co
                      "take the variant from a model.yaml of the same capture");
   }
   for (const Effect* effect : effects) known.push_back(effect->name());
-  throw InputError(named.place, fmt::format("unknown ingredient `{}`", name), suggest(name, known));
+  unknown_ingredient(named, name, known);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include "estimation/output/compare_picture.h"
 #include "estimation/output/field_output.h"
 #include "estimation/output/material_card.h"
+#include "estimation/output/own_weight.h"
 #include "estimation/output/page_data.h"
 #include "estimation/output/pixels_json.h"
 #include "estimation/output/removed.h"
@@ -224,6 +225,7 @@ json metrics(const Scene& scene, const Fitted& fitted, const Floor& floor) {
         {"use", most.held_out ? "validate" : "fit"},
         {"its_own", at_floor(fitted, floor) && !explains_photos(fitted, floor)}};
   if (fitted.all_pixels) out["all_pixels"] = all_pixels_json(fitted);
+  if (json weight = own_weight(scene, fitted); !weight.is_null()) out["weight"] = std::move(weight);
   tell_material(scene, fitted, out);
   out["ellipticity"] = lost_ellipticity(scene, fitted);
   if (json additive = additive_metrics(fitted); !additive.is_null())

@@ -15,8 +15,9 @@ from .catalogue import effects, options
 from .contract import check_effect, check_sensor
 from .effect import Effect, Setup
 from .equilibrium import Equilibrium
-from .errors import Cancelled, EffectError, InputError, NumericalError, SensorError
+from .errors import Cancelled, EffectError, InputError, NumericalError, SensorError, UnknownName
 from .kinematics import cofactor, determinant, invariants
+from .measured_field import MeasuredField
 from .model import Evaluation, Model, Parameter, Picture
 from .progress import Progress, ProgressBar
 from .run import Diagnosis, Field, Run, Step, discover, fit
@@ -29,8 +30,9 @@ _logging.getLogger("hookeye").addHandler(_logging.NullHandler())
 
 __all__ = [
     "Batch", "Calibration", "Camera", "Cancelled", "Capture", "Diagnosis", "Effect", "EffectError", "Equilibrium",
-    "Evaluation", "Field", "InputError", "Model", "NumericalError", "Parameter", "Picture",
-    "Progress", "ProgressBar", "Run", "Sensor", "SensorError", "Setup", "Step", "Table", "__version__", "batch",
+    "Evaluation", "Field", "InputError", "MeasuredField", "Model", "NumericalError", "Parameter", "Picture",
+    "Progress", "ProgressBar", "Run", "Sensor", "SensorError", "Setup", "Step", "Table",
+    "UnknownName", "__version__", "batch",
     "calibrate", "check_effect", "check_sensor", "cofactor", "determinant", "discover", "effects", "fit", "importers", "invariants",
     "options", "register", "set_threads", "unregister",
 ]

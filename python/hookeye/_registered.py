@@ -7,6 +7,7 @@ from typing import Any, Dict, Iterable, Iterator, List, Tuple, Union
 
 from . import _hookeye
 from ._bridge import Bridge, bad, name_of
+from ._named import one_of
 from ._sensor_bridge import SensorBridge
 from .effect import Effect, EffectLike
 from .errors import EffectError, SensorError
@@ -37,6 +38,11 @@ def unregister(effect: Union[EffectLike, Sensor]) -> None:
 def registered(effect: EffectLike) -> str:
     """The name, for C++; a class is registered, unless the very same is."""
     if isinstance(effect, str):
+        names = [one["name"] for one in _hookeye.effects()]
+        if effect not in names:
+            raise bad(f"there is no effect '{effect}'",
+                      f"{one_of(effect, names)}; one written in Python is registered first: "
+                      "hookeye.register(...) of the class of this name")
         return effect
     bridge = Bridge(made(effect))
     if known.get(bridge.name) != (bridge.own.__class__, bridge.code) or isinstance(effect, Effect):

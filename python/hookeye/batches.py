@@ -8,9 +8,10 @@ import pathlib
 from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
 from . import _hookeye
+from ._named import Attributes, one_of
 from ._registered import known, known_sensors
 from .capture import Capture
-from .errors import InputError
+from .errors import InputError, UnknownName
 from .progress import OnStep, listener
 from .run import Run
 from .tables import Table, table
@@ -23,7 +24,7 @@ _COLUMNS = ("label", "state", "verdict", "found", "chi_fit", "chi_validate", "fl
             "exit", "error", "capture", "options")
 
 
-class Batch:
+class Batch(Attributes):
     """The folder of a batch, and a row a capture, in the order of the list."""
 
     def __init__(self, folder: str, rows: List[Dict[str, Any]]) -> None:
@@ -41,7 +42,8 @@ class Batch:
         for row in self.rows:
             if row["label"] == label:
                 return row
-        raise KeyError(label)
+        wrong, right = f"there is no capture {label!r}", one_of(label, [row["label"] for row in self.rows])
+        raise UnknownName(f"{wrong}\n  {right}", wrong=wrong, right=right)
 
     @property
     def table(self) -> Any:

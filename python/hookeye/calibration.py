@@ -11,6 +11,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from . import _hookeye, tables
+from ._named import Attributes, Named
 from .progress import OnStep, listener
 from .tables import Table, table
 
@@ -19,14 +20,15 @@ Photos = Union[PathLike, Sequence[PathLike]]
 _log = logging.getLogger("hookeye")
 
 
-class Calibration:
+class Calibration(Attributes):
     """Cameras, how well they are known, and what each photo had to do with it."""
 
     def __init__(self, own: Any) -> None:
         self._own = own
         #: As calibration.json has it (docs/calibrate.md).
         self.told: Dict[str, Any] = own.told()
-        self.cameras: Dict[str, _hookeye.Camera] = {c.name: c for c in own.cameras()}
+        self.cameras: Dict[str, _hookeye.Camera] = Named(
+            "camera", {c.name: c for c in own.cameras()})
         #: Root mean square of what is left of the used corners [px].
         self.rms_px: Dict[str, float] = {c["name"]: c["rms_px"] for c in self.told["cameras"]}
         self.board: Dict[str, Any] = self.told["board"]

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import pathlib
-import tempfile
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _hookeye
+from ._from_dict import write_capture
+from ._named import Attributes, Named
 from .errors import InputError
+from .measured_field import MeasuredField, fields_of
 
 PathLike = Union[str, "os.PathLike[str]"]
 Shot = Tuple[str, str]
 
-
-def _bad(wrong: str, right: str) -> InputError:
-    return InputError(f"{wrong}\n  {right}", wrong=wrong, right=right)
+_hookeye.Camera.__getattr__ = Attributes.__getattr__
 
 
-class Photo:
+class Photo(Attributes):
     """A photo as it is compared: `values` (linear), `sigma` (noise), `valid` (pixels that count)."""
 
     def __init__(self, told: Dict[str, Any]) -> None:
@@ -32,7 +30,7 @@ class Photo:
         self.file: str = told["file"]
 
 
-class Mesh:
+class Mesh(Attributes):
     """The body: `points` (n, 3), `elements` (m, 4 or 10), `boundary` (b, 3 or 6), `regions`."""
 
     def __init__(self, told: Dict[str, Any]) -> None:
@@ -40,10 +38,10 @@ class Mesh:
         self.elements: np.ndarray = told["elements"]
         self.boundary: np.ndarray = told["boundary"]
         #: By name: nodes, area, centroid, normal.
-        self.regions: Dict[str, Dict[str, Any]] = told["regions"]
+        self.regions: Dict[str, Dict[str, Any]] = Named("region", told["regions"])
 
 
-class Capture:
+class Capture(Attributes):
     """A capture, checked. `path`: its folder or its yaml.
 
     options: numbers to decide by (hookeye.options()), as `--set` of the command line.
@@ -64,22 +62,22 @@ class Capture:
         `photos`: by (example, camera): height x width (x 3). float and uint16 are linear (1 or
         65535: full scale), uint8 follows the capture's `encoding` (sRGB, if not told). `masks`: the
         same way, true where pixels count. `body.volume`: (points, elements); `body.surface`:
-        (points, triangles). The files are written into `folder`, else into one that goes with the
-        capture.
+        (points, triangles). In `measured`, `field`: {"points": (n, 3), "displacement": (n, 3)} or
+        an array (n, 6); a row that is NaN is a point without a measurement.
+
+        Files that the dict names are looked for in `folder`, or in the current directory. What is
+        written goes into `folder`; where none is told, into one that goes with the capture, and
+        the files that are named are taken there.
         """
-        kept = None
-        if folder is None:
-            kept = tempfile.TemporaryDirectory(prefix="hookeye-")
-            folder = kept.name
-        top = pathlib.Path(folder)
-        top.mkdir(parents=True, exist_ok=True)
-        if (top / "capture.yaml").exists():
-            raise _bad(f"{top}: there is a capture already", "another folder")
-        document = _plain(dict(told), "capture", top)
-        _put_photos(document, photos or {}, masks or {}, top)
-        text = json.dumps(document, indent=1, ensure_ascii=False)
-        (top / "capture.yaml").write_text(text, encoding="utf-8")
-        out = cls(top, options=options)
+        top, base, kept = write_capture(told, photos or {}, masks or {}, folder)
+        try:
+            out = cls(top, options=options)
+        except InputError as error:
+            if "no such file" not in error.right:
+                raise
+            looked = f"; it was looked for in {base}"
+            raise InputError(str(error) + looked, error.file, error.line, error.column, error.wrong,
+                             error.right + looked) from None
         out._folder = kept
         return out
 
@@ -98,12 +96,12 @@ class Capture:
 
     @property
     def cameras(self) -> Dict[str, _hookeye.Camera]:
-        return {camera.name: camera for camera in self._own.cameras()}
+        return Named("camera", {camera.name: camera for camera in self._own.cameras()})
 
     @property
     def examples(self) -> Dict[str, Dict[str, Any]]:
         """By name: use ("fit", "validate", "test") and the cameras of its photos."""
-        return {one["name"]: one for one in self._own.examples()}
+        return Named("load case", {one["name"]: one for one in self._own.examples()})
 
     @property
     def materials(self) -> List[Dict[str, Any]]:
@@ -112,7 +110,13 @@ class Capture:
     @property
     def photos(self) -> Dict[Shot, Photo]:
         """By (example, camera); without examples of `use: test`, which nothing may see."""
-        return {shot: Photo(told) for shot, told in self._own.photos().items()}
+        return Named("photo of (load case, camera)",
+                     {shot: Photo(told) for shot, told in self._own.photos().items()})
+
+    @property
+    def fields(self) -> Dict[Shot, MeasuredField]:
+        """Measured fields by (example, file as the capture names it); without `use: test`."""
+        return fields_of(self._own.fields())
 
     @property
     def mesh(self) -> Mesh:
@@ -134,91 +138,3 @@ class Capture:
                 for name, one in self.examples.items()]
         return f"<b>{self.title or self.file}</b>" + Table(
             rows, ["load case", "use", "photos"])._repr_html_()
-
-
-def _plain(value: Any, where: str, folder: pathlib.Path) -> Any:
-    """What JSON can say of it; arrays of the body become files."""
-    if isinstance(value, Mapping):
-        out = {}
-        for key, inner in value.items():
-            if not isinstance(key, str):
-                raise TypeError(f"{where}: keys are names, not {key!r}")
-            at = f"{where}.{key}"
-            if where == "capture.body" and key in ("volume", "surface") and not isinstance(
-                    inner, (str, os.PathLike)):
-                out[key] = _write_body(key, inner, folder)
-            else:
-                out[key] = _plain(inner, at, folder)
-        return out
-    if isinstance(value, np.ndarray):
-        if value.dtype.kind not in "fiub":
-            raise TypeError(f"{where}: real numbers are expected, not dtype {value.dtype}")
-        return _plain(value.tolist(), where, folder)
-    if isinstance(value, np.generic):
-        value = value.item()
-    if isinstance(value, (list, tuple)):
-        return [_plain(inner, f"{where}[{i}]", folder) for i, inner in enumerate(value)]
-    if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if isinstance(value, float) and not math.isfinite(value):
-        raise _bad(f"{where}: {value} is not finite", "a number")
-    if value is None or isinstance(value, (str, bool, int, float)):
-        return value
-    raise TypeError(f"{where}: {type(value).__name__} has no place in a capture")
-
-
-def _write_body(key: str, given: Any, folder: pathlib.Path) -> str:
-    if not isinstance(given, (tuple, list)) or len(given) != 2:
-        right = "elements" if key == "volume" else "triangles"
-        raise TypeError(f"capture.body.{key}: a file, or (points, {right})")
-    points, cells = given
-    if key == "volume":
-        _hookeye.write_volume(folder / "volume.vtu", points, cells)
-        return "volume.vtu"
-    _hookeye.write_surface(folder / "surface.obj", points, cells)
-    return "surface.obj"
-
-
-def _expect_full_scale(array: Any, what: str) -> None:
-    """Numbers of a camera that were made floats: no exposure is twice full scale."""
-    values = np.asarray(array)
-    if values.dtype.kind == "f" and values.size and np.nanmax(values) > 2.0:
-        most = float(np.nanmax(values))
-        by = 255 if most <= 255 else 65535
-        raise _bad(f"{what}: floats up to {most:.4g}, where 1 is full scale",
-                   f"divide them by {by}, or give the camera's uint8 or uint16")
-
-
-def _put_photos(document: Dict[str, Any], photos: Mapping[Shot, Any], masks: Mapping[Shot, Any],
-                folder: pathlib.Path) -> None:
-    if photos or masks:
-        (folder / "photos").mkdir(exist_ok=True)
-    examples = document.get("examples") or {}
-    for given, kind in ((photos, "photo"), (masks, "mask")):
-        for shot, array in given.items():
-            if not isinstance(shot, tuple) or len(shot) != 2:
-                raise TypeError(f"{kind}s: keys are (example, camera), not {shot!r}")
-            name, camera = shot
-            if name not in examples:
-                raise _bad(f"{kind}s: there is no example '{name}'",
-                           f"one of {', '.join(examples)}")
-            if examples[name] is None:
-                examples[name] = {}
-            all_photos = examples[name].setdefault("photos", {})
-            told = all_photos.setdefault(camera, {})
-            if isinstance(told, str):
-                told = all_photos[camera] = {"file": told}
-            what = f"{kind}s[{name!r}, {camera!r}]"
-            stem = folder / "photos" / f"{name}_{camera}"
-            if kind == "photo":
-                _expect_full_scale(array, what)
-                told["file"] = "photos/" + _hookeye.write_photo(stem, array, what)
-                if told["file"].endswith(".exr"):
-                    told["encoding"] = "linear"
-            else:
-                mask = np.asarray(array)
-                if mask.ndim != 2:
-                    raise _bad(f"{what}: the array has {mask.ndim} axes", "height x width")
-                counts = np.where(mask.astype(bool), 255, 0).astype(np.uint8)
-                told["mask"] = "photos/" + _hookeye.write_photo(
-                    folder / "photos" / f"{name}_{camera}_mask", counts, what)

@@ -7,9 +7,10 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _hookeye
+from ._named import Attributes
 
 
-class Equilibrium:
+class Equilibrium(Attributes):
     """The body under one load case, in the units of the capture.
 
     `u` (n, 3) at the nodes; `F` (m, points, 3, 3) where the energy is evaluated; `stress` (Cauchy)

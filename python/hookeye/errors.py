@@ -16,6 +16,12 @@ class InputError(ValueError):
         return (type(self), (str(self), self.file, self.line, self.column, self.wrong, self.right))
 
 
+class UnknownName(InputError, KeyError):
+    """A name that there is not, of a camera, a photo, a field: `right` says which there are."""
+
+    __str__ = Exception.__str__  # not KeyError's, which quotes the message
+
+
 class NumericalError(ArithmeticError):
     """The numbers failed: no equilibrium, no convergence."""
 

@@ -6,11 +6,12 @@ from typing import Any, Dict, Optional
 
 import numpy as np
 
+from ._named import Attributes
 from .equilibrium import _needed
 from .errors import InputError
 
 
-class Field:
+class Field(Attributes):
     """`values` on the nodes (displacement, n x 3) or the elements (von_mises) of the body at rest.
     `magnitude`: one number a node or element."""
 

@@ -7,16 +7,18 @@ import pathlib
 from typing import Any, Dict, List, Optional, Sequence, Tuple, Union
 
 from . import _hookeye
+from ._named import Attributes, Named
 from .errors import InputError
 
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-class Imported:
+class Imported(Attributes):
     """Cameras by name; `yaml`: the text that a capture takes by `cameras: {from: cameras.yaml}`."""
 
     def __init__(self, found: Dict[str, Any]) -> None:
-        self.cameras: Dict[str, _hookeye.Camera] = {c.name: c for c in found["cameras"]}
+        self.cameras: Dict[str, _hookeye.Camera] = Named(
+            "camera", {c.name: c for c in found["cameras"]})
         #: Root mean square of the reprojection [px]; None: the source has no points.
         self.rms_px: Dict[str, Optional[float]] = dict(zip(self.cameras, found["rms_px"]))
         self.world: str = found["world"]

@@ -9,17 +9,19 @@ from typing import Any, Dict, Iterator, List, Optional, Tuple
 import numpy as np
 
 from . import _hookeye
+from ._named import Attributes, Named, one_of
 from ._registered import registered
 from .capture import Capture
 from .effect import EffectLike
 from .equilibrium import Equilibrium
-from .errors import InputError
+from .errors import InputError, UnknownName
+from .measured_field import MeasuredField, fields_of
 from .tables import table
 
 Shot = Tuple[str, str]
 
 
-class Parameter:
+class Parameter(Attributes):
     """One number of a model; `value` may be set. `low`, `high`: bounds, not an interval."""
 
     def __init__(self, model: "Model", name: str) -> None:
@@ -31,8 +33,9 @@ class Parameter:
         for one in self._model._own.parameters():
             if one["name"] == self.name:
                 return one
-        names = ", ".join(one["name"] for one in self._model._own.parameters())
-        raise KeyError(f"the model has no parameter '{self.name}'; it has {names}")
+        wrong = f"the model has no parameter '{self.name}'"
+        right = one_of(self.name, [one["name"] for one in self._model._own.parameters()])
+        raise UnknownName(f"{wrong}\n  {right}", wrong=wrong, right=right)
 
     @property
     def value(self) -> float:
@@ -121,7 +124,7 @@ class Picture(np.ndarray):
             for kind, data in ((b"IHDR", head), (b"IDAT", zlib.compress(lines)), (b"IEND", b"")))
 
 
-class Evaluation:
+class Evaluation(Attributes):
     """One look at the model: what is left, and the normal equations of what is fitted.
 
     `r` by (example, camera): model less photo over noise, NaN where a pixel does not count.
@@ -133,8 +136,10 @@ class Evaluation:
 
     def __init__(self, told: Dict[str, Any]) -> None:
         self.names: List[str] = told["names"]
-        self.r: Dict[Shot, np.ndarray] = told["r"]
-        self.pictures: Dict[Shot, np.ndarray] = told["pictures"]
+        self.r: Dict[Shot, np.ndarray] = Named("photo of (load case, camera)", told["r"])
+        self.pictures: Dict[Shot, np.ndarray] = Named("photo of (load case, camera)", told["pictures"])
+        #: Measured fields with their residuals, by (example, file).
+        self.fields: Dict[Shot, MeasuredField] = fields_of(told["fields"])
         self.measured: List[Dict[str, Any]] = told["measured"]
         self.r2: float = told["r2"]
         self.chi: float = told["chi"]
@@ -170,7 +175,7 @@ class Evaluation:
         return f"<hookeye.Evaluation: chi {self.chi:.4g} over {len(self.r)} photos>"
 
 
-class Model:
+class Model(Attributes):
     """Parameters by name: `model["mu"].value = 0.05`. Made by Capture.model() or Run.model()."""
 
     def __init__(self, capture: Capture, _own: Optional[_hookeye.Model] = None) -> None:

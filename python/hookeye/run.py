@@ -14,9 +14,11 @@ import numpy as np
 
 from . import _hookeye, tables
 from ._registered import registered, registered_for
+from ._named import Attributes, Named
 from .capture import Capture
 from .effect import EffectLike
 from .errors import InputError
+from .measured_field import MeasuredField, fields_of
 from .fields import Field
 from .model import Model, Shot
 from .progress import OnStep, listener
@@ -26,7 +28,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 _log = logging.getLogger("hookeye")
 
 
-class Step:
+class Step(Attributes):
     """A finished step of a run: its figures (run.json) and its folder."""
 
     def __init__(self, told: Dict[str, Any], folder: str) -> None:
@@ -59,7 +61,7 @@ def _parameters(step: Dict[str, Any]) -> Any:
     return table(rows, ["name", "value", "low", "high", "unit", "words"], "name")
 
 
-class Diagnosis:
+class Diagnosis(Attributes):
     """Which effect is missing in a step's model, without refitting."""
 
     def __init__(self, told: Dict[str, Any]) -> None:
@@ -107,7 +109,7 @@ class Report(Dict[str, Any]):
         return f'<iframe srcdoc="{escape(page)}" width="100%" height="800"></iframe>'
 
 
-class Run:
+class Run(Attributes):
     """A run folder; any opens, whoever made it. Reads the folder anew at every question."""
 
     def __init__(self, folder: PathLike, _own: Any = None, _capture: Optional[Capture] = None,
@@ -173,13 +175,12 @@ class Run:
         return table(self._own.decisions(), columns)
 
     def why(self, effect: EffectLike) -> Any:
-        """All that was decided of one effect."""
-        effect = registered(effect)
-        known = [one["name"] for one in _hookeye.effects()]
-        if effect not in known:
-            wrong, right = f"there is no effect '{effect}'", f"one of {', '.join(known)}"
-            raise InputError(f"{wrong}\n  {right}", wrong=wrong, right=right)
-        mine = [one for one in self._own.decisions() if effect in one["candidate"].split()]
+        """All that was decided of one effect; printed it is whole."""
+        decisions = self._own.decisions()
+        of = lambda name: [one for one in decisions if name in one["candidate"].split()]
+        # The log tells of an effect in Python, too, whose class is not registered now.
+        name = effect if isinstance(effect, str) and of(effect) else registered(effect)
+        mine = of(name)
         columns = ["step", "asked", "candidate", "accepted", "value", "limit", "option", "why",
                    "where", "cpu_s"]
         return table(mine, columns)
@@ -247,11 +248,18 @@ class Run:
 
     def residuals(self, *, cancel: Any = None) -> Dict[Shot, np.ndarray]:
         """Of the newest step by (example, camera): model less photo over noise, NaN: not counted."""
-        return {shot: photo for shot, (photo, _) in self._pictures(cancel).items()}
+        return Named("photo of (load case, camera)",
+                     {shot: photo for shot, (photo, _) in self._pictures(cancel).items()})
 
     def pictures(self, *, cancel: Any = None) -> Dict[Shot, np.ndarray]:
         """What the newest step's model shows, linear."""
-        return {shot: picture for shot, (_, picture) in self._pictures(cancel).items()}
+        return Named("photo of (load case, camera)",
+                     {shot: picture for shot, (_, picture) in self._pictures(cancel).items()})
+
+    def fields(self, *, cancel: Any = None) -> Dict[Shot, MeasuredField]:
+        """Measured fields with what the newest step's model predicts of them and the residuals, by
+        (example, file as the capture names it); those that are held out, too."""
+        return fields_of(self._own.fields(cancel))
 
     def _pictures(self, cancel: Any) -> Dict[Shot, Tuple[np.ndarray, np.ndarray]]:
         planes: Dict[Shot, List[Tuple[np.ndarray, np.ndarray]]] = {}

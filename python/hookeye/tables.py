@@ -5,6 +5,9 @@ from __future__ import annotations
 from html import escape
 from typing import Any, Dict, Iterator, List, Sequence
 
+from ._named import one_of
+from .errors import UnknownName
+
 
 def pandas_if_there() -> Any:
     """Loaded with the first table, not with the package: it takes longer than a fit."""
@@ -30,7 +33,8 @@ class Table:
 
     def __getitem__(self, column: str) -> List[Any]:
         if column not in self.columns:
-            raise KeyError(column)
+            wrong, right = f"there is no column {column!r}", one_of(column, self.columns)
+            raise UnknownName(f"{wrong}\n  {right}", wrong=wrong, right=right)
         return [row.get(column) for row in self.rows]
 
     def _lines(self) -> List[List[str]]:
@@ -57,8 +61,6 @@ def table(rows: Sequence[Dict[str, Any]], columns: Sequence[str], index: str = "
     if pandas is None:
         return Table(rows, columns)
     frame = pandas.DataFrame(list(rows), columns=list(columns))
-    if not index:
-        return frame
-    from ._frame import named_rows
+    from ._frame import Rows, named_rows
 
-    return named_rows(frame, index)
+    return named_rows(frame, index) if index else Rows(frame)

@@ -18,6 +18,7 @@
 #include "estimation/search/verdict.h"
 #include "runs/report/effect_values.h"
 #include "runs/report/inside.h"
+#include "runs/report/met_values.h"
 #include "runs/run_limits.h"
 #include "runs/tables.h"
 #include "runs/text.h"
@@ -175,14 +176,18 @@ std::optional<std::string> judged_sentence(const json& timeline, const json& ste
                               left));
 }
 
-/// Effects of the newest diagnosis that may be named.
-Names standing_out(const json& step, const json& diagnosis) {
-  Names out;
+/// What the newest diagnosis concludes, in its own words; where its file is not there, by what the
+/// timeline has of it.
+std::string concluded(const json& step, const json& diagnosis) {
+  if (const std::string own = string_in(diagnosis, "conclusion"); !own.empty()) return own;
   const json effects = diagnosis.is_object() ? diagnosis.value("effects", json::array())
                                              : step.value("diagnosis", json::array());
+  Names named;
   for (const json& one : effects)
-    if (one.is_object() && one.value("named", false)) out.push_back(string_in(one, "effect"));
-  return out;
+    if (one.is_object() && one.value("named", false)) named.push_back(string_in(one, "effect"));
+  return named.empty() ? "nothing of the catalogue stands out"
+                       : fmt::format("{} stand{} out as missing", listed(named),
+                                     named.size() == 1 ? "s" : "");
 }
 
 /// Of a step that nobody has judged.
@@ -204,40 +209,7 @@ void judge_by_figures(const json& step, const json& diagnosis, const Left& left,
         ". What may be missing has not been tested (`hookeye diagnose RUN`, or `discover`)";
     return;
   }
-  Names named = standing_out(step, diagnosis);
-  const bool mesh = !named.empty() && numerical(named.front());
-  std::erase_if(named, numerical);
-  out["sentence"] =
-      leaves + (mesh            ? ". A finer mesh comes before any other effect (mesh_resolution)"
-                : named.empty() ? ". Nothing else stands out"
-                                : fmt::format(". {} stand{} out as missing", capital(listed(named)),
-                                              named.size() == 1 ? "s" : ""));
-}
-
-/// "; measured forces are met to 0.9 of their sigma (6 values)", and which is far off.
-std::string met_forces(const json& metrics) {
-  constexpr double kFarOff = 5.0;  // by no noise
-  double sum = 0.0, count = 0.0, worst = 0.0;
-  std::string of;
-  for (const json& one :
-       metrics.is_object() ? metrics.value("measured", json::array()) : json::array())
-    for (const json& r : one.value("over_sigma", json::array())) {
-      if (!r.is_number()) continue;
-      const double off = std::abs(r.get<double>());
-      sum += off * off, count += 1.0;
-      if (off <= worst) continue;
-      worst = off;
-      const std::string region = string_in(one, "region");
-      of = fmt::format("{}{} in '{}'", string_in(one, "kind"), region.empty() ? "" : " " + region,
-                       string_in(one, "example"));
-    }
-  if (count == 0.0) return "";
-  std::string out =
-      fmt::format("; measured values are met to {:.2g} of their sigma (RMS of {:.0f} components)",
-                  std::sqrt(sum / count), count);
-  if (worst > kFarOff)
-    out += fmt::format(", {} is off by {:.2g}: look at its sign and its unit too", of, worst);
-  return out;
+  out["sentence"] = leaves + ". " + capital(concluded(step, diagnosis));
 }
 
 std::string misfit_sentence(const json& step, const json& metrics, double floor,
@@ -254,7 +226,7 @@ std::string misfit_sentence(const json& step, const json& metrics, double floor,
                      : source.empty()            ? ""
                                                  : " (" + source + ")");
   if (px > 0.0) out += fmt::format("; surface off by {:.2g} px", px);
-  return out + met_forces(metrics);
+  return out + met_values(metrics);
 }
 
 /// What is left where nothing chose; or that held-out photos helped to choose.

@@ -1,6 +1,7 @@
 // The answer first: what a run has found in plain words, from its own files.
 #include "runs/report/answer.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -117,6 +118,44 @@ TEST(Answer, AMeasuredValueFarOffIsNamed) {
   EXPECT_THAT(misfit(2.0), testing::Not(HasSubstr("off by 2:")));
 }
 
+/// A force that is off by what the body weighs, where the model has no gravity, is no slip of sign.
+TEST(Answer, AForceThatIsOffByTheBodysWeightIsSaidToBeSo) {
+  const auto misfit = [](std::vector<double> off, const json& weight) {
+    json metrics = {{"measured", json::array()}};
+    for (size_t i = 0; i < off.size(); ++i)
+      for (const double share : {0.75, 0.25})  // of two supports
+        metrics["measured"].push_back({{"kind", "force_on"},
+                                       {"region", share > 0.5 ? "base" : "grip"},
+                                       {"example", fmt::format("load{}", i)},
+                                       {"measured", {0.1, 0.0, share * off[i] - 1.0}},
+                                       {"predicted", {0.1, 0.0, -1.0}},
+                                       {"over_sigma", {0.0, 0.0, share * off[i] / 0.002}}});
+    if (!weight.is_null()) metrics["weight"] = weight;
+    return answer_of(timeline("explained", {"gravity"}, 1.0, 1.0), metrics, {})
+        .at("misfit")
+        .get<std::string>();
+  };
+  const json dense = {{"told", 0.115}, {"of_water", 0.107}, {"unit", "N"}};
+  const json water = {{"told", nullptr}, {"of_water", 0.107}, {"unit", "N"}};
+  EXPECT_THAT(
+      misfit({0.112, 0.05}, dense),
+      testing::EndsWith("force_on base in 'load0' is off by 42, by 0.112 N: the body weighs "
+                        "0.115 N by its density, and the model has no gravity"));
+  EXPECT_THAT(
+      misfit({0.112, 0.118}, water),
+      testing::EndsWith("force_on base in 'load1' is off by 44, by 0.118 N as in all 2 load "
+                        "cases: the body weighs that at 1103 kg/m^3, and the model has "
+                        "no gravity"));
+  // Part of a weight, or a zero; and what fits nothing.
+  const char* zero = "a zero that drifted, or a part of a weight that the model lacks";
+  EXPECT_THAT(misfit({0.04, 0.041}, dense), testing::EndsWith(zero));
+  EXPECT_THAT(misfit({0.04, 0.041}, json()), testing::EndsWith(zero));
+  const char* slip = ": look at its sign and its unit too";
+  EXPECT_THAT(misfit({0.112, 0.2}, water), testing::EndsWith(slip));
+  EXPECT_THAT(misfit({2.0, -2.0}, dense), testing::EndsWith(slip));
+  EXPECT_THAT(misfit({0.112}, json()), testing::EndsWith(slip));
+}
+
 TEST(Answer, AStepThatNobodyHasJudgedIsToldByItsFigures) {
   json run = timeline("unexplained", {"gravity"}, 4.33, 4.0);
   run.erase("sentence");
@@ -133,6 +172,13 @@ TEST(Answer, AStepThatNobodyHasJudgedIsToldByItsFigures) {
   answer = answer_of(run, {}, tested);
   EXPECT_EQ(answer.at("headline"), "above the noise floor");
   EXPECT_THAT(answer.at("sentence").get<std::string>(), HasSubstr(". Creep stands out as missing"));
+  // One voice: the diagnosis's own sentence, whatever else its table names.
+  json tie = tested;
+  tie["effects"][1]["named"] = true;
+  tie["conclusion"] = "creep stands out as missing, and softening cannot be told from it";
+  EXPECT_THAT(answer_of(run, {}, tie).at("sentence").get<std::string>(),
+              testing::EndsWith(". Creep stands out as missing, and softening cannot be told from "
+                                "it"));
   run["steps"][0]["chi_fit"] = run["steps"][0]["chi_validate"] = 1.02;
   const json camera = {{"most_over_floor",
                         {{"camera", "left"}, {"times", 1.45}, {"use", "fit"}, {"its_own", true}}}};
@@ -140,7 +186,8 @@ TEST(Answer, AStepThatNobodyHasJudgedIsToldByItsFigures) {
   EXPECT_EQ(answer.at("headline"), "above the noise floor");
   EXPECT_THAT(
       answer.at("sentence").get<std::string>(),
-      HasSubstr("but 1.45 times its own in the fitted photos of camera 'left'. Nothing else"));
+      HasSubstr("but 1.45 times its own in the fitted photos of camera 'left'. Nothing of the "
+                "catalogue stands out"));
   answer = answer_of(run, {}, {{"effects", json::array()}});
   EXPECT_EQ(answer.at("headline"), "at the noise floor");
 }

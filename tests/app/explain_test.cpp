@@ -1,4 +1,5 @@
 // What a search decided is on disk, and `explain` tells it with its number and its line.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -71,7 +72,25 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
 
   // The score in the shadow: its terms add up, so do differences of a step, and what is hidden is
   // first among the refits of its contest.
-  EXPECT_THAT(all.out, HasSubstr("How sure, by a score"));
+  EXPECT_THAT(all.out, AllOf(Not(HasSubstr("score that decides nothing")),
+                             HasSubstr("`hookeye explain run --scores` adds a second score")));
+  EXPECT_THAT(gravity.out, Not(HasSubstr("score in the shadow")));
+  const Result sure = hookeye("explain run --scores");
+  EXPECT_THAT(sure.out, AllOf(HasSubstr("How sure, by a score that decides nothing yet"),
+                              Not(HasSubstr("adds a second score"))));
+  EXPECT_THAT(hookeye("explain run gravity --scores").out, HasSubstr("score in the shadow"));
+
+  // A step has the floor that its own diagnosis has, whatever the newest one's is.
+  json timeline = json::parse(read(folder_ / "run/run.json"));
+  const json kept = timeline;
+  timeline["floor"]["chi"] = 0.123;
+  write("run/run.json", timeline.dump());
+  const json base = json::parse(read(folder_ / "run/steps/00-base/diagnosis.json"));
+  const std::string heading = hookeye("explain run").out.substr(0, 700);
+  EXPECT_THAT(heading, AllOf(ContainsRegex(fmt::format("noise[ \n]+floor[ \n]+{:.3f}",
+                                                       base.at("floor").at("chi").get<double>())),
+                             Not(HasSubstr("0.123"))));
+  write("run/run.json", kept.dump());
   size_t most = 0;
   std::string first_by_score;
   const json told = json::parse(hookeye("explain run --json").out);

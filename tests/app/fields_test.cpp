@@ -118,6 +118,60 @@ TEST_F(FieldCapture, CheckTellsTheNoiseOfEachComponent) {
   EXPECT_THAT(told.out, testing::ContainsRegex("0[.]035 +0[.]034 +0[.]06"));
 }
 
+/// A sigma far below what the field itself shows, loaded and alone or measured twice.
+TEST_F(FieldCapture, CheckSeesASigmaThatIsTooSmall) {
+  unsigned random = 7;
+  const auto uneven = [&random](double size) {  // even within the size
+    random = random * 1664525U + 1013904223U;
+    return size * (random / 2147483648.0 - 1.0);
+  };
+  // 0.03 deviates by 0.0173; `alike`: points in 2 x 2 as one.
+  const auto write_field = [&](const std::string& name, bool alike) {
+    std::string table = "X [mm],Y,Z,U,V,W\n";
+    std::vector<double> last(19 * 3 + 3, 0.0);
+    for (int y = 1; y < 20; ++y)
+      for (int z = 1; z < 20; ++z) {
+        table += fmt::format("0,{},{}", 0.5 * y, 0.5 * z);
+        for (int c = 0; c < 3; ++c) {
+          double& noise = last[static_cast<size_t>(alike ? 3 * ((z - 1) / 2) + c : c)];
+          if (!alike || ((y - 1) % 2 == 0 && (z - 1) % 2 == 0)) noise = uneven(0.03);
+          table += fmt::format(",{}", noise + (c == 2 ? 0.04 * z + 0.0008 * z * z : 0.01 * c * y));
+        }
+        table += "\n";
+      }
+    write(name, table);
+  };
+  const std::string yaml = read(folder_ / "capture.yaml");
+  const auto said = [&](const std::string& entries) {
+    std::string text = yaml;
+    const std::string own = "      - {field: u.csv, sigma: 0.02}\n";
+    text.replace(text.find(own), own.size(), entries);
+    write("capture.yaml", text);
+    const Result checked = hookeye("check capture.yaml --quick");
+    EXPECT_EQ(checked.status, 0) << checked.err;
+    return checked.err;
+  };
+  write_field("u.csv", false);
+  const char *promises = "told too small it promises too much",
+             *one = "      - {field: u.csv, sigma: ";
+  EXPECT_THAT(said(std::string(one) + "0.002}\n"),
+              testing::AllOf(testing::ContainsRegex("neighbouring points of the field scatter by "
+                                                    "0[.]01[5-9], 0[.]01[5-9], 0[.]01[5-9] mm"),
+                             HasSubstr("`sigma` is 0.002"), HasSubstr(promises)));
+  EXPECT_THAT(said(std::string(one) + "[0.017, 0.002, 0.017]}\n"),
+              testing::AllOf(HasSubstr("`sigma` is 0.017, 0.002, 0.017"), HasSubstr(promises)));
+  for (const char* right : {"0.0173}\n", "0.1}\n"})
+    EXPECT_THAT(said(one + std::string(right)), Not(HasSubstr(promises)));
+  // What neighbours share shows between two of one load case.
+  write_field("u.csv", true), write_field("again.csv", true);
+  const std::string other = "      - {field: again.csv, sigma: ";
+  EXPECT_THAT(said(std::string(one) + "0.005}\n" + other + "0.005}\n"),
+              testing::AllOf(HasSubstr("beside again.csv, of the same points and load case, the "
+                                       "field is noisy by 0.01"),
+                             HasSubstr(promises)));
+  EXPECT_THAT(said(std::string(one) + "0.0173}\n" + other + "0.0173}\n"), Not(HasSubstr(promises)));
+}
+
 /// Whatever is said of a capture without a photo has none in it.
 TEST_F(FieldCapture, NothingIsSaidOfPhotos) {
   const std::string yaml = read(folder_ / "capture.yaml");

@@ -60,6 +60,9 @@ const BrokenCase broken_bodies[] = {
      swap("{image: albedo.png, encoding: srgb}", "{image: albedo.png, uniform: fit}"),
      "capture.yaml:8:32: texture has both `image` and `uniform`\n"
      "  keep one of the two"},
+    {"AlbedoIsNoNumber", swap("{image: albedo.png, encoding: srgb}", "{uniform: grey}"),
+     "capture.yaml:8:22: the uniform albedo is `grey`\n"
+     "  a number is expected, or `fit`"},
     {"TextureFromUnknown", swap("{image: albedo.png, encoding: srgb}", "{from: rset}"),
      "capture.yaml:8:19: there is no example `rset` to take the texture from\n"
      "  did you mean `rest`?"},

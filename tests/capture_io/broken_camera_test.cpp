@@ -49,7 +49,10 @@ const BrokenCase broken_cameras[] = {
      "  leave it out: all rays of this camera are parallel"},
     {"VignettingBrightens", swap("left: {calibration", "left: {vignetting: -0.2, calibration"),
      "capture.yaml:20:22: vignetting of camera `left` is `-0.2`\n"
-     "  zero or a number above it is expected"},
+     "  zero or a number above it is expected, or `fit`"},
+    {"VignettingIsNoNumber", swap("left: {calibration", "left: {vignetting: fitted, calibration"),
+     "capture.yaml:20:22: vignetting of camera `left` is `fitted`\n"
+     "  a number is expected, or `fit`"},
     {"ColoursOfGreyPhotos", swap("left: {calibration", "left: {chromatic_shift: fit, calibration"),
      "capture.yaml:20:10: no photo by camera `left` is compared by its colours, which "
      "`chromatic_shift` tells apart\n"

@@ -118,6 +118,9 @@ const BrokenCase broken_cases[] = {
      "capture.yaml:65:41: the supports of example `held_out` prescribe component z of region "
      "`base` twice\n"
      "  prescribe every component of a region once"},
+    {"SupportRigidOfNoKind", swap("{region: base, fix: [z]}", "{region: base, rigid: fitted}"),
+     "capture.yaml:65:31: rigid is `fitted`\n"
+     "  `fit` is expected, or a map of `rotate` and `move`"},
     {"SupportRigidAndFix", swap("{region: base, fix: [z]}", "{region: base, fix: [z], rigid: fit}"),
      "capture.yaml:65:24: a support of example `held_out` has both `rigid` and `fix`\n"
      "  keep one of the two"},

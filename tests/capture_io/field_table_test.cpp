@@ -36,7 +36,7 @@ TEST(FieldTable, VicHasPixelsBesideAndMarksWhatIsLost) {
   EXPECT_EQ(table.X.col(0), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(table.u.col(0), Eigen::Vector3d(0.1, 0.2, 0.3));
   EXPECT_EQ(table.lines, std::vector<int>{2});
-  EXPECT_EQ(table.dropped, 1);
+  EXPECT_EQ(table.dropped_lines, std::vector<int>{3});
   EXPECT_TRUE(table.has_z && table.has_w);
   EXPECT_EQ(table.unit, "");
 }
@@ -51,7 +51,7 @@ TEST(FieldTable, UnitsStandInTheHeadAndCommasInNumbers) {
   EXPECT_EQ(table.u.col(0), Eigen::Vector3d(1e-3, 0.5, 0));
   EXPECT_EQ(table.unit, "mm");
   EXPECT_FALSE(table.has_z || table.has_w);
-  EXPECT_EQ(table.dropped, 1);
+  EXPECT_EQ(table.dropped_lines, std::vector<int>{2});
 }
 
 TEST(FieldTable, DiceTellsOfItsRunAndOfFailedSubsets) {
@@ -61,7 +61,7 @@ TEST(FieldTable, DiceTellsOfItsRunAndOfFailedSubsets) {
       "0,10,20,0.5,-0.25,0.01,4\n1,30,20,0.5,-0.25,-1,4\n2,50,20,0.5,-0.25,0.01,-2\n");
   EXPECT_EQ(flat.X.cols(), 1);
   EXPECT_EQ(flat.unit, "px");
-  EXPECT_EQ(flat.dropped, 2);
+  EXPECT_EQ(flat.dropped_lines.size(), 2u);
   EXPECT_EQ(flat.lines, std::vector<int>{5});
   const FieldTable stereo = table_of(
       "SUBSET_ID COORDINATE_X COORDINATE_Y DISPLACEMENT_X DISPLACEMENT_Y MODEL_COORDINATES_X "
@@ -76,7 +76,7 @@ TEST(FieldTable, PyvaleTellsWhatConverged) {
       "subset_x,subset_y,displacement_u,displacement_v,displacement_mag,converged,cost\n"
       "10,20,0.5,0.25,0.6,1,0.1\n20,20,0.5,0.25,0.6,0,0.1\n30,20,0.5,0.25,0.6,False,0.1\n");
   EXPECT_EQ(table.X.cols(), 1);
-  EXPECT_EQ(table.dropped, 2);
+  EXPECT_EQ(table.dropped_lines.size(), 2u);
   EXPECT_EQ(table.unit, "px");
 }
 

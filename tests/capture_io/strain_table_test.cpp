@@ -42,7 +42,7 @@ TEST(StrainTable, VicTellsUnitAndMeasureAndMarksWhatIsLost) {
   EXPECT_EQ(table.measure, "green");
   EXPECT_EQ(table.unit, "mm");
   EXPECT_EQ(table.strain_unit, "1");
-  EXPECT_EQ(table.dropped, 1);
+  EXPECT_EQ(table.dropped_lines.size(), 1u);
 }
 
 TEST(StrainTable, MatchIdHasLongNames) {

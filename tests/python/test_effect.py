@@ -272,7 +272,8 @@ def test_an_effect_is_named_added_and_reported_as_the_built_in_one(capture, tmp_
     assert own["explains"] == pytest.approx(built_in["explains"], abs=0.01)
     assert "spring" in table and set(run.why("weight")["candidate"]) == {"weight"}
     step = run.add(Weight)
-    other = he.fit(capture, out=tmp_path / "other").add("gravity")
+    other_run = he.fit(capture, out=tmp_path / "other")
+    other = other_run.add("gravity")
     assert step.added == "weight" and step.chi == pytest.approx(other.chi, abs=1e-3)
     values = dict(zip(run.parameters["name"], run.parameters["value"]))
     assert values["weight.gz"] == pytest.approx(-9650 * 1.07e-9, rel=0.05)
@@ -282,8 +283,14 @@ def test_an_effect_is_named_added_and_reported_as_the_built_in_one(capture, tmp_
     assert again.model()["weight.gz"].value == values["weight.gz"]
 
     he.unregister("weight")
-    with pytest.raises(he.InputError, match="unknown ingredient `weight`"):
+    with pytest.raises(he.InputError, match="no effect `weight` here") as caught:
         he.Run(tmp_path / "run").model()
+    assert "hookeye.register(" in caught.value.right and "before the run is opened" in caught.value.right
+    # What was decided of it is told all the same, and asking for it says what to do first.
+    assert set(he.Run(tmp_path / "run").why("weight")["candidate"]) == {"weight"}
+    with pytest.raises(he.InputError, match="no effect 'weight'") as caught:
+        other_run.add("weight")
+    assert "hookeye.register(" in caught.value.right
 
     class Heavier(Weight):
         """Another with the same name."""

@@ -295,3 +295,21 @@ def test_a_search_is_the_command_s_and_is_taken_up(folder, capture, tmp_path):
     assert "explained" in repr(run)
     with pytest.raises(he.InputError, match="gravity"):
         he.discover(capture, without=["gravty"])
+
+
+def test_what_was_decided_is_printed_whole(capture, monkeypatch):
+    run = he.fit(capture)
+    run.diagnose()
+    pandas = pytest.importorskip("pandas")
+    why = run.why("gravity")
+    for frame in (why, run.decisions):
+        for width in (80, 40):
+            with pandas.option_context("display.width", width):
+                said = "".join(repr(frame).split())  # lines may break between any two words
+            for text in (*frame["why"], *frame["where"]):
+                assert "".join(text.split()) in said, text
+        html = frame._repr_html_()
+        assert all(text.split()[-1] in html for text in frame["why"] if text)
+        assert html.count("<tr") == len(frame) + 1
+    monkeypatch.setattr("hookeye.tables.pandas_if_there", lambda: None)
+    assert all(text in repr(run.why("gravity")) for text in why["why"])

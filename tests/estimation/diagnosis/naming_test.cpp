@@ -48,7 +48,10 @@ TEST(Naming, TiesAreDeclared) {
       of({scored("gravity", 50.0), scored("swelling", 50.0 - Limits{}.diagnosis.tie + 0.1),
           scored("pressure", 40.0)});
   EXPECT_THAT(leaders(tie), ElementsAre("gravity", "swelling"));
-  EXPECT_THAT(conclusion(tie), testing::HasSubstr("swelling cannot be told from it"));
+  EXPECT_THAT(conclusion(tie), testing::StartsWith("gravity stands out as missing, and swelling "
+                                                   "cannot be told from it"));
+  EXPECT_EQ(conclusion(of({scored("mesh_resolution", 90.0), scored("gravity", 58.0)})),
+            "a finer mesh comes before any other effect (mesh_resolution)");
   // The information criterion of its best form puts one before the leader.
   EXPECT_THAT(leaders(of({scored("gravity", 50.0, 40.0), scored("pressure", 40.0, 41.0)})),
               ElementsAre("gravity", "pressure"));
