@@ -9,10 +9,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "support/temporary_folder.h"
 
 namespace hookeye::test {
 
@@ -49,6 +52,21 @@ class Cli : public testing::Test {
 
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name) << text;
+  }
+
+  /// `capture`, and recipe.yaml beside it, by `synth`: once a process, and copied from then on.
+  void photograph(const std::string& recipe) const {
+    static const TemporaryFolder kept;
+    static std::map<std::string, fs::path> made;
+    const auto found = made.find(recipe);
+    if (found != made.end()) return fs::copy(found->second, folder_, fs::copy_options::recursive);
+    write("recipe.yaml", recipe);
+    const Result result = hookeye("synth recipe.yaml -o capture");
+    ASSERT_EQ(result.status, 0) << result.err;
+    for (const char* said : {"out.txt", "err.txt"}) fs::remove(folder_ / said);
+    const fs::path copy = kept / std::to_string(made.size());
+    fs::copy(folder_, copy, fs::copy_options::recursive);
+    made.emplace(recipe, copy);
   }
 
   /// A cube of 10 mm on a table; `move` is the prescribed motion of its top.

@@ -145,21 +145,24 @@ TEST_F(FittedRun, EveryDecisionIsToldWithItsNumberAndItsLine) {
   EXPECT_THAT(damaged.err, ContainsRegex("decisions.jsonl:[0-9]+"));
 }
 
-/// The same capture with one example that nothing may see.
+/// The same capture with one example that nothing may see. Searches add a finer mesh and one
+/// effect.
 class WithATest : public Cli {
  protected:
+  Result search(const std::string& run) const {
+    return hookeye("discover capture --set search.max_effects=2 -o " + run);
+  }
   void SetUp() override {
     Cli::SetUp();
     std::string recipe = kSmallRecipe;
     recipe.insert(recipe.find("hidden:"), "  press: {use: test, force: [0, 0.03, 0.2]}\n");
-    write("recipe.yaml", recipe);
-    ASSERT_EQ(hookeye("synth recipe.yaml -o capture").status, 0);
+    photograph(recipe);
   }
 };
 
 TEST_F(WithATest, NothingSeesItButTheLastLine) {
   ASSERT_EQ(hookeye("check capture").status, 0);
-  const Result found = hookeye("discover capture -o run");
+  const Result found = search("run");
   ASSERT_EQ(found.status, 0) << found.err;
   EXPECT_THAT(found.out, HasSubstr("test: on press, which no fit, score or stop has seen"));
   const json run = json::parse(read(folder_ / "run/run.json"));
@@ -172,7 +175,7 @@ TEST_F(WithATest, NothingSeesItButTheLastLine) {
   ASSERT_TRUE(fs::exists(photo));
   fs::copy_file(folder_ / "capture/photos/rest_cam0.png", photo,
                 fs::copy_options::overwrite_existing);
-  ASSERT_EQ(hookeye("discover capture -o other").status, 0);
+  ASSERT_EQ(search("other").status, 0);
   const json other = json::parse(read(folder_ / "other/run.json"));
   EXPECT_EQ(other.at("sentence"), run.at("sentence"));
   EXPECT_EQ(other.at("steps").back().at("chi_fit"), run.at("steps").back().at("chi_fit"));
@@ -184,7 +187,7 @@ TEST_F(WithATest, NothingSeesItButTheLastLine) {
   const size_t force = text.find("force: [", text.find("  press:")), end = text.find(']', force);
   ASSERT_NE(end, std::string::npos);
   write("capture/capture.yaml", text.replace(force, end - force, "force: [0, 0, -1e5"));
-  const Result crushed = hookeye("discover capture -o crushed");
+  const Result crushed = search("crushed");
   EXPECT_EQ(crushed.status, 0) << crushed.err;
   EXPECT_THAT(crushed.err, HasSubstr("example 'press' of use: test could not be predicted"));
   const json kept = json::parse(read(folder_ / "crushed/run.json"));

@@ -24,9 +24,7 @@ class WithSmallCapture : public Cli {
  protected:
   void SetUp() override {
     Cli::SetUp();
-    write("recipe.yaml", kSmallRecipe);
-    const Result made = hookeye("synth recipe.yaml -o capture");
-    ASSERT_EQ(made.status, 0) << made.err;
+    photograph(kSmallRecipe);
   }
 };
 

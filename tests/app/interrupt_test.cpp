@@ -41,9 +41,10 @@ class Interrupted : public WithSmallCapture {
     for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return out;
   }
-  /// A search stopped after its first step goes on from there.
+  /// A search stopped after its first step goes on from there, to the one more that it may add.
   void search() const {
-    const Result stopped = interrupt_at("step base: normalised", "discover capture -o search");
+    const std::string search = "discover capture -o search --set search.max_effects=1";
+    const Result stopped = interrupt_at("step base: normalised", search);
     ASSERT_EQ(stopped.status, 130) << stopped.out << stopped.err;
     const fs::path model = folder_ / "search/steps/00-base/model.yaml";
     ASSERT_TRUE(fs::exists(model));
@@ -54,7 +55,7 @@ class Interrupted : public WithSmallCapture {
                       HasSubstr("step, base: normalised residual"), HasSubstr("noise floor"),
                       HasSubstr("run: search"), HasSubstr("hookeye discover capture -o search")));
     EXPECT_THAT(stopped.out, Not(AnyOf(HasSubstr("verdict"), HasSubstr("explained"))));
-    const Result resumed = hookeye("discover capture -o search");
+    const Result resumed = hookeye(search);
     ASSERT_EQ(resumed.status, 0) << resumed.err;
     EXPECT_EQ(fs::last_write_time(model), written) << "the base model was fitted again";
     const json timeline = json::parse(read(folder_ / "search/run.json"));

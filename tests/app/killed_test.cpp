@@ -23,9 +23,10 @@ class Killed : public WithSmallCapture {
   /// Exit status of the search in `run`; what it worked out to the end is added to `kept_`.
   int search(const std::string& run, const std::string& before = "",
              const std::optional<Stop>& stop = {}) {
-    std::string command =
-        fmt::format("{} '{}' discover -v capture -o {} >>out.txt 2>err.txt </dev/null", before,
-                    HOOKEYE_PROGRAM, run);
+    std::string command = fmt::format(
+        "{} '{}' discover -v capture -o {} --set search.max_effects=2 >>out.txt "
+        "2>err.txt </dev/null",
+        before, HOOKEYE_PROGRAM, run);
     if (stop)
       command = fmt::format(
           "{{ {} & }}; program=$!; while kill -0 $program 2>/dev/null && "

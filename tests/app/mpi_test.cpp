@@ -39,9 +39,11 @@ class Mpi : public WithSmallCapture {
   Result shared(int processes, const std::string& arguments) const {
     return shell(mpirun(processes) + "'" HOOKEYE_MPI_PROGRAM "' --threads 1 " + arguments);
   }
+  /// One effect is enough: it is named after a fit, trials, refits and a finer mesh.
   void write_search(const std::string& run, int processes) const {
-    const Result found = processes == 0 ? hookeye("--threads 1 discover capture -o " + run)
-                                        : shared(processes, "discover capture -o " + run);
+    const std::string search = "discover capture --set search.max_effects=1 -o " + run;
+    const Result found =
+        processes == 0 ? hookeye("--threads 1 " + search) : shared(processes, search);
     ASSERT_EQ(found.status, 0) << found.out << found.err;
   }
   /// Files of a run that hold its numbers, by name; what they tell of time and place is struck.
@@ -141,7 +143,8 @@ TEST_F(Mpi, ADeadProcessEndsTheOthersAndTheRunGoesOn) {
       mpirun(2) +
       "sh -c 'if [ \"$OMPI_COMM_WORLD_RANK\" = 1 ]; then (while ! ls "
       "killed/steps/00-base/model.yaml >/dev/null 2>&1; do sleep 0.05; done; kill -9 $$) & fi; "
-      "exec \"" HOOKEYE_MPI_PROGRAM "\" --threads 1 discover capture -o killed'");
+      "exec \"" HOOKEYE_MPI_PROGRAM
+      "\" --threads 1 discover capture --set search.max_effects=1 -o killed'");
   EXPECT_NE(killed.status, 0);
   EXPECT_THAT(killed.err, HasSubstr("signal 9"));
   ASSERT_TRUE(fs::exists(folder_ / "killed/steps/00-base/model.yaml"));

@@ -10,14 +10,8 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-class Removed : public Cli {
+class Removed : public WithSmallCapture {
  protected:
-  void SetUp() override {
-    Cli::SetUp();
-    write("recipe.yaml", kSmallRecipe);
-    ASSERT_EQ(hookeye("synth recipe.yaml -o capture").status, 0);
-  }
-
   /// A search whose folder is removed once `sign` stands on standard error.
   Result search_without_its_folder(const std::string& sign) const {
     write("search.sh",

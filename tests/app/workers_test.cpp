@@ -105,9 +105,7 @@ class Workers : public Cli {
  protected:
   void SetUp() override {
     Cli::SetUp();
-    write("recipe.yaml", kRecipe);
-    const Result made = hookeye("synth recipe.yaml -o capture");
-    ASSERT_EQ(made.status, 0) << made.err;
+    photograph(kRecipe);
   }
   void expect_same(const std::string& run, const std::string& reference) const {
     const auto said = said_by(folder_ / run), was = said_by(folder_ / reference);

@@ -15,7 +15,21 @@ namespace {
 
 constexpr double kTrueMu = 0.02;  ///< SmallCapture's
 
+Repeat of_interval(const Fitted& fitted) {
+  Repeat out;
+  out.covered = fitted.low[0] <= kTrueMu && kTrueMu <= fitted.high[0];
+  out.over_deviation = std::log(fitted.p[0] / kTrueMu) /
+                       (std::log(fitted.high[0] / fitted.low[0]) / (2.0 * kNormal95));
+  return out;
+}
+
 }  // namespace
+
+Repeat repeat_fit(const SmallCapture& capture) {
+  const SmallScene small(capture);
+  Workspace workspace(small.scene);
+  return of_interval(base_fit(workspace));
+}
 
 Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
   const SmallScene small(capture);
@@ -23,12 +37,9 @@ Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options) {
   const ModelForm form = base_form(small.scene);
   auto fitted = fit(workspace, form, form.initial()).value();
   const auto diagnosis = diagnose(workspace, fitted, options).value();
-  Repeat out;
   const bool other_mesh = capture.truth_mesh != "1";
   if (other_mesh) reach_for_mesh(fitted, diagnosis);
-  out.covered = fitted.low[0] <= kTrueMu && kTrueMu <= fitted.high[0];
-  out.over_deviation = std::log(fitted.p[0] / kTrueMu) /
-                       (std::log(fitted.high[0] / fitted.low[0]) / (2.0 * kNormal95));
+  Repeat out = of_interval(fitted);
   out.first = diagnosis.effects.front().effect;
   for (const auto& effect : diagnosis.effects) {
     out.p_value = std::min(out.p_value, effect.p_value);

@@ -27,6 +27,9 @@ struct Repeat {
 /// Fits mu and diagnoses, as a user would. The true mu is SmallCapture's.
 Repeat repeat(const SmallCapture& capture, const DiagnosisOptions& options = {});
 
+/// Fits mu alone, on the truth's own mesh: what the interval tells, and nothing of effects.
+Repeat repeat_fit(const SmallCapture& capture);
+
 struct Searched {
   std::string wrong;  ///< names that a search found, but for the mesh; empty: none
   std::string verdict;

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "capture_io/camera_covariance.h"
+#include "estimation/effects/catalogue.h"
 #include "estimation/synth/synth.h"
 
 namespace hookeye::test {
@@ -105,6 +107,14 @@ Step base_step(Workspace& workspace) {
   step.fitted = base_fit(workspace);
   step.diagnosis = diagnose(workspace, step.fitted).value();
   return step;
+}
+
+DiagnosisOptions of_alone(const std::vector<std::string>& effects) {
+  DiagnosisOptions options;
+  for (const auto& effect : catalogue())
+    if (std::find(effects.begin(), effects.end(), effect->name()) == effects.end())
+      options.without.push_back(effect->name());
+  return options;
 }
 
 Discovery discover(const SmallScene& small, const DiscoverOptions& options) {

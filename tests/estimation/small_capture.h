@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "estimation/search/discover.h"
 #include "tests/support/temporary_folder.h"
@@ -41,6 +42,8 @@ std::shared_ptr<const Scene> with_known_cameras(const Scene& scene);
 /// The capture's own model, fitted; as a step, diagnosed too.
 Fitted base_fit(Workspace& workspace);
 Step base_step(Workspace& workspace);
+/// A diagnosis of these effects, where a test asks for the scores of no other.
+DiagnosisOptions of_alone(const std::vector<std::string>& effects);
 
 /// Of one of its parameters; throws where it has none of that name.
 double value_of(const Fitted& fitted, const std::string& name);

@@ -18,7 +18,9 @@ const char* const kWeight =
 TEST(Discover, AnEarlierEffectThatALaterOneMakesIdleIsDropped) {
   const SmallScene small({.hidden = kWeight});
   Workspace workspace(small.scene);
-  Step step = test::base_step(workspace);
+  Step step;
+  step.fitted = test::base_fit(workspace);
+  step.diagnosis = diagnose(workspace, step.fitted, test::of_alone({"swelling"})).value();
   const auto swelling =
       std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
                    [](const EffectScore& score) { return score.effect == "swelling"; });

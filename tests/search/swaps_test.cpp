@@ -17,7 +17,7 @@ Step with_effects(Workspace& workspace, const std::vector<std::string>& effects)
   Step step;
   step.fitted = test::base_fit(workspace);
   for (const std::string& effect : effects) {
-    step.diagnosis = diagnose(workspace, step.fitted).value();
+    step.diagnosis = diagnose(workspace, step.fitted, test::of_alone({effect})).value();
     const auto score = std::find_if(step.diagnosis.effects.begin(), step.diagnosis.effects.end(),
                                     [&](const EffectScore& one) { return one.effect == effect; });
     if (score == step.diagnosis.effects.end()) throw std::runtime_error("no score of " + effect);

@@ -38,7 +38,7 @@ TEST(Statistics, IntervalsHoldWhereNoiseIsNotAll) {
   int missed = 0;
   double spread = 0.0;
   for (unsigned seed = 1; seed <= kCaptures; ++seed) {
-    const test::Repeat one = test::repeat({.told = "0.0215", .seed = seed});
+    const test::Repeat one = test::repeat_fit({.told = "0.0215", .seed = seed});
     missed += !one.covered;
     spread += one.over_deviation * one.over_deviation;
   }

@@ -42,10 +42,19 @@ double held_out_r2(Workspace& workspace, const Fitted& fitted, const VectorXd& p
   return std::pow(there.evaluation.chi(true), 2);
 }
 
-TEST(FitToAll, TheSpreadIsWhatHeldOutPhotosShowOfTheValuesErrors) {
-  const test::SmallScene small = softened("move: [0, 0, -0.06]");
-  Workspace workspace(small.scene);
+/// The softening that a told motion hardly shows, fitted: made once, for two tests.
+struct HardlyKnown {
+  test::SmallScene small = softened("move: [0, 0, -0.06]");
+  Workspace workspace{small.scene};
   const Fitted fitted = fitted_with(workspace, "softening", "from press on");
+};
+HardlyKnown& hardly_known() {
+  static HardlyKnown made;
+  return made;
+}
+
+TEST(FitToAll, TheSpreadIsWhatHeldOutPhotosShowOfTheValuesErrors) {
+  auto& [small, workspace, fitted] = hardly_known();
   const auto V =
       parameter_covariance(fitted.evaluation, fitted.form.parameters(), fitted.p).determined;
   // One value is hardly known: a standard deviation of it, with what goes with it of the others.
@@ -62,9 +71,8 @@ TEST(FitToAll, TheSpreadIsWhatHeldOutPhotosShowOfTheValuesErrors) {
 }
 
 TEST(FitToAll, ValuesThatAreHardlyKnownAreNoMissingEffect) {
-  const test::SmallScene small = softened("move: [0, 0, -0.06]");
-  Workspace workspace(small.scene);
-  Fitted fitted = fitted_with(workspace, "softening", "from press on");
+  auto& [small, workspace, made] = hardly_known();
+  Fitted fitted = made;
   Diagnosis diagnosis;
   const Floor& floor = diagnosis.floor = measure_floor(*small.scene, fitted.evaluation);
   // Two standard deviations off, as one of twenty captures is.
