@@ -78,7 +78,7 @@ def test_the_page_s_lines_run(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     os.symlink(folder / "capture", tmp_path / "block")
     blocks = re.findall(r"```python\n(.*?)```", (SOURCES / "docs/python.md").read_text(), re.S)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     names = {}
     for block in blocks:
         exec(block, names)
