@@ -229,10 +229,13 @@ function pixelOf(text, point) {
   const [x, y, z] = rows.map((row, i) => row.reduce((sum, r, k) => sum + r * point[k], t[i]));
   return [480 * x / z + 99.5, 480 * y / z + 99.5];
 }
+/** What is told of an earlier pose may stand there still: the capture itself tells when this one is found. */
 async function placed(page, button, read) {
+  const before = read();
   await page.click(button);
-  await until(page, () => /Turned by/.test(document.querySelector('.pose .note')?.textContent ?? ''), 180);
-  await page.waitForTimeout(1500);
+  for (const end = Date.now() + 180000; read() === before || !displaced(read()); await page.waitForTimeout(200))
+    assert.ok(Date.now() < end, 'no pose was found within 180 s');
+  await until(page, () => /Turned by/.test(document.querySelector('.pose .note')?.textContent ?? ''));
   return displaced(read());
 }
 

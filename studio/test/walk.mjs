@@ -48,14 +48,14 @@ async function open(url, size = {width: 1280, height: 800}, colorScheme = 'light
 async function settled(page) {
   if (page.url().startsWith('http')) await page.waitForTimeout(300);
   await page.evaluate(() => new Promise((resolve) => {
-    let quiet = 0;
+    let quiet = 0, frames = 0;
     const watch = new MutationObserver(() => (quiet = 0));
     watch.observe(document, {subtree: true, childList: true, attributes: true, characterData: true});
     const frame = () => requestAnimationFrame(() => requestIdleCallback(() => {
-      if (++quiet < 6) return frame();
+      if (++quiet < 6 && ++frames < 600) return frame();  // what never rests is taken as it is
       watch.disconnect();
       resolve();
-    }));
+    }, {timeout: 1000}));
     frame();
   }));
 }
