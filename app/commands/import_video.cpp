@@ -18,12 +18,15 @@ class Arriving {
   explicit Arriving(const fs::path& folder) : folder_(folder), part_(folder / ".hookeye-frames") {
     std::error_code error;
     fs::remove_all(part_, error);  // of one that was killed
+    for (fs::path one = folder; !one.empty() && !fs::exists(one, error); one = one.parent_path())
+      fresh_.push_back(one);
     fs::create_directories(part_, error);
     if (error) throw cannot_write(part_.string(), error.message());
   }
   ~Arriving() {
     std::error_code ignored;
     fs::remove_all(part_, ignored);
+    for (const fs::path& one : fresh_) fs::remove(one, ignored);  // where it has stayed empty
   }
   Arriving(const Arriving&) = delete;
   Arriving& operator=(const Arriving&) = delete;
@@ -34,6 +37,7 @@ class Arriving {
 
  private:
   fs::path folder_, part_;
+  std::vector<fs::path> fresh_;  ///< folders that were not there
 };
 
 void refuse_photos_there(const fs::path& folder, const std::vector<Video>& videos) {

@@ -89,6 +89,9 @@ TEST_F(Cli, VideosAreImportedAsPhotosOrNotAtAll) {
   EXPECT_THAT(too_long(got.out), testing::IsEmpty());
   EXPECT_TRUE(fs::exists(folder_ / "lab/photos/right_0005.tif"));
   EXPECT_FALSE(fs::exists(folder_ / "lab/photos/.hookeye-frames"));
+  // one of them is cut: nothing stays of either
+  fs::resize_file(folder_ / "right.mkv", fs::file_size(folder_ / "right.mkv") / 2);
+  refused("left.mkv right.mkv -o out");
   const Result again = hookeye("import left.mkv -o lab");
   EXPECT_EQ(again.status, 2);
   EXPECT_THAT(again.err, HasSubstr("photos of a camera of this name are there"));

@@ -240,7 +240,7 @@ TEST(Proposal, WhatIsMissingIsNamed) {
   const LabFolder lab;
   EXPECT_THAT(lab.complaint(), HasSubstr("there are no photos with numbers in it"));
   lab.write("pull.mp4", "");
-  EXPECT_THAT(lab.complaint(), HasSubstr("`ffmpeg -i pull.mp4 cam_%04d.png`"));
+  EXPECT_THAT(lab.complaint(), HasSubstr("by `hookeye import pull.mp4 -o "));
   lab.photos({0, 0, 1, 2});
   EXPECT_THAT(lab.complaint(), HasSubstr("there is no table of a test machine in it"));
   lab.write("machine.csv", "Strain [%],Stress [MPa]\n0,0\n1,0.1\n2,0.2\n");

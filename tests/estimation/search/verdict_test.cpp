@@ -335,6 +335,7 @@ TEST(Contest, WhatTakesLittleOfTheMisfitIsRefused) {
     Fitted out = fitted;
     for (auto& example : out.evaluation.examples)
       for (auto& photo : example.photos) photo.r2 *= example.held_out ? held_out : fit;
+    out.low = out.high = VectorXd::Constant(out.p.size(), 1e6);  // what is not there is no answer
     return out;
   };
   Step step;
@@ -362,6 +363,14 @@ TEST(Contest, WhatTakesLittleOfTheMisfitIsRefused) {
   EXPECT_EQ(refused(1.4, 1.6), "");
   step.fitted = left(0.8, 0.8);
   EXPECT_EQ(refused(0.7, 0.7), "") << "nothing is over the floor";
+  const auto may_be_nothing = [&] {
+    Refit refit{"gravity", left(0.7, 0.7), 100.0};
+    refit.fitted.low.setConstant(-1e6);
+    return why_refused(step, 0.0, refit).why == Refusal::Why::may_be_nothing;
+  };
+  EXPECT_TRUE(may_be_nothing());
+  step.fitted = left(100.0, 100.0);
+  EXPECT_FALSE(may_be_nothing()) << "without it much is left";
 }
 
 /// A force 100 deviations off is not explained by photos that are at their floor.
