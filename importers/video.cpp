@@ -164,7 +164,10 @@ Video look_at_video(const fs::path& file) {
   if (end.status != 0)
     throw InputError({file.string()}, "ffprobe cannot read it: " + last_line(end.errors),
                      kComplete);
-  return video_of(file, told);
+  Video video = video_of(file, told);
+  if (const std::string line = last_line(end.errors); !line.empty())
+    video.said.push_back("ffprobe says of it: " + line);
+  return video;
 }
 
 namespace {

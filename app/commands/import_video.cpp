@@ -1,4 +1,5 @@
 // hookeye import VIDEO: frames as photos, with the times by which they are paired with a table.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/import_files.h"
@@ -89,6 +90,12 @@ void run_import_videos(const std::vector<fs::path>& files, const FrameChoice& ch
     session.say("{}", in_one_line(videos[v], photos[v]));
     for (const std::string& said : videos[v].said) session.say("{}", wrapped(said, 2));
   }
+  const auto [shortest, longest] = std::minmax_element(
+      videos.begin(), videos.end(), [](auto& a, auto& b) { return a.lasts() < b.lasts(); });
+  if (longest->lasts() > 1.05 * shortest->lasts())
+    session.warn(fmt::format(
+        "{} ends {:.4g} s before {}: of what came after that there is no photo",
+        shortest->file.string(), longest->lasts() - shortest->lasts(), longest->file.string()));
   if (videos.size() > 1)
     session.say("{}",
                 wrapped(fmt::format("photos of one number are of one time from the first frames "

@@ -89,9 +89,11 @@ TEST_F(Cli, VideosAreImportedAsPhotosOrNotAtAll) {
   EXPECT_THAT(too_long(got.out), testing::IsEmpty());
   EXPECT_TRUE(fs::exists(folder_ / "lab/photos/right_0005.tif"));
   EXPECT_FALSE(fs::exists(folder_ / "lab/photos/.hookeye-frames"));
-  // one of them is cut: nothing stays of either
+  // one of them is cut
   fs::resize_file(folder_ / "right.mkv", fs::file_size(folder_ / "right.mkv") / 2);
-  refused("left.mkv right.mkv -o out");
+  const Result cut = hookeye("import left.mkv right.mkv -o cut");
+  EXPECT_THAT(cut.out, HasSubstr("ffprobe says of it: "));
+  EXPECT_THAT(cut.err, testing::ContainsRegex("right.mkv ends 1.* s before left.mkv"));
   const Result again = hookeye("import left.mkv -o lab");
   EXPECT_EQ(again.status, 2);
   EXPECT_THAT(again.err, HasSubstr("photos of a camera of this name are there"));
