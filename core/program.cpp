@@ -30,32 +30,6 @@ struct Pipe {
   }
 };
 
-/// 0, or what posix_spawnp failed by.
-int spawn(std::vector<std::string>& words, int out, int errors, pid_t& child) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, out, 1);
-  posix_spawn_file_actions_adddup2(&actions, errors, 2);
-  posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t all, none;  // our threads have Ctrl-C blocked
-  sigfillset(&all);
-  sigemptyset(&none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-  std::vector<char*> all_words;
-  for (std::string& word : words) all_words.push_back(word.data());
-  all_words.push_back(nullptr);
-  const int failed =
-      posix_spawnp(&child, all_words.front(), &actions, &attributes, all_words.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  return failed;
-}
-
 /// Its end, however the one who waits for it leaves.
 class Child {
  public:
@@ -89,11 +63,39 @@ std::string_view read_some(int& from, std::string& room) {
 
 }  // namespace
 
+int start_program(std::vector<std::string> words, int out, int errors, pid_t& child) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, out, 1);
+  if (errors < 0)
+    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+  else
+    posix_spawn_file_actions_adddup2(&actions, errors, 2);
+  posix_spawn_file_actions_addclosefrom_np(&actions, 3);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t all, none;  // our threads have Ctrl-C blocked
+  sigfillset(&all);
+  sigemptyset(&none);
+  posix_spawnattr_setsigdefault(&attributes, &all);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  std::vector<char*> all_words;
+  for (std::string& word : words) all_words.push_back(word.data());
+  all_words.push_back(nullptr);
+  const int failed =
+      posix_spawnp(&child, all_words.front(), &actions, &attributes, all_words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  return failed;
+}
+
 ProgramEnd run_program(std::vector<std::string> words,
                        const std::function<bool(std::string_view)>& output) {
   Pipe out, errors;
   pid_t id = -1;
-  if (const int failed = spawn(words, out.to, errors.to, id); failed != 0) {
+  if (const int failed = start_program(words, out.to, errors.to, id); failed != 0) {
     if (failed == ENOENT || failed == EACCES) return {false, 0, ""};
     throw std::runtime_error("no process is left for " + words.front());
   }

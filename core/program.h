@@ -1,12 +1,19 @@
 // A program of others that the user has installed, run to its end.
 #pragma once
 
+#include <sys/types.h>
+
 #include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace hookeye {
+
+/// Starts words[0] (looked for in PATH, unless it is a path) with nothing on standard input, its
+/// output in `out` and its errors in `errors`, open files of the caller; -1: nowhere. It has the
+/// signals that a shell would give it. 0, or the errno by which it failed.
+int start_program(std::vector<std::string> words, int out, int errors, pid_t& child);
 
 struct ProgramEnd {
   bool found = true;   ///< false: there is no such program in PATH

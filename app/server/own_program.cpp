@@ -2,43 +2,16 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 
 #include "core/own_file.h"
+#include "core/program.h"
 
 namespace hookeye {
 namespace {
-
-/// With its document in a pipe; -1: it cannot be started.
-pid_t spawn(std::vector<std::string> arguments, int out) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, out, 1);
-  posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addclosefrom_np(&actions, 3);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t all, none;  // our threads have Ctrl-C blocked
-  sigfillset(&all);
-  sigemptyset(&none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-  std::vector<char*> words;
-  for (std::string& argument : arguments) words.push_back(argument.data());
-  words.push_back(nullptr);
-  pid_t child = -1;
-  if (posix_spawn(&child, words.front(), &actions, &attributes, words.data(), environ) != 0)
-    child = -1;
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
-  return child;
-}
 
 std::string read_all(int from) {
   std::string text;
@@ -63,7 +36,7 @@ nlohmann::json OwnProgram::run(std::vector<std::string> arguments,
   if (::pipe2(ends, O_CLOEXEC) != 0) return nullptr;
   {
     const std::lock_guard lock(mutex_);
-    if (wanted()) child_ = spawn(std::move(arguments), ends[1]);
+    if (wanted() && start_program(std::move(arguments), ends[1], -1, child_) != 0) child_ = -1;
   }
   ::close(ends[1]);
   const std::string text = read_all(ends[0]);

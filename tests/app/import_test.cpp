@@ -36,14 +36,18 @@ TEST_F(Cli, ImportWritesCamerasThatACaptureTakes) {
   EXPECT_NEAR(document["cameras"][1]["centre"][0], 10, 1e-12);
 }
 
-TEST_F(Cli, ImportWritesNothingWhereAnythingIsWrong) {
-  write("a.caldat", kCalibration);
-  const auto refused = [&](const std::string& arguments) {
+class RefusedImport : public Cli {
+ protected:
+  std::string refused(const std::string& arguments) const {
     const Result got = hookeye("import " + arguments);
     EXPECT_EQ(got.status, 2) << arguments << got.out << got.err;
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     return got.err;
-  };
+  }
+};
+
+TEST_F(RefusedImport, WritesNothingWhereAnythingIsWrong) {
+  write("a.caldat", kCalibration);
   EXPECT_THAT(refused("a.caldat -o out"), HasSubstr("--size 1280x1024"));
   EXPECT_THAT(refused("a.caldat -o out --size 640"), HasSubstr("a size like 1280x1024"));
   EXPECT_THAT(refused("dice a.caldat -o out"), HasSubstr("a.caldat: cannot be read"));
@@ -57,14 +61,8 @@ TEST_F(Cli, ImportWritesNothingWhereAnythingIsWrong) {
   EXPECT_EQ(read(folder_ / "cameras.yaml"), "cameras: {}\n");
 }
 
-TEST_F(Cli, VideosAreImportedAsPhotosOrNotAtAll) {
+TEST_F(RefusedImport, OrPhotosOfVideos) {
   write("a.caldat", kCalibration);
-  const auto refused = [&](const std::string& arguments) {
-    const Result got = hookeye("import " + arguments);
-    EXPECT_EQ(got.status, 2) << arguments << got.out << got.err;
-    EXPECT_FALSE(fs::exists(folder_ / "out"));
-    return got.err;
-  };
   EXPECT_THAT(refused("a.caldat -o out --size 640x480 --every 2"), HasSubstr("are of videos"));
   EXPECT_THAT(refused("no.mp4 -o out"), HasSubstr("no.mp4: there is no such file"));
   EXPECT_THAT(refused("video -o out"), HasSubstr("there is no source behind the kind"));
