@@ -31,6 +31,7 @@ void write_coded_photo(const std::filesystem::path& file, const CodedPhoto& phot
   stored.taken =
       fmt::format("1970:01:01 {:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
   stored.fraction = fmt::format("{:06}", microseconds % 1000000);
+  stored.srgb = photo.srgb;
   HelperRequest request = request_of(file);
   Packer what;
   what.put(std::string("write")).put(file.string());

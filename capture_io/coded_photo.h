@@ -10,10 +10,11 @@ struct CodedPhoto {
   int width = 0, height = 0, channels = 1;  ///< channels: 1 or 3
   int bits = 8;                             ///< of a code: 8 or 16
   std::string codes;   ///< row-major, channels interleaved; 16 bits in the machine's order
+  bool srgb = false;   ///< what EXIF is to say of them; else nothing
   double seconds = 0;  ///< 0 .. 86400, told as of the first day of 1970: a clock of its own
 };
 
-/// A TIFF without loss. EXIF says that the codes are sRGB, and the time (read_photo_time). Throws
+/// A TIFF without loss, with the time in EXIF (read_photo_time). Throws
 /// InputError where it cannot be written.
 void write_coded_photo(const std::filesystem::path& file, const CodedPhoto& photo);
 

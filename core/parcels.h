@@ -17,8 +17,9 @@ struct StoredImage {
   StoredAs stored = StoredAs::bytes;
   int compression = 6;  ///< of PNG
   std::string values;   ///< row-major, channels interleaved, of the kind `stored`
-  /// Of a photo: EXIF's date and the digits of its fraction; "": none. Codes are sRGB then.
+  /// Of a photo: EXIF's date and the digits of its fraction; "": none.
   std::string taken = {}, fraction = {};
+  bool srgb = false;  ///< EXIF says that the codes are sRGB
 };
 
 /// A picture as its file holds it: codes with what each stands for, or floats.
@@ -63,7 +64,7 @@ inline ReadPicture unpack_read(Unpacker& from) {
 
 inline void pack(Packer& to, const StoredImage& image) {
   to.put(image.width).put(image.height).put(image.channels).put(image.stored);
-  to.put(image.compression).put(image.values).put(image.taken).put(image.fraction);
+  to.put(image.compression).put(image.values).put(image.taken).put(image.fraction).put(image.srgb);
 }
 
 inline StoredImage unpack_stored(Unpacker& from) {
@@ -76,6 +77,7 @@ inline StoredImage unpack_stored(Unpacker& from) {
   from.get(image.values);
   from.get(image.taken);
   from.get(image.fraction);
+  image.srgb = from.take<uint8_t>() != 0;
   const size_t size = image.stored == StoredAs::floats  ? 4
                       : image.stored == StoredAs::words ? 2
                                                         : 1;

@@ -89,6 +89,21 @@ std::vector<double> times_of(const json& told) {
   return times;
 }
 
+/// Nothing is lost by the codec.
+bool is_whole(const std::string& codec) {
+  static const std::set<std::string> whole = {"ffv1",    "rawvideo", "huffyuv",
+                                              "ffvhuff", "utvideo",  "png"};
+  return whole.contains(codec);
+}
+
+/// Where the file does not say it: a video that is compressed is made for eyes. Frames without loss
+/// are of cameras of laboratories, which store brightness itself.
+bool holds_roots(const json& stream) {
+  const std::string told = word(stream, "color_transfer");
+  if (told.empty() || told == "unknown") return !is_whole(word(stream, "codec_name"));
+  return told != "linear";
+}
+
 /// What makes frames worse than photos.
 void say_what_is_lost(const json& stream, Video& video) {
   const std::string codec = word(stream, "codec_name"), fields = word(stream, "field_order");
@@ -101,8 +116,7 @@ void say_what_is_lost(const json& stream, Video& video) {
     video.said.push_back(
         "its frames are interlaced: every other line is of another moment. Record progressive "
         "frames, or take those at which nothing moves");
-  const std::set<std::string> whole = {"ffv1", "rawvideo", "huffyuv", "ffvhuff", "utvideo", "png"};
-  if (!whole.contains(codec))
+  if (!is_whole(codec))
     video.said.push_back(fmt::format(
         "it is compressed ({}): noise hangs together from pixel to pixel, and a fit takes it for "
         "something that is missing. Prefer frames at which the machine halts",
@@ -138,6 +152,7 @@ Video video_of(const fs::path& file, const std::string& text) {
   const std::string pixels = word(stream, "pix_fmt"), colours = word(stream, "color_space");
   video.channels = pixels.starts_with("gray") ? 1 : 3;
   video.bits = is_deep(pixels) ? 16 : 8;
+  video.srgb = holds_roots(stream);
   // Untold, players take the matrix of high definition from 720 lines on.
   video.bt709 = colours.empty() || colours == "unknown" ? std::min(video.width, video.height) >= 720
                                                         : colours.starts_with("bt709");
@@ -151,16 +166,16 @@ Video video_of(const fs::path& file, const std::string& text) {
 
 Video look_at_video(const fs::path& file) {
   std::string told;
-  const ProgramEnd end = run(
-      file,
-      {"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries",
-       "stream=codec_name,width,height,pix_fmt,field_order,color_space:stream_side_data=rotation:"
-       "packet=pts_time,flags",
-       "-of", "json", "file:" + file.string()},
-      [&](std::string_view part) {
-        told += part;
-        return true;
-      });
+  const ProgramEnd end = run(file,
+                             {"ffprobe", "-v", "error", "-select_streams", "v:0", "-show_entries",
+                              "stream=codec_name,width,height,pix_fmt,field_order,color_space,"
+                              "color_transfer:stream_side_data=rotation:"
+                              "packet=pts_time,flags",
+                              "-of", "json", "file:" + file.string()},
+                             [&](std::string_view part) {
+                               told += part;
+                               return true;
+                             });
   if (end.status != 0)
     throw InputError({file.string()}, "ffprobe cannot read it: " + last_line(end.errors),
                      kComplete);
@@ -249,6 +264,7 @@ class FrameWriter {
       : video_(video), frames_(frames), folder_(folder) {
     photo_.width = video.width, photo_.height = video.height;
     photo_.channels = video.channels, photo_.bits = video.bits;
+    photo_.srgb = video.srgb;
     size_ = static_cast<size_t>(video.width) * static_cast<size_t>(video.height) *
             static_cast<size_t>(video.channels) * static_cast<size_t>(video.bits / 8);
   }

@@ -16,6 +16,7 @@ struct Video {
   int width = 0, height = 0;      ///< [px] as shown
   int channels = 3, bits = 8;     ///< of the photos
   std::vector<double> times;      ///< of its frames [s] by the file's clock, rising
+  bool srgb = false;              ///< codes are roots of brightness, as players take them
   bool bt709 = false;             ///< how its colours become red, green and blue
   std::vector<std::string> said;  ///< what the user is to know
   double first() const { return times.front(); }

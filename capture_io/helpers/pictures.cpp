@@ -255,7 +255,7 @@ bool write(OIIO::ImageOutput& output, const std::string& file, const StoredImage
     spec.attribute("compression", "zip");
     spec.attribute("Exif:DateTimeOriginal", image.taken);
     spec.attribute("Exif:SubsecTimeOriginal", image.fraction);
-    spec.attribute("Exif:ColorSpace", kExifSrgb);
+    if (image.srgb) spec.attribute("Exif:ColorSpace", kExifSrgb);
   }
   if (memory != nullptr && !output.set_ioproxy(memory)) return false;
   return output.open(file, spec) && output.write_image(type, image.values.data()) && output.close();

@@ -51,6 +51,11 @@ TEST(Video, IsWhatFfprobeSaysOfIt) {
   EXPECT_EQ(grey.bits, 8);
   EXPECT_TRUE(grey.bt709);
   EXPECT_THAT(grey.said, IsEmpty());
+  EXPECT_TRUE(video.srgb);
+  EXPECT_FALSE(grey.srgb);
+  EXPECT_FALSE(video_of("a.mp4", probed(R"("codec_name": "h264", "width": 320, "height": 240,
+      "pix_fmt": "gray", "color_transfer": "linear")"))
+                   .srgb);
 }
 
 TEST(Video, WithoutFramesIsRefused) {
@@ -191,7 +196,7 @@ TEST_F(MadeVideo, OfLosslessFramesHasTheirCodesAndTimes) {
       const auto taken = read_photo_time(file);
       ASSERT_TRUE(taken.has_value());
       EXPECT_NEAR(taken->seconds, photos[k].seconds, 1e-6);
-      EXPECT_TRUE(is_told_srgb(file));
+      EXPECT_FALSE(is_told_srgb(file));  // as of a laboratory
     }
   }
 }
@@ -201,12 +206,13 @@ TEST_F(MadeVideo, OfBrightnessAndColoursIsTurnedIntoFullCodes) {
   const Video video = look_at_video(
       made("cam0.mkv", "rgb24",
            {"-vf", "setpts=N*N/(20*TB),scale=out_color_matrix=bt709:flags=accurate_rnd", "-c:v",
-            "ffv1", "-pix_fmt", "yuv444p10le", "-colorspace", "bt709"}));
+            "ffv1", "-pix_fmt", "yuv444p10le", "-colorspace", "bt709", "-color_trc", "bt709"}));
   EXPECT_TRUE(video.bt709);
   EXPECT_EQ(video.bits, 16);
   const auto photos =
       photos_of_video(video, choose_frames({video}, {.at = {0.8}}), 0, folder_.path());
   EXPECT_LT(farthest(folder_ / photos.at(0).name, 4, 3), 1.0);
+  EXPECT_TRUE(is_told_srgb(folder_ / photos.at(0).name));
 }
 
 TEST_F(MadeVideo, ThatIsCutOrNoneIsRefused) {
